@@ -1,0 +1,69 @@
+"""Plan robot teams that keep tracking targets under attack, and prove how good each plan is.
+
+Every public name is loaded on first use: importing ``ratt_opt`` stays light, and the
+certificate verifier shares no import with the solvers whose claims it checks.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.exact import worst_case_attack
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.errors import FileFormatError, InputError, ProofError
+    from ratt_opt.graph.caa import CaaResult, caa
+    from ratt_opt.problem import Attack, Plan, Problem
+    from ratt_opt.setfunctions.base import SetFunction
+    from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
+    from ratt_opt.setfunctions.table import TableFunction
+    from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
+    from ratt_opt.solvers.exhaustive import exhaustive_optimum
+    from ratt_opt.solvers.ratt import ratt
+    from ratt_opt.solvers.result import MaxMinResult
+    from ratt_opt.stopping import Stop
+
+_HOME = {
+    "Attack": "problem",
+    "AttackResult": "attackers.result",
+    "CaaResult": "graph.caa",
+    "FileFormatError": "errors",
+    "InputError": "errors",
+    "LogDetObjective": "setfunctions.information",
+    "MaxEigenvalueObjective": "setfunctions.information",
+    "MaxMinResult": "solvers.result",
+    "Plan": "problem",
+    "Problem": "problem",
+    "ProofError": "errors",
+    "SetFunction": "setfunctions.base",
+    "Stop": "stopping",
+    "TableFunction": "setfunctions.table",
+    "TraceObjective": "setfunctions.information",
+    "caa": "graph.caa",
+    "exhaustive_optimum": "solvers.exhaustive",
+    "greedy": "solvers.baselines",
+    "myopic": "solvers.baselines",
+    "nonrobust_optimum": "solvers.baselines",
+    "random_plan": "solvers.baselines",
+    "ratt": "solvers.ratt",
+    "worst_case_attack": "attackers.exact",
+}
+
+__all__ = [  # noqa: PLE0604  (every name of _HOME, loaded by __getattr__)
+    "__version__",
+    *sorted(_HOME),
+]
+__version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOME})

@@ -1,0 +1,68 @@
+"""Checks shared by every public entry point; each raises :class:`InputError`."""
+
+from __future__ import annotations
+
+import operator
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["BoolArray", "FloatArray", "IntArray", "check_finite", "check_integer", "check_subset", "readonly"]
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+def readonly(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a read-only view or copy of ``array`` that the caller's later writes cannot reach."""
+    array = np.array(array)
+    array.setflags(write=False)
+    return array
+
+
+def check_integer(argument: str, value: object, *, low: int, high: int | None = None) -> int:
+    """Return ``value`` as an ``int`` in ``[low, high]``; booleans and fractions are refused."""
+    rule = f"must be an integer in [{low}, {high}]" if high is not None else f"must be an integer >= {low}"
+    if isinstance(value, (bool, np.bool_)):
+        raise InputError(argument, rule, value)
+    try:
+        number = operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise InputError(argument, rule, value) from None
+    if number < low or (high is not None and number > high):
+        raise InputError(argument, rule, value)
+    return number
+
+
+def check_finite(argument: str, value: object, *, ndim: int | None = None) -> FloatArray:
+    """Return ``value`` as a read-only float64 array without NaN or infinities."""
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(argument, "must be an array of numbers", type(value).__name__) from None
+    if ndim is not None and array.ndim != ndim:
+        raise InputError(argument, f"must have {ndim} dimension(s)", f"shape {array.shape}")
+    if not np.isfinite(array).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise InputError(argument, "must be finite", f"{array[where]} at index {where}")
+    array.setflags(write=False)
+    return array
+
+
+def check_subset(argument: str, subset: Iterable[int], size: int) -> IntArray:
+    """Return the sorted indices of ``subset``, each in ``[0, size)`` and given once."""
+    if isinstance(subset, np.ndarray) and subset.dtype.kind == "b":
+        raise InputError(argument, "must hold element indices, not a mask", f"boolean array of shape {subset.shape}")
+    indices = sorted(check_integer(f"{argument} index", item, low=0, high=size - 1) for item in subset)
+    for first, second in pairwise(indices):
+        if first == second:
+            raise InputError(argument, "must not repeat an index", first)
+    return np.array(indices, dtype=np.int64)

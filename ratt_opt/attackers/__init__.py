@@ -1,0 +1,1 @@
+"""The inner minimisation: attacks on a given plan."""

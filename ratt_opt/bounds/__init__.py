@@ -1,0 +1,1 @@
+"""Upper bounds on what any plan can reach, and guarantees known before planning."""

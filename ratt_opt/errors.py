@@ -1,0 +1,41 @@
+"""Errors a user can act on."""
+
+from __future__ import annotations
+
+__all__ = ["FileFormatError", "InputError", "ProofError"]
+
+_LONGEST_VALUE = 80
+
+
+def _shown(value: object) -> str:
+    text = repr(value) if isinstance(value, str) else str(value)
+    text = " ".join(text.split())
+    return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+
+
+class InputError(ValueError):
+    """An argument breaks a rule; the text is one line: argument, rule, value.
+
+    Parameters
+    ----------
+    argument : name of the argument, field or file that is wrong
+    rule : what must hold, as a phrase that follows the name ("must be in [0, 4]")
+    value : the offending value; shown on one line, cut when long
+    """
+
+    def __init__(self, argument: str, rule: str, value: object) -> None:
+        super().__init__(argument, rule, value)
+        self.argument = argument
+        self.rule = rule
+        self.value = value
+
+    def __str__(self) -> str:
+        return f"{self.argument} {self.rule}; got {_shown(self.value)}"
+
+
+class FileFormatError(InputError):
+    """A file cannot be read as what it should be; ``argument`` names the file and the field or line."""
+
+
+class ProofError(Exception):
+    """A certificate does not prove its claim; the text names the first fault."""

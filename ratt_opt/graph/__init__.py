@@ -1,0 +1,1 @@
+"""The communication graph: how cut links split a team into groups."""

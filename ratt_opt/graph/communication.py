@@ -1,0 +1,64 @@
+"""The communication graph of a team, checked once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import networkx as nx
+
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["CommunicationGraph", "Link"]
+
+Link = tuple[int, int]
+"""``(i, j)`` with ``i < j``."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommunicationGraph:
+    """Robots ``0..N-1`` and the links between them.
+
+    ``links`` holds ``(i, j)`` with ``i < j``; ``is_complete`` says whether every pair is linked.
+    """
+
+    n_robots: int
+    links: frozenset[Link]
+    is_complete: bool = field(init=False)
+
+    def __post_init__(self) -> None:
+        complete = len(self.links) == self.n_robots * (self.n_robots - 1) // 2
+        object.__setattr__(self, "is_complete", complete)
+
+    @classmethod
+    def complete(cls, n_robots: int) -> CommunicationGraph:
+        """Every robot hears every other (the paper's assumption)."""
+        return cls(n_robots, frozenset((i, j) for j in range(n_robots) for i in range(j)))
+
+    @classmethod
+    def from_networkx(cls, graph: object, n_robots: int) -> CommunicationGraph:
+        """Check and convert a ``networkx.Graph`` on nodes ``0..N-1``.
+
+        Raises
+        ------
+        InputError : not an undirected simple graph, wrong nodes, or a self-loop.
+        """
+        if not isinstance(graph, nx.Graph) or graph.is_directed() or graph.is_multigraph():
+            raise InputError("graph", "must be an undirected networkx.Graph", type(graph).__name__)
+        if set(graph.nodes) != set(range(n_robots)):
+            nodes = sorted(map(repr, graph.nodes))
+            raise InputError("graph", f"must have the nodes 0..{n_robots - 1}", f"[{', '.join(nodes)}]")
+        loops = list(nx.selfloop_edges(graph))
+        if loops:
+            raise InputError("graph", "must have no self-loop", loops[0])
+        return cls(n_robots, frozenset((min(i, j), max(i, j)) for i, j in graph.edges))
+
+    def groups(self, cut: Iterable[Link] = ()) -> tuple[frozenset[int], ...]:
+        """Connected components left when the links of ``cut`` are gone, by lowest robot."""
+        rest: nx.Graph = nx.Graph()
+        rest.add_nodes_from(range(self.n_robots))
+        rest.add_edges_from(self.links - frozenset(cut))
+        return tuple(sorted((frozenset(group) for group in nx.connected_components(rest)), key=min))

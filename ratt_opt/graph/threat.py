@@ -1,0 +1,61 @@
+"""What the adversary may do: the graph, the budgets, and what is out of reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ratt_opt.graph.communication import CommunicationGraph, Link
+
+__all__ = ["Threat"]
+
+
+@dataclass(frozen=True, slots=True)
+class Threat:
+    """The adversary blinds at most ``alpha_s`` robots and cuts at most ``alpha_c`` links of ``graph``.
+
+    Robots in ``protected_robots`` cannot be blinded and links in ``protected_links`` cannot
+    be cut. Budgets may exceed what can be attacked (at most N robots and all links).
+
+    Raises
+    ------
+    InputError : a budget is out of range, or a protected robot or link does not exist.
+    """
+
+    graph: CommunicationGraph
+    alpha_s: int
+    alpha_c: int
+    protected_robots: frozenset[int] = frozenset()
+    protected_links: frozenset[Link] = frozenset()
+
+    def __post_init__(self) -> None:
+        n_robots, links = self.graph.n_robots, self.graph.links
+        set_field = object.__setattr__
+        set_field(self, "alpha_s", check_integer("alpha_s", self.alpha_s, low=0, high=n_robots))
+        set_field(self, "alpha_c", check_integer("alpha_c", self.alpha_c, low=0, high=len(links)))
+        robots = (check_integer("protected robot", i, low=0, high=n_robots - 1) for i in self.protected_robots)
+        set_field(self, "protected_robots", frozenset(robots))
+        set_field(self, "protected_links", _check_links(self.protected_links, self.graph))
+
+    @property
+    def n_blinded(self) -> int:
+        """Robots a worst attack blinds: the budget, as far as unprotected robots last."""
+        return min(self.alpha_s, self.graph.n_robots - len(self.protected_robots))
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether all robots and links are alike to the adversary (complete graph, nothing protected)."""
+        return self.graph.is_complete and not self.protected_robots and not self.protected_links
+
+
+def _check_links(links: Iterable[tuple[int, int]], graph: CommunicationGraph) -> frozenset[Link]:
+    ordered = frozenset((min(int(i), int(j)), max(int(i), int(j))) for i, j in links)
+    for link in sorted(ordered - graph.links):
+        raise InputError("protected link", "must be a link of the graph", link)
+    return ordered

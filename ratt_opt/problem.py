@@ -1,0 +1,175 @@
+"""The max-min problem, a plan for it, and an attack on the plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import IntArray, check_integer, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.threat import Threat
+from ratt_opt.setfunctions.base import SetFunction
+
+if TYPE_CHECKING:
+    import networkx as nx
+    from numpy.typing import ArrayLike
+
+__all__ = ["Attack", "Plan", "Problem"]
+
+
+@dataclass(frozen=True, slots=True)
+class Attack:
+    """Robots whose sensor is blinded, and links ``(i, j)``, ``i < j``, that are cut."""
+
+    sensing: frozenset[int] = frozenset()
+    links: frozenset[tuple[int, int]] = frozenset()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sensing", frozenset(int(i) for i in self.sensing))
+        object.__setattr__(self, "links", frozenset((int(i), int(j)) for i, j in self.links))
+        for link in self.links:
+            if not link[0] < link[1]:
+                raise InputError("attack link", "must be (i, j) with i < j", link)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """One element per robot.
+
+    ``elements`` : (N,) flat element indices, robot by robot.
+    ``evaluations`` : set-function values the planner asked for.
+    ``bait`` : robots that RATT gave their individually best element, ascending; empty for other planners.
+    """
+
+    elements: IntArray
+    evaluations: int
+    bait: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Choose one element per robot so that the worst attack leaves the most value.
+
+    Parameters
+    ----------
+    objective : set function over the elements ``0..E-1``; the solvers rely on it being
+        normalised and non-decreasing (not checked here; see ``find_monotonicity_violation``)
+    robot : (E,) owner of each element; every robot ``0..N-1`` owns at least one
+    graph : ``networkx.Graph`` on the robots, or ``None`` for the complete graph
+    alpha_s : robots the attacker may blind, in ``[0, N]``
+    alpha_c : links the attacker may cut, in ``[0, number of links]``
+    protected_robots : robots that cannot be blinded
+    protected_links : links ``(i, j)`` that cannot be cut
+
+    Raises
+    ------
+    InputError : sizes disagree, a robot owns nothing, the graph is not simple, or a budget is out of range.
+
+    Source: ratt.tex, eqn:resi_target_prob.
+    """
+
+    objective: SetFunction
+    robot: IntArray
+    graph: nx.Graph | None
+    alpha_s: int
+    alpha_c: int
+    protected_robots: frozenset[int] = frozenset()
+    protected_links: frozenset[tuple[int, int]] = frozenset()
+    threat: Threat = field(init=False, repr=False)
+    choices: tuple[IntArray, ...] = field(init=False, repr=False)
+    """Elements of each robot, ascending."""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.objective, SetFunction):
+            raise InputError("objective", "must be a SetFunction", type(self.objective).__name__)
+        robot = _check_owners(self.robot, self.objective.n)
+        n_robots = int(robot.max()) + 1
+        communication = (
+            CommunicationGraph.complete(n_robots)
+            if self.graph is None
+            else CommunicationGraph.from_networkx(self.graph, n_robots)
+        )
+        choices = tuple(readonly(np.flatnonzero(robot == i)) for i in range(n_robots))
+        set_field = object.__setattr__
+        set_field(self, "robot", robot)
+        set_field(self, "choices", choices)
+        threat = Threat(communication, self.alpha_s, self.alpha_c, self.protected_robots, self.protected_links)
+        for name in ("alpha_s", "alpha_c", "protected_robots", "protected_links"):
+            set_field(self, name, getattr(threat, name))
+        set_field(self, "threat", threat)
+
+    @property
+    def n_robots(self) -> int:
+        """Number of robots N."""
+        return len(self.choices)
+
+    @property
+    def communication(self) -> CommunicationGraph:
+        """The communication graph; complete where ``graph`` is ``None``."""
+        return self.threat.graph
+
+    def check_plan(self, elements: ArrayLike) -> IntArray:
+        """Return ``elements`` as an (N,) array after checking that each is its robot's.
+
+        Raises
+        ------
+        InputError : wrong shape, not integers, or an element of another robot.
+        """
+        array = np.asarray(elements)
+        if array.shape != (self.n_robots,):
+            raise InputError("elements", f"must hold one element per robot, shape ({self.n_robots},)", array.tolist())
+        for i, element in enumerate(array):
+            e = check_integer(f"elements[{i}]", element, low=0, high=self.objective.n - 1)
+            if self.robot[e] != i:
+                raise InputError(f"elements[{i}]", f"must be an element of robot {i}", f"{e} of robot {self.robot[e]}")
+        return readonly(array.astype(np.int64))
+
+    def check_attack(self, attack: Attack) -> Attack:
+        """Return ``attack`` after checking that it is within the budgets and names real robots and links.
+
+        Raises
+        ------
+        InputError : a robot or link does not exist or is protected, or a budget is exceeded.
+        """
+        for i in attack.sensing:
+            check_integer("attack robot", i, low=0, high=self.n_robots - 1)
+        for link in sorted(attack.links - self.communication.links):
+            raise InputError("attack link", "must be a link of the graph", link)
+        for i in sorted(attack.sensing & self.protected_robots):
+            raise InputError("attack robot", "must not be protected", i)
+        for link in sorted(attack.links & self.protected_links):
+            raise InputError("attack link", "must not be protected", link)
+        if len(attack.sensing) > self.alpha_s:
+            raise InputError("attack", f"must blind at most alpha_s = {self.alpha_s} robots", len(attack.sensing))
+        if len(attack.links) > self.alpha_c:
+            raise InputError("attack", f"must cut at most alpha_c = {self.alpha_c} links", len(attack.links))
+        return attack
+
+    def team_value(self, elements: ArrayLike, attack: Attack) -> float:
+        """Value of the best group's non-blinded robots under one attack [unit of the objective].
+
+        Raises
+        ------
+        InputError : the plan is not one element per robot, or the attack is not allowed.
+        """
+        plan = self.check_plan(elements)
+        self.check_attack(attack)
+        groups = self.communication.groups(attack.links)
+        return max(self.objective(plan[sorted(group - attack.sensing)]) for group in groups)
+
+
+def _check_owners(robot: ArrayLike, n_elements: int) -> IntArray:
+    owners = np.asarray(robot)
+    if owners.shape != (n_elements,):
+        raise InputError("robot", f"must have shape ({n_elements},), one owner per element", f"shape {owners.shape}")
+    if owners.dtype.kind not in "iu":
+        raise InputError("robot", "must hold integers", owners.dtype)
+    if owners.min() < 0:
+        raise InputError("robot", "must hold robots >= 0", int(owners.min()))
+    missing = sorted(set(range(int(owners.max()) + 1)) - set(owners.tolist()))
+    if missing:
+        raise InputError("robot", "must give every robot at least one element", f"none for robot {missing[0]}")
+    return readonly(owners.astype(np.int64))

@@ -1,0 +1,1 @@
+"""The physical model: robots, targets and sensors that become a problem."""

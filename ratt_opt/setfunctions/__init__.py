@@ -1,0 +1,1 @@
+"""Set functions, their properties with witnesses, and their curvatures."""

@@ -1,0 +1,102 @@
+"""The interface of every set function."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_subset
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["SetFunction", "check_table_size"]
+
+LARGEST_TABLE = 26
+"""Largest ground set that :meth:`SetFunction.table` accepts (512 MiB of float64)."""
+
+
+def check_table_size(n: int) -> None:
+    """Refuse a table of ``2**n`` values that is too large, saying the memory it would take."""
+    if n > LARGEST_TABLE:
+        need = f"{2.0 ** (n - 27):.3g} GiB" if n >= 27 else f"{2 ** (n - 17)} MiB"
+        raise InputError("n", f"must be at most {LARGEST_TABLE} for a full table (2**n float64 values, here {need})", n)
+
+
+class SetFunction(ABC):
+    """A real function of the subsets of ``0..n-1``; immutable.
+
+    A subclass gives ``n`` and :meth:`evaluate`; the other methods have correct,
+    slower defaults that a subclass may override with the same meaning.
+    """
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def n(self) -> int:
+        """Size of the ground set."""
+
+    @abstractmethod
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """Values of many subsets at once.
+
+        Parameters
+        ----------
+        membership : (K, n) True where the element belongs to the subset
+
+        Returns
+        -------
+        (K,) values
+        """
+
+    def __call__(self, subset: Iterable[int]) -> float:
+        """Value of the subset with the given element indices (in any order, each once).
+
+        Raises
+        ------
+        InputError : an index is outside ``[0, n)`` or given twice.
+        """
+        membership = np.zeros((1, self.n), dtype=np.bool_)
+        membership[0, check_subset("subset", subset, self.n)] = True
+        return float(self.evaluate(membership)[0])
+
+    def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
+        """Values ``f(base + {e})`` for each candidate ``e``.
+
+        Parameters
+        ----------
+        base : (B,) distinct element indices (not checked)
+        candidates : (C,) element indices outside ``base`` (not checked)
+
+        Returns
+        -------
+        (C,) values
+        """
+        membership = np.zeros((len(candidates), self.n), dtype=np.bool_)
+        membership[:, base] = True
+        membership[np.arange(len(candidates)), candidates] = True
+        return self.evaluate(membership)
+
+    def singletons(self) -> FloatArray:
+        """(n,) values of the one-element sets."""
+        return self.extensions(np.array([], dtype=np.int64), np.arange(self.n))
+
+    def table(self) -> FloatArray:
+        """(2**n,) values of all subsets; the subset of index ``mask`` holds the elements whose bit is set.
+
+        Raises
+        ------
+        InputError : the table cannot fit in memory (the text says how much it would need).
+        """
+        check_table_size(self.n)
+        values = np.empty(2**self.n)
+        bits = np.arange(self.n)
+        chunk = 2 ** min(self.n, 14)
+        for start in range(0, 2**self.n, chunk):
+            masks = np.arange(start, start + chunk)
+            values[start : start + chunk] = self.evaluate((masks[:, None] >> bits & 1).astype(np.bool_))
+        return values

@@ -1,0 +1,255 @@
+"""Criteria of the posterior information matrices: trace (A), log-det (D), max-eigenvalue (E).
+
+For a set ``S`` of elements, target ``j``'s posterior information is
+``Lambda_j(S) = prior[j]^{-1} + sum_{e in S} information[e, j]``. Every criterion
+is normalised, non-decreasing in ``S`` and concave in ``Lambda``.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import SetFunction, check_table_size
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["InformationObjective", "LogDetObjective", "MaxEigenvalueObjective", "TraceObjective"]
+
+SYMMETRY_TOLERANCE = 1e-9
+"""Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
+
+
+def _check_symmetric(argument: str, matrices: FloatArray) -> FloatArray:
+    """Return the symmetric part of matrices that are symmetric up to rounding."""
+    transposed = np.swapaxes(matrices, -1, -2)
+    defect = np.abs(matrices - transposed).max(axis=(-1, -2))
+    scale = np.abs(matrices).max(axis=(-1, -2))
+    bad = np.argwhere(defect > SYMMETRY_TOLERANCE * scale)
+    if len(bad):
+        where = tuple(int(i) for i in bad[0])
+        name = f"{argument}[{', '.join(map(str, where))}]"
+        raise InputError(name, "must be symmetric", matrices[where].tolist())
+    return (matrices + transposed) / 2
+
+
+def _check_prior(value: ArrayLike) -> FloatArray:
+    prior = check_finite("prior", value, ndim=3)
+    if prior.shape[0] < 1:
+        raise InputError("prior", "must hold at least one target", f"shape {prior.shape}")
+    if prior.shape[1] != prior.shape[2] or prior.shape[1] < 1:
+        raise InputError("prior", "must have shape (M, d, d)", f"shape {prior.shape}")
+    prior = _check_symmetric("prior", prior)
+    for j, eigenvalues in enumerate(np.linalg.eigvalsh(prior)):
+        if eigenvalues[0] <= np.finfo(np.float64).eps * abs(eigenvalues[-1]):
+            raise InputError(f"prior[{j}]", "must be positive definite", f"smallest eigenvalue {eigenvalues[0]:.6g}")
+    return prior
+
+
+def _check_information(value: ArrayLike, targets: int, dimension: int) -> FloatArray:
+    information = check_finite("information", value, ndim=4)
+    if information.shape[0] < 1:
+        raise InputError("information", "must hold at least one element", f"shape {information.shape}")
+    if information.shape[1:] != (targets, dimension, dimension):
+        rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
+        raise InputError("information", rule, f"shape {information.shape}")
+    information = _check_symmetric("information", information)
+    eigenvalues = np.linalg.eigvalsh(information)
+    bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
+    if len(bad):
+        e, j = (int(i) for i in bad[0])
+        shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
+        raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
+    return information
+
+
+def _check_weights(value: ArrayLike | None, targets: int) -> FloatArray:
+    if value is None:
+        return np.ones(targets)
+    weights = check_finite("weights", value, ndim=1)
+    if weights.shape != (targets,):
+        raise InputError("weights", f"must have shape ({targets},) to match prior", f"shape {weights.shape}")
+    if (weights <= 0).any():
+        raise InputError("weights", "must be positive", float(weights.min()))
+    return weights
+
+
+class InformationObjective(SetFunction):
+    """A criterion of the posterior information matrices.
+
+    Parameters
+    ----------
+    prior : (M, d, d) predicted covariances, symmetric positive definite
+    information : (E, M, d, d) information of element ``e`` about target ``j``, symmetric
+        positive semidefinite; smallest eigenvalue at least ``-1e-9`` times the largest
+    weights : (M,) positive importance of each target; ones by default
+
+    Raises
+    ------
+    InputError : a shape, symmetry, definiteness or sign rule is broken.
+
+    Source: ratt.tex, Section II-A e) and the objective of Section VI.
+    """
+
+    __slots__ = ("_baseline", "information", "prior", "prior_information", "weights")
+
+    def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
+        checked = _check_prior(prior)
+        targets, dimension, _ = checked.shape
+        self.prior: FloatArray = readonly(checked)
+        self.information: FloatArray = readonly(_check_information(information, targets, dimension))
+        self.weights: FloatArray = readonly(_check_weights(weights, targets))
+        inverse = np.linalg.inv(checked)
+        self.prior_information: FloatArray = readonly((inverse + np.swapaxes(inverse, -1, -2)) / 2)
+        # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
+        self._baseline: FloatArray = readonly(self.criterion(self.prior_information))
+
+    @property
+    def n(self) -> int:
+        """Number of elements E."""
+        return int(self.information.shape[0])
+
+    @property
+    def n_targets(self) -> int:
+        """Number of targets M."""
+        return int(self.prior.shape[0])
+
+    @property
+    def dimension(self) -> int:
+        """Dimension d of a target's state."""
+        return int(self.prior.shape[1])
+
+    @abstractmethod
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """Weighted criterion per target, lower is better: (..., M, d, d) -> (..., M)."""
+
+    @abstractmethod
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:
+        """A supergradient of the value with respect to ``Lambda``: (..., M, d, d), positive semidefinite.
+
+        For every ``L'``: ``value(L') <= value(L) + sum_j <gradient_j, L'_j - L_j>`` (concavity).
+        """
+
+    def value(self, posterior_information: FloatArray) -> FloatArray:
+        """Value as a concave function of the posterior information: (..., M, d, d) -> (...); a sum over targets."""
+        return np.asarray((self._baseline - self.criterion(posterior_information)).sum(axis=-1))
+
+    def posterior_information(self, subset: IntArray) -> FloatArray:
+        """(M, d, d) ``Lambda(S)`` of the given distinct elements, added in ascending order."""
+        stacked = np.concatenate([self.prior_information[None], self.information[np.sort(subset)]])
+        return np.asarray(np.add.reduce(stacked, axis=0))
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        flat = self.information.reshape(self.n, -1)
+        shape = (len(membership), *self.prior.shape)
+        if len(membership) == 1:
+            return self.value(self.posterior_information(np.flatnonzero(membership[0]))[None])
+        # Elements are added one by one so that every batch size rounds alike.
+        total = np.broadcast_to(self.prior_information.reshape(1, -1), (len(membership), flat.shape[1])).copy()
+        for e in np.flatnonzero(membership.any(axis=0)):
+            rows = membership[:, e]
+            total[rows] += flat[e]
+        return self.value(total.reshape(shape))
+
+    def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
+        """(C,) values ``f(base + {e})`` for each candidate ``e`` outside ``base``."""
+        return self.value(self.posterior_information(base) + self.information[candidates])
+
+    def table(self) -> FloatArray:
+        """(2**n,) values of all subsets, target by target, each by doubling over the elements."""
+        check_table_size(self.n)
+        chunk = min(self.n, 16)  # 2**16 matrices at a time stay in cache
+        values = np.empty(2**self.n)
+        low = self._lattice(self.prior_information, self.information[:chunk])
+        high = self._lattice(np.zeros_like(self.prior_information), self.information[chunk:])
+        for block, offset in enumerate(high):
+            start = block << chunk
+            values[start : start + len(low)] = self.value(low + offset)
+        return values
+
+    @staticmethod
+    def _lattice(start: FloatArray, steps: FloatArray) -> FloatArray:
+        """(2**k, M, d, d) sums of all subsets of the k ``steps``, added to ``start``."""
+        sums = np.empty((2 ** len(steps), *start.shape))
+        sums[0] = start
+        for i, step in enumerate(steps):
+            sums[1 << i : 2 << i] = sums[: 1 << i] + step
+        return sums
+
+
+def _determinant2(matrices: FloatArray) -> FloatArray:
+    return np.asarray(matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 0, 1])
+
+
+def _largest_inverse_eigenvalue2(matrices: FloatArray) -> FloatArray:
+    """``lambda_max(L^{-1}) = lambda_max(L) / det(L)`` of 2 by 2 matrices, free of cancellation in the numerator."""
+    a, b, c = matrices[..., 0, 0], matrices[..., 0, 1], matrices[..., 1, 1]
+    half = (a - c) / 2
+    return np.asarray(((a + c) / 2 + np.sqrt(half * half + b * b)) / _determinant2(matrices))
+
+
+class TraceObjective(InformationObjective):
+    """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2]."""
+
+    __slots__ = ()
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """(..., M) weighted traces of the posterior covariances."""
+        if self.dimension == 2:
+            trace = posterior_information[..., 0, 0] + posterior_information[..., 1, 1]
+            return np.asarray(self.weights * trace / _determinant2(posterior_information))
+        covariance = np.linalg.inv(posterior_information)
+        return np.asarray(self.weights * np.trace(covariance, axis1=-2, axis2=-1))
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:
+        """``w_j Lambda_j^{-2}``: (..., M, d, d)."""
+        covariance = np.linalg.inv(posterior_information)
+        return np.asarray(self.weights[:, None, None] * (covariance @ covariance))
+
+
+class LogDetObjective(InformationObjective):
+    """``sum_j w_j [logdet(Lambda_j(S)) - logdet(prior_j^{-1})]``: decrease of the log volume (D-criterion) [nat]."""
+
+    __slots__ = ()
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """(..., M) weighted log-determinants of the posterior covariances."""
+        if self.dimension == 2:
+            return np.asarray(-self.weights * np.log(_determinant2(posterior_information)))
+        return np.asarray(-self.weights * np.linalg.slogdet(posterior_information)[1])
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:
+        """``w_j Lambda_j^{-1}``: (..., M, d, d)."""
+        return np.asarray(self.weights[:, None, None] * np.linalg.inv(posterior_information))
+
+
+class MaxEigenvalueObjective(InformationObjective):
+    """``max_j w_j lambda_max(prior_j) - max_j w_j lambda_max(Lambda_j(S)^{-1})``: worst axis (E-criterion) [m^2]."""
+
+    __slots__ = ()
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """(..., M) weighted largest eigenvalues of the posterior covariances."""
+        if self.dimension == 2:
+            return np.asarray(self.weights * _largest_inverse_eigenvalue2(posterior_information))
+        return np.asarray(self.weights / np.linalg.eigvalsh(posterior_information)[..., 0])
+
+    def value(self, posterior_information: FloatArray) -> FloatArray:
+        """Value as a concave function of the posterior information: (..., M, d, d) -> (...)."""
+        return np.asarray(self._baseline.max() - self.criterion(posterior_information).max(axis=-1))
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:
+        """``w_j lambda^2 v v'`` at the lowest-indexed worst target, zero elsewhere: (..., M, d, d)."""
+        eigenvalues, vectors = np.linalg.eigh(posterior_information)
+        scores = self.weights / eigenvalues[..., 0]
+        worst = scores.argmax(axis=-1)[..., None]
+        vector = vectors[..., 0]
+        rank_one = vector[..., :, None] * vector[..., None, :]
+        factor = np.where(np.arange(self.n_targets) == worst, self.weights / eigenvalues[..., 0] ** 2, 0.0)
+        return np.asarray(factor[..., None, None] * rank_one)

@@ -1,0 +1,1 @@
+"""Planners: RATT, baselines, the exhaustive optimum, exact max-min search."""

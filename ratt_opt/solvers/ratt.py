@@ -1,0 +1,69 @@
+"""Robust active target tracking: bait for the attacked robots, greedy for the others."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt.graph.caa import caa
+from ratt_opt.problem import Plan, Problem
+
+__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
+
+
+def equivalent_sensing_attacks(problem: Problem) -> int:
+    """Return ``alpha_cs``, the sensing attacks that the link attacks are worth (``N - n_max``).
+
+    Source: ratt.tex, Algorithm 2 (CAA).
+    """
+    return caa(problem.n_robots, problem.alpha_c).alpha_cs
+
+
+def ratt(problem: Problem) -> Plan:
+    """Plan against ``alpha = alpha_s + alpha_cs`` sensing attacks.
+
+    The ``alpha`` robots with the largest individual values get their individually best
+    element (bait); the others are chosen greedily, ignoring the bait. With
+    ``alpha >= N`` every robot is bait. Ties go to the lowest element, then the lowest robot.
+
+    Returns
+    -------
+    Plan : with ``bait``; ``evaluations`` counts the set-function values of Algorithm 1.
+
+    Source: ratt.tex, Algorithm 1 (RATT); guarantee in Theorem 1, evaluations in Theorem 2.
+    """
+    return bait_and_greedy(problem, problem.alpha_s + equivalent_sensing_attacks(problem))
+
+
+def bait_and_greedy(problem: Problem, alpha: int) -> Plan:
+    """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18)."""
+    single = problem.objective.singletons()
+    best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
+    # A stable sort of the negated values keeps the lowest robot first among equals.
+    order = np.argsort(-single[best], kind="stable")
+    bait = np.sort(order[:alpha])
+    elements = best.copy()
+    greedy_robots = np.setdiff1d(np.arange(problem.n_robots), bait)
+    evaluations = problem.objective.n + _greedy(problem, greedy_robots, single, elements)
+    return Plan(elements=readonly(elements), evaluations=evaluations, bait=tuple(int(i) for i in bait))
+
+
+def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: IntArray) -> int:
+    """Fill ``elements`` of ``robots`` by the standard greedy algorithm; return the evaluations it took.
+
+    The first round needs no evaluation: its values are the individual ones.
+    """
+    chosen = np.array([], dtype=np.int64)
+    candidates = np.flatnonzero(np.isin(problem.robot, robots))
+    evaluations = 0
+    while len(candidates):
+        if len(chosen):
+            values = problem.objective.extensions(chosen, candidates)
+            evaluations += len(candidates)
+        else:
+            values = single[candidates]
+        pick = candidates[np.argmax(values)]
+        elements[problem.robot[pick]] = pick
+        chosen = np.append(chosen, pick)
+        candidates = candidates[problem.robot[candidates] != problem.robot[pick]]
+    return evaluations

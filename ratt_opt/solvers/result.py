@@ -1,0 +1,27 @@
+"""What the planners that bound the optimum return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
+    from ratt_opt.stopping import Stop
+
+__all__ = ["MaxMinResult"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MaxMinResult:
+    """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` keeps at least ``lower`` under any attack.
+
+    ``Phi*`` is the largest worst-case value of any plan [unit of the objective].
+    """
+
+    elements: IntArray
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+    nodes: int = 0

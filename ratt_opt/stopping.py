@@ -1,0 +1,26 @@
+"""Why a computation stopped: a separate question from how good its answer is."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+__all__ = ["Stop"]
+
+
+class Stop(Enum):
+    """Reason for returning. The bracket ``[lower, upper]`` says how good the answer is."""
+
+    CLOSED = "closed"
+    """Bounds met within rounding."""
+    EXHAUSTED = "exhausted"
+    """Every case was evaluated."""
+    GAP = "gap"
+    """The requested gap was reached."""
+    TIME = "time"
+    """The time limit was reached."""
+    NODES = "nodes"
+    """The node limit was reached."""
+    INTERRUPTED = "interrupted"
+    """The user interrupted; the bracket so far is valid."""
+    HEURISTIC = "heuristic"
+    """A heuristic ran to its end; no optimality is claimed."""
