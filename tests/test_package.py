@@ -1,0 +1,34 @@
+"""The package as a stranger imports it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import ratt_opt
+
+HEAVY = ("cvxpy", "highspy", "numba", "matplotlib", "pydantic", "flint", "scipy", "typer", "rich", "numpy")
+
+
+def test_every_public_name_loads() -> None:
+    for name in ratt_opt.__all__:
+        assert getattr(ratt_opt, name) is not None
+    assert set(ratt_opt.__all__) <= set(dir(ratt_opt))
+
+
+def test_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = ratt_opt.no_such_name
+
+
+def test_import_loads_nothing_heavy() -> None:
+    code = f"import sys, ratt_opt; print([m for m in {HEAVY!r} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_public_callable_is_documented() -> None:
+    missing = [n for n in ratt_opt.__all__ if callable(v := getattr(ratt_opt, n)) and not v.__doc__]
+    assert missing == []

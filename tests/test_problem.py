@@ -1,0 +1,125 @@
+"""Problem, attack and plan: meanings and refusals."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt import Attack, InputError, Problem, TableFunction
+
+MODULAR = TableFunction([bin(mask).count("1") for mask in range(16)])
+WEIGHTED = TableFunction([sum(10.0**i for i in range(4) if mask >> i & 1) for mask in range(16)])
+
+
+def _line(n: int) -> nx.Graph:
+    return nx.path_graph(n)
+
+
+def test_team_value_is_the_best_group() -> None:
+    problem = Problem(WEIGHTED, np.arange(4), _line(4), 1, 1)
+    assert problem.team_value([0, 1, 2, 3], Attack()) == 1111
+    assert problem.team_value([0, 1, 2, 3], Attack(links=frozenset({(1, 2)}))) == 1100
+    assert problem.team_value([0, 1, 2, 3], Attack(sensing=frozenset({3}))) == 111
+    assert problem.team_value([0, 1, 2, 3], Attack(frozenset({3}), frozenset({(1, 2)}))) == 100
+
+
+def test_a_blinded_robot_still_relays() -> None:
+    problem = Problem(WEIGHTED, np.arange(4), _line(4), 1, 0)
+    assert problem.team_value([0, 1, 2, 3], Attack(sensing=frozenset({1}))) == 1101
+
+
+def test_no_survivor_is_worth_the_empty_set() -> None:
+    problem = Problem(WEIGHTED, np.arange(4), None, 4, 0)
+    assert problem.team_value([0, 1, 2, 3], Attack(sensing=frozenset(range(4)))) == 0
+
+
+def test_attributes_are_kept() -> None:
+    graph = _line(2)
+    problem = Problem(MODULAR, [0, 0, 1, 1], graph, 1, 1)
+    assert problem.objective is MODULAR
+    assert problem.graph is graph
+    assert (problem.alpha_s, problem.alpha_c, problem.n_robots) == (1, 1, 2)
+    assert problem.robot.tolist() == [0, 0, 1, 1]
+    assert [c.tolist() for c in problem.choices] == [[0, 1], [2, 3]]
+    assert Problem(MODULAR, [0, 0, 1, 1], None, 0, 0).graph is None
+
+
+def test_interleaved_and_ragged_owners() -> None:
+    problem = Problem(MODULAR, [1, 0, 1, 1], None, 0, 0)
+    assert [c.tolist() for c in problem.choices] == [[1], [0, 2, 3]]
+    assert problem.team_value([1, 3], Attack()) == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"alpha_s": 3}, r"alpha_s must be an integer in \[0, 2\]; got 3"),
+        ({"alpha_s": -1}, r"alpha_s must be"),
+        ({"alpha_c": 2}, r"alpha_c must be an integer in \[0, 1\]; got 2"),
+        ({"alpha_c": True}, r"alpha_c must be"),
+        ({"robot": [0, 0, 2, 2]}, "none for robot 1"),
+        ({"robot": [0, 0, 1]}, r"robot must have shape \(4,\)"),
+        ({"robot": [0.0, 0, 1, 1]}, "robot must hold integers"),
+        ({"robot": [-1, 0, 1, 1]}, "robot must hold robots >= 0"),
+        ({"objective": 3}, "objective must be a SetFunction; got int"),
+        ({"graph": nx.path_graph(3)}, r"graph must have the nodes 0..1; got \[0, 1, 2\]"),
+        ({"graph": nx.Graph([(0, 1), (1, 1)])}, "graph must have no self-loop"),
+        ({"graph": nx.DiGraph([(0, 1)])}, "graph must be an undirected networkx.Graph; got DiGraph"),
+        ({"graph": nx.MultiGraph([(0, 1)])}, "graph must be an undirected networkx.Graph; got MultiGraph"),
+        ({"graph": "complete"}, "graph must be an undirected networkx.Graph; got str"),
+        ({"protected_robots": {5}}, "protected robot must be an integer in"),
+        ({"protected_links": {(0, 3)}}, "protected link must be a link of the graph"),
+    ],
+)
+def test_bad_problems_are_refused(change: dict[str, object], text: str) -> None:
+    arguments: dict[str, object] = {
+        "objective": MODULAR,
+        "robot": [0, 0, 1, 1],
+        "graph": None,
+        "alpha_s": 0,
+        "alpha_c": 0,
+    }
+    with pytest.raises(InputError, match=text) as caught:
+        Problem(**(arguments | change))  # type: ignore[arg-type]
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("elements", "text"),
+    [
+        ([0, 1], r"elements\[1\] must be an element of robot 1; got 1 of robot 0"),
+        ([0], "one element per robot"),
+        ([0, 4], r"elements\[1\] must be an integer in \[0, 3\]"),
+        ([0.0, 2.0], r"elements\[0\] must be an integer"),
+        ([[0, 2]], "one element per robot"),
+    ],
+)
+def test_bad_plans_are_refused(elements: object, text: str) -> None:
+    problem = Problem(MODULAR, [0, 0, 1, 1], None, 1, 1)
+    with pytest.raises(InputError, match=text):
+        problem.team_value(elements, Attack())  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("attack", "text"),
+    [
+        (Attack(frozenset({2})), "attack robot must be an integer in"),
+        (Attack(frozenset({0, 1})), "must blind at most alpha_s = 1 robots; got 2"),
+        (Attack(links=frozenset({(0, 5)})), "attack link must be a link of the graph"),
+        (Attack(frozenset({1})), "attack robot must not be protected"),
+        (Attack(links=frozenset({(0, 1)})), "attack link must not be protected"),
+    ],
+)
+def test_attacks_outside_the_threat_are_refused(attack: Attack, text: str) -> None:
+    protected = (
+        {"protected_robots": frozenset({1}), "protected_links": frozenset({(0, 1)})} if "protected" in text else {}
+    )
+    problem = Problem(MODULAR, [0, 0, 1, 1], None, 1, 1, **protected)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=text):
+        problem.team_value([0, 2], attack)
+
+
+def test_a_link_is_given_lowest_first() -> None:
+    with pytest.raises(InputError, match="i < j"):
+        Attack(links=frozenset({(2, 1)}))
