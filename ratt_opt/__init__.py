@@ -10,7 +10,10 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ratt_opt.attackers.bounded_rational import bounded_rational_attack
     from ratt_opt.attackers.exact import worst_case_attack
+    from ratt_opt.attackers.greedy import greedy_attack
+    from ratt_opt.attackers.random_attack import random_attack
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.errors import FileFormatError, InputError, ProofError
     from ratt_opt.graph.caa import CaaResult, caa
@@ -40,11 +43,14 @@ _HOME = {
     "Stop": "stopping",
     "TableFunction": "setfunctions.table",
     "TraceObjective": "setfunctions.information",
+    "bounded_rational_attack": "attackers.bounded_rational",
     "caa": "graph.caa",
     "exhaustive_optimum": "solvers.exhaustive",
     "greedy": "solvers.baselines",
+    "greedy_attack": "attackers.greedy",
     "myopic": "solvers.baselines",
     "nonrobust_optimum": "solvers.baselines",
+    "random_attack": "attackers.random_attack",
     "random_plan": "solvers.baselines",
     "ratt": "solvers.ratt",
     "worst_case_attack": "attackers.exact",

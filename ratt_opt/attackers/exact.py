@@ -1,42 +1,71 @@
-"""The exact worst-case attack on a plan."""
+"""The exact worst-case attack on a plan, with a bracket at any time."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
+from ratt_opt.attackers.greedy import greedy_attack
+from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
-from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack, Problem
+from ratt_opt.attackers.threshold_search import LARGEST_THRESHOLD_SEARCH, threshold_search
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt.problem import Problem
 
 __all__ = ["worst_case_attack"]
 
 
-def worst_case_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
-    """Find the attack that hurts one plan most, by evaluating every non-dominated outcome.
+def worst_case_attack(
+    problem: Problem, elements: ArrayLike, *, max_nodes: int | None = None, time_limit: float | None = None
+) -> AttackResult:
+    """Find the attack that hurts one plan most.
 
-    Relies on a non-decreasing objective (not checked).
+    Up to ``LARGEST_THRESHOLD_SEARCH`` robots, on any graph and for any objective, thresholds are
+    decided one after the other (``attackers/threshold.py``; a node is one threshold) and the result
+    relies on nothing. A keyboard interrupt or a spent budget returns the bracket reached.
+
+    Parameters
+    ----------
+    problem : N robots, E elements
+    elements : (N,) element chosen for each robot
+    max_nodes : nodes that may be explored; unlimited by default
+    time_limit : seconds, checked between nodes; unlimited by default
 
     Raises
     ------
-    InputError : an element is not its robot's, or ``elements`` has the wrong shape.
+    InputError : an element is not its robot's, ``elements`` has the wrong shape, or a budget is not a number >= 0.
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
-    plan = problem.check_plan(elements)
-    values: dict[frozenset[int], float] = {}
-    best, worst = float("inf"), None
-    for outcome in non_dominated_outcomes(problem.threat):
-        for group in outcome:
-            if group not in values:
-                values[group] = problem.objective(plan[sorted(group)])
-        team = max(values[group] for group in outcome)
-        if team < best:
-            best, worst = team, outcome
-    assert worst is not None
-    attack = Attack(*realise(problem.threat, worst))
-    return AttackResult(attack=attack, lower=best, upper=best, stop=Stop.EXHAUSTED, evaluations=len(values))
+    budget = Budget(max_nodes, time_limit)
+    values = PlanValues(problem, elements)
+    first = bounded_rational_attack(problem, values.plan)
+    bracket = Bracket(first.attack, first.upper, first.lower)
+    values.evaluations = first.evaluations
+    try:
+        stop = _search(problem, values, bracket, budget)
+    except OutOfBudget as out:
+        stop = out.stop
+    except KeyboardInterrupt:
+        stop = Stop.INTERRUPTED
+    return AttackResult(
+        attack=bracket.attack,
+        lower=min(bracket.lower, bracket.upper),
+        upper=bracket.upper,
+        stop=stop,
+        evaluations=values.evaluations,
+        nodes=budget.nodes,
+    )
+
+
+def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:
+    if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
+        return threshold_search(problem, values, bracket, budget)
+    better = greedy_attack(problem, values.plan)
+    bracket.offer(better.attack, better.upper)
+    return Stop.HEURISTIC

@@ -49,9 +49,14 @@ class Threat:
         return min(self.alpha_s, self.graph.n_robots - len(self.protected_robots))
 
     @property
+    def links_alike(self) -> bool:
+        """Whether all links are alike to the adversary (complete graph, no protected link)."""
+        return self.graph.is_complete and not self.protected_links
+
+    @property
     def is_symmetric(self) -> bool:
         """Whether all robots and links are alike to the adversary (complete graph, nothing protected)."""
-        return self.graph.is_complete and not self.protected_robots and not self.protected_links
+        return self.links_alike and not self.protected_robots
 
 
 def _check_links(links: Iterable[tuple[int, int]], graph: CommunicationGraph) -> frozenset[Link]:

@@ -1,0 +1,67 @@
+"""What the heuristic attackers build: blinded robots first, then robots cut off one by one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.result import AttackResult
+from ratt_opt.problem import Attack
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.attackers.plan_values import PlanValues
+    from ratt_opt.graph.communication import Link
+    from ratt_opt.problem import Problem
+
+__all__ = ["PartialAttack", "heuristic_result", "team_values"]
+
+
+@dataclass(frozen=True, slots=True)
+class PartialAttack:
+    """Robots blinded and links cut so far."""
+
+    problem: Problem
+    blinded: frozenset[int] = frozenset()
+    cut: frozenset[Link] = frozenset()
+
+    def blind(self, robot: int) -> PartialAttack:
+        """Blind one more robot."""
+        return replace(self, blinded=self.blinded | {robot})
+
+    def cut_off(self, robot: int) -> PartialAttack | None:
+        """Cut all links that robot still has; ``None`` where one is protected or the budget is too small."""
+        links = {link for link in self.problem.communication.links if robot in link}
+        if links & self.problem.protected_links or len(self.cut | links) > self.problem.alpha_c:
+            return None
+        return replace(self, cut=self.cut | links)
+
+    def groups(self) -> list[frozenset[int]]:
+        """Robots of each group that still see."""
+        return [group - self.blinded for group in self.problem.communication.groups(self.cut)]
+
+    def finished(self) -> Attack:
+        """The attack so far."""
+        return Attack(self.blinded, self.cut)
+
+
+def team_values(values: PlanValues, candidates: Sequence[PartialAttack]) -> FloatArray:
+    """(C,) team value under each candidate, by one batch of evaluations."""
+    groups = [candidate.groups() for candidate in candidates]
+    membership = np.zeros((sum(map(len, groups)), values.n), dtype=np.bool_)
+    for row, group in enumerate(group for family in groups for group in family):
+        membership[row, sorted(group)] = True
+    starts = np.concatenate([[0], np.cumsum([len(family) for family in groups])[:-1]])
+    return np.asarray(np.maximum.reduceat(values.evaluate(membership), starts))
+
+
+def heuristic_result(problem: Problem, values: PlanValues, attack: Attack) -> AttackResult:
+    """The result of a heuristic: its attack's value, and the value of no measurement as lower bound."""
+    lower, evaluations = problem.objective(()), values.evaluations
+    upper = problem.team_value(values.plan, attack)
+    return AttackResult(attack=attack, lower=lower, upper=upper, stop=Stop.HEURISTIC, evaluations=evaluations)

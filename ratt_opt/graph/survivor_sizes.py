@@ -1,0 +1,107 @@
+"""Sizes of the groups of seeing robots that an attack on a complete graph can leave.
+
+On a complete graph every robot and link is alike, so an outcome is feasible or not by its group
+sizes alone. ``b`` blinded robots still hold links and may stand in any group; the links kept,
+``sum_k C(size_k, 2)``, are convex in where they stand, so the cheapest place for all of them is
+the largest group.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import comb, factorial
+from typing import TYPE_CHECKING
+
+from ratt_opt.graph.caa import links_within
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["cheapest_cut", "feasible_sizes", "forced_group_size", "labelled_count", "non_dominated_sizes"]
+
+Sizes = tuple[int, ...]
+"""Non-increasing positive group sizes; empty when every robot is blinded."""
+
+
+def cheapest_cut(n_blinded: int, sizes: Sizes) -> int:
+    """Fewest links to cut on a complete graph so that ``sizes`` seeing robots stand apart."""
+    if not sizes:
+        return 0
+    total = sum(sizes) + n_blinded
+    return comb(total, 2) - comb(sizes[0] + n_blinded, 2) - sum(comb(size, 2) for size in sizes[1:])
+
+
+def feasible_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> Iterator[Sizes]:
+    """Yield every vector of group sizes that ``alpha_c`` cut links can leave, largest first group first."""
+    survivors = n_robots - n_blinded
+    if survivors == 0:
+        yield ()
+        return
+    links_to_keep = comb(n_robots, 2) - alpha_c
+    for first in range(survivors, 0, -1):
+        missing = links_to_keep - comb(first + n_blinded, 2)
+        for rest in _partitions(survivors - first, first, missing):
+            yield (first, *rest)
+
+
+def _partitions(robots: int, largest: int, links: int) -> Iterator[Sizes]:
+    """Partitions of ``robots`` into parts up to ``largest`` that keep at least ``links`` links."""
+    if robots == 0:
+        if links <= 0:
+            yield ()
+        return
+    for part in range(min(robots, largest), 0, -1):
+        # Equal parts as large as allowed keep the most links (convexity); smaller parts only keep fewer.
+        if links_within(robots, part) < links:
+            return
+        for rest in _partitions(robots - part, part, links - comb(part, 2)):
+            yield (part, *rest)
+
+
+def non_dominated_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> list[Sizes]:
+    """Feasible size vectors that no other feasible vector refines, in descending lexicographic order.
+
+    Merging two groups of a feasible vector never cuts more links, so a vector is dominated exactly
+    when splitting one of its groups in two is feasible.
+    """
+    return [
+        sizes
+        for sizes in feasible_sizes(n_robots, n_blinded, alpha_c)
+        if not any(cheapest_cut(n_blinded, finer) <= alpha_c for finer in _splits(sizes))
+    ]
+
+
+def _splits(sizes: Sizes) -> Iterator[Sizes]:
+    for k, size in enumerate(sizes):
+        if k and sizes[k - 1] == size:
+            continue
+        for part in range(1, size // 2 + 1):
+            yield tuple(sorted((*sizes[:k], *sizes[k + 1 :], size - part, part), reverse=True))
+
+
+def forced_group_size(n_robots: int, n_blinded: int, alpha_c: int) -> int:
+    """Largest ``k`` such that every attack leaves a group of at least ``k`` seeing robots.
+
+    Proof by integer partitions: ``k`` is the smallest first entry of a feasible size vector, and
+    the cut of a vector whose groups all have at most ``p`` robots is least, by convexity, for as
+    many groups of ``p`` as fit; so it suffices to test that one vector for each ``p``.
+    """
+    survivors = n_robots - n_blinded
+    for largest in range(1, survivors + 1):
+        full, rest = divmod(survivors, largest)
+        sizes = (largest,) * full + ((rest,) if rest else ())
+        if cheapest_cut(n_blinded, sizes) <= alpha_c:
+            return largest
+    return 0
+
+
+def labelled_count(n_robots: int, n_free: int, n_blinded: int, sizes: Sizes) -> int:
+    """Number of outcomes with these group sizes when ``n_free`` of the robots may be blinded."""
+    ways = comb(n_free, n_blinded) * factorial(n_robots - n_blinded)
+    for size in sizes:
+        ways //= factorial(size)
+    repeats = 1
+    for first, second in pairwise(sizes):
+        repeats = repeats + 1 if first == second else 1
+        ways //= repeats
+    return ways

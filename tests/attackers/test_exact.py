@@ -1,0 +1,154 @@
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.errors import InputError
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_elements, random_problem, range_bearing
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_value_is_the_definition_s(seed):
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng)
+    elements = random_elements(rng, problem)
+    result = worst_case_attack(problem, elements)
+    assert result.lower == result.upper
+    assert result.upper == pytest.approx(brute_force_worst_case(problem, elements), rel=1e-12, abs=1e-12)
+    assert problem.team_value(elements, result.attack) == result.upper
+    assert result.stop is ro.Stop.EXHAUSTED
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_value_is_the_definition_s_for_any_set_function(seed):
+    """Nothing is assumed of the objective: random tables, monotone or not, normalised or not."""
+    rng = np.random.default_rng(seed)
+    draft = random_problem(rng, kind="logdet", controls=2)
+    table = ro.TableFunction(rng.normal(size=2**draft.objective.n))
+    problem = ro.Problem(
+        table, draft.robot, draft.graph, draft.alpha_s, draft.alpha_c, draft.protected_robots, draft.protected_links
+    )
+    elements = random_elements(rng, problem)
+    result = worst_case_attack(problem, elements)
+    assert result.upper == brute_force_worst_case(problem, elements)
+
+
+@pytest.mark.parametrize(
+    "graph", [nx.path_graph(6), nx.cycle_graph(6), nx.star_graph(5), nx.empty_graph(6), nx.barbell_graph(3, 0)]
+)
+@pytest.mark.parametrize("alpha_c", [0, 1, 2, 99])
+def test_six_robots_on_named_graphs(graph, alpha_c):
+    rng = np.random.default_rng(alpha_c)
+    owners = np.repeat(np.arange(6), 2)
+    prior, information = range_bearing(rng, 6, 3, 2)
+    for alpha_s in (0, 2, 6):
+        problem = ro.Problem(
+            ro.TraceObjective(prior, information), owners, graph, alpha_s, min(alpha_c, graph.number_of_edges())
+        )
+        elements = random_elements(rng, problem)
+        expected = brute_force_worst_case(problem, elements)
+        assert worst_case_attack(problem, elements).upper == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_relabelling_robots_changes_nothing(seed):
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 7, kind="trace")
+    elements = random_elements(rng, problem)
+    new = rng.permutation(7)
+    graph = nx.relabel_nodes(nx.Graph(sorted(problem.communication.links)), dict(enumerate(new.tolist())))
+    graph.add_nodes_from(range(7))
+    links = frozenset(tuple(sorted((int(new[i]), int(new[j])))) for i, j in problem.protected_links)
+    robots = frozenset(int(new[i]) for i in problem.protected_robots)
+    renamed = ro.Problem(problem.objective, new[problem.robot], graph, problem.alpha_s, problem.alpha_c, robots, links)
+    moved = np.empty_like(elements)
+    moved[new] = elements
+    expected = worst_case_attack(problem, elements).upper
+    assert worst_case_attack(renamed, moved).upper == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_bracket_is_valid_wherever_the_search_stops(seed):
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 6)
+    elements = random_elements(rng, problem)
+    full = worst_case_attack(problem, elements)
+    for nodes in range(full.nodes + 2):
+        part = worst_case_attack(problem, elements, max_nodes=nodes)
+        assert part.lower <= full.upper <= part.upper
+        assert problem.team_value(elements, part.attack) == part.upper
+        assert part.nodes <= nodes
+        assert (part.stop is ro.Stop.NODES) == (nodes < full.nodes)
+
+
+def test_budgets_are_checked_and_kept():
+    rng = np.random.default_rng(0)
+    problem = random_problem(rng, 5, kind="trace", complete=True)
+    elements = random_elements(rng, problem)
+    assert worst_case_attack(problem, elements, time_limit=0).stop is ro.Stop.TIME
+    with pytest.raises(InputError, match="max_nodes"):
+        worst_case_attack(problem, elements, max_nodes=-1)
+    with pytest.raises(InputError, match="time_limit"):
+        worst_case_attack(problem, elements, time_limit=float("nan"))
+
+
+class Impatient(ro.SetFunction):
+    """Raises a keyboard interrupt at the k-th batch of evaluations."""
+
+    def __init__(self, inner, batches):
+        self.inner, self.left = inner, batches
+
+    @property
+    def n(self):
+        return self.inner.n
+
+    def evaluate(self, membership):
+        self.left -= 1
+        if self.left == 0:
+            raise KeyboardInterrupt
+        return self.inner.evaluate(membership)
+
+
+def test_an_interrupt_returns_the_bracket():
+    prior, information = range_bearing(np.random.default_rng(3), 6, 4, 1)
+    objective = ro.LogDetObjective(prior, information)
+    plan = np.arange(6)
+    expected = worst_case_attack(ro.Problem(objective, plan, None, 2, 5), plan)
+    seen = set()
+    for batches in range(5, 12):
+        result = worst_case_attack(ro.Problem(Impatient(objective, batches), plan, None, 2, 5), plan)
+        assert result.lower <= expected.upper <= result.upper
+        seen.add(result.stop)
+    assert ro.Stop.INTERRUPTED in seen
+    assert seen <= {ro.Stop.INTERRUPTED, ro.Stop.EXHAUSTED}
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("budget", [(3, 11), (5, 15), (6, 22)])
+def test_ten_robots_match_the_enumeration_of_outcomes(name, budget):
+    from ratt_opt.graph.outcomes import non_dominated_outcomes
+
+    rng = np.random.default_rng(7)
+    problem = ro.Problem(OBJECTIVES[name](*range_bearing(rng, 10, 15)), np.repeat(np.arange(10), 12), None, *budget)
+    elements = random_elements(rng, problem)
+    known = {}
+    worst = np.inf
+    for outcome in non_dominated_outcomes(problem.threat):
+        for group in outcome:
+            if group not in known:
+                known[group] = problem.objective(elements[sorted(group)])
+        worst = min(worst, max(known[group] for group in outcome))
+    assert worst_case_attack(problem, elements).upper == pytest.approx(worst, rel=1e-13)
+
+
+def test_far_fewer_evaluations_than_raw_attacks():
+    rng = np.random.default_rng(1)
+    problem = random_problem(rng, 6, kind="trace", complete=True, protect=False)
+    elements = random_elements(rng, problem)
+    problem = ro.Problem(problem.objective, problem.robot, None, 2, 5)
+    raw_attacks = 15 * 3003  # blind 2 of 6 robots, cut 5 of 15 links
+    assert worst_case_attack(problem, elements).evaluations * 100 <= raw_attacks

@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+from math import comb
+
+import pytest
+
+from ratt_opt.graph.survivor_sizes import feasible_sizes, forced_group_size, non_dominated_sizes
+
+
+def partitions(total, largest):
+    if total == 0:
+        yield ()
+        return
+    for part in range(min(total, largest), 0, -1):
+        for rest in partitions(total - part, part):
+            yield (part, *rest)
+
+
+def feasible_by_definition(n_robots, n_blinded, alpha_c):
+    """Vectors left by some partition of all robots whose groups lose blinded robots in some way."""
+
+    def losses(group, left):
+        if not group:
+            if left == 0:
+                yield ()
+            return
+        for lost in range(min(group[0], left) + 1):
+            for rest in losses(group[1:], left - lost):
+                yield (group[0] - lost, *rest)
+
+    found = set()
+    for groups in partitions(n_robots, n_robots):
+        if comb(n_robots, 2) - sum(comb(g, 2) for g in groups) <= alpha_c:
+            for sizes in losses(groups, n_blinded):
+                found.add(tuple(sorted((s for s in sizes if s), reverse=True)))
+    return found
+
+
+@pytest.mark.parametrize("n_robots", range(1, 10))
+def test_sizes_and_forced_group_against_the_definition(n_robots):
+    for n_blinded in range(n_robots + 1):
+        for alpha_c in range(comb(n_robots, 2) + 1):
+            expected = feasible_by_definition(n_robots, n_blinded, alpha_c)
+            assert set(feasible_sizes(n_robots, n_blinded, alpha_c)) == expected
+            forced = min(max(v, default=0) for v in expected)
+            assert forced_group_size(n_robots, n_blinded, alpha_c) == forced
+
+
+@pytest.mark.parametrize(
+    ("budget", "vectors"),
+    [
+        ((20, 6, 47), {(12, 1, 1)}),
+        ((20, 10, 63), {(7, 1, 1, 1)}),
+        ((20, 13, 95), {(2, 1, 1, 1, 1, 1)}),
+        ((30, 10, 108), {(16, 2, 2), (16, 3, 1), (17, 1, 1, 1)}),
+        ((30, 15, 145), {(9, 6), (10, 1, 1, 1, 1, 1)}),
+        ((30, 20, 217), {(2, 1, 1, 1, 1, 1, 1, 1, 1)}),
+    ],
+)
+def test_vectors_of_the_paper_s_larger_settings(budget, vectors):
+    assert set(non_dominated_sizes(*budget)) == vectors
