@@ -1,0 +1,54 @@
+"""The exhaustive optimum against the definition: every plan, every sensing subset, every link subset."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ratt_opt import InputError, Problem, TableFunction, TraceObjective, exhaustive_optimum, worst_case_attack
+from ratt_opt.stopping import Stop
+from tests.oracles import brute_force_optimum, brute_force_worst_case
+from tests.strategies import information_data, random_problem, range_bearing
+
+
+@pytest.mark.parametrize("seed", range(300))
+def test_equals_the_definition(seed: int) -> None:
+    rng = np.random.default_rng([2, seed])
+    problem = random_problem(rng, int(rng.integers(1, 5)))
+    result = exhaustive_optimum(problem)
+    expected = brute_force_optimum(problem)
+    scale = max(1.0, abs(expected))
+    assert result.lower == result.upper == pytest.approx(expected, abs=1e-9 * scale)
+    assert brute_force_worst_case(problem, result.elements) == pytest.approx(expected, abs=1e-9 * scale)
+    assert result.stop is Stop.EXHAUSTED
+
+
+@pytest.mark.parametrize(("alpha_s", "alpha_c"), [(1, 3), (1, 4), (2, 3), (2, 4), (4, 0), (0, 6), (4, 6)])
+def test_small_comparison_of_the_paper(alpha_s: int, alpha_c: int) -> None:
+    prior, information = range_bearing(np.random.default_rng(5), 4, 4, 4)
+    problem = Problem(TraceObjective(prior, information), np.repeat(np.arange(4), 4), None, alpha_s, alpha_c)
+    result = exhaustive_optimum(problem)
+    assert result.lower == worst_case_attack(problem, result.elements).upper
+    assert result.nodes == 4**4
+    assert (result.lower == 0) == (alpha_s == 4)
+
+
+def test_the_first_of_equal_plans_is_returned() -> None:
+    result = exhaustive_optimum(Problem(TableFunction(np.zeros(16)), [1, 0, 0, 1], None, 0, 0))
+    assert result.elements.tolist() == [1, 0]
+
+
+def test_too_many_plans_are_refused() -> None:
+    prior, information = information_data(np.random.default_rng(0), 96, 1)
+    problem = Problem(TraceObjective(prior, information), np.repeat(np.arange(8), 12), None, 1, 1)
+    with pytest.raises(InputError, match="use solve_maxmin"):
+        exhaustive_optimum(problem)
+
+
+def test_relabelling_robots_changes_no_value() -> None:
+    rng = np.random.default_rng(11)
+    for _ in range(20):
+        problem = random_problem(rng, 3, kind="logdet", protect=False, complete=True)
+        order = rng.permutation(3)
+        relabelled = Problem(problem.objective, order[problem.robot], None, problem.alpha_s, problem.alpha_c)
+        assert exhaustive_optimum(relabelled).lower == pytest.approx(exhaustive_optimum(problem).lower, rel=1e-12)

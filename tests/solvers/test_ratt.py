@@ -1,0 +1,115 @@
+"""RATT and the baselines against Algorithm 1 written out line by line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratt_opt import Problem, SetFunction, TableFunction, caa, greedy, myopic, nonrobust_optimum, random_plan, ratt
+from ratt_opt.problem import Attack
+
+
+def algorithm_1(f: SetFunction, choices: list[list[int]], alpha: int) -> tuple[list[int], list[int]]:
+    """Lines 3 to 18 of Algorithm 1 with ties by lowest element, then lowest robot: (elements, bait)."""
+    robots = range(len(choices))
+    best: dict[int, int] = {}
+    for i in robots:
+        for e in choices[i]:
+            if i not in best or f([e]) > f([best[i]]):
+                best[i] = e
+    if alpha >= len(choices):
+        return [best[i] for i in robots], list(robots)
+    bait: list[int] = []
+    while len(bait) < alpha:
+        pick = None
+        for i in robots:
+            if i not in bait and (pick is None or f([best[i]]) > f([best[pick]])):
+                pick = i
+        assert pick is not None
+        bait.append(pick)
+    plan = {i: best[i] for i in bait}
+    chosen: list[int] = []
+    while len(plan) < len(choices):
+        candidates = sorted(e for i in robots if i not in plan for e in choices[i])
+        winner = candidates[0]
+        for e in candidates:
+            if f([*chosen, e]) > f([*chosen, winner]):
+                winner = e
+        plan[next(i for i in robots if winner in choices[i])] = winner
+        chosen.append(winner)
+    return [plan[i] for i in robots], sorted(bait)
+
+
+@st.composite
+def table_problems(draw: st.DrawFn) -> Problem:
+    """Monotone tables with few distinct values, so that ties are common; ragged, interleaved owners."""
+    n_robots = draw(st.integers(1, 4))
+    extra = draw(st.lists(st.integers(0, n_robots - 1), max_size=3))
+    robot = np.array(draw(st.permutations([*range(n_robots), *extra])))
+    n = len(robot)
+    steps = draw(st.lists(st.integers(0, 3), min_size=2**n, max_size=2**n))
+    values = np.zeros(2**n)
+    for mask in range(1, 2**n):
+        below = [values[mask & ~(1 << e)] for e in range(n) if mask >> e & 1]
+        values[mask] = max(below) + steps[mask]
+    alpha_s = draw(st.integers(0, n_robots))
+    alpha_c = draw(st.integers(0, n_robots * (n_robots - 1) // 2))
+    return Problem(TableFunction(values), robot, None, alpha_s, alpha_c)
+
+
+@given(table_problems())
+@settings(max_examples=300, deadline=None)
+def test_planners_are_algorithm_1(problem: Problem) -> None:
+    choices = [c.tolist() for c in problem.choices]
+    n = problem.n_robots
+    alpha = problem.alpha_s + caa(n, problem.alpha_c).alpha_cs
+    for plan, level in ((ratt(problem), alpha), (greedy(problem), 0), (myopic(problem), n)):
+        elements, bait = algorithm_1(problem.objective, choices, level)
+        assert plan.elements.tolist() == elements
+        assert list(plan.bait) == bait
+
+
+@given(table_problems())
+@settings(max_examples=100, deadline=None)
+def test_nonrobust_optimum_is_the_best_plan_without_attack(problem: Problem) -> None:
+    calm = Problem(problem.objective, problem.robot, None, 0, 0)
+    values = {
+        pick: calm.team_value(pick, Attack())
+        for pick in np.ndindex(*map(len, problem.choices))
+        for pick in [tuple(c[k] for c, k in zip(problem.choices, pick, strict=True))]
+    }
+    plan = nonrobust_optimum(problem)
+    assert values[tuple(plan.elements.tolist())] == max(values.values())
+
+
+class CountingFunction(TableFunction):
+    """A table that counts how many values it is asked for."""
+
+    __slots__ = ("asked",)
+
+    def __init__(self, values: list[float]) -> None:
+        super().__init__(values)
+        self.asked = 0
+
+    def evaluate(self, membership: np.ndarray) -> np.ndarray:
+        self.asked += len(membership)
+        return super().evaluate(membership)
+
+
+@pytest.mark.parametrize(("alpha_s", "alpha_c"), [(0, 0), (1, 0), (1, 2), (3, 3)])
+def test_evaluations_are_counted(alpha_s: int, alpha_c: int) -> None:
+    f = CountingFunction([float(bin(mask).count("1")) for mask in range(64)])
+    problem = Problem(f, np.repeat(np.arange(3), 2), None, alpha_s, alpha_c)
+    plan = ratt(problem)
+    assert plan.evaluations == f.asked
+    # Theorem 2: no more than |U_V|^2 evaluations.
+    assert plan.evaluations <= f.n**2
+
+
+def test_random_plan_is_reproducible_and_uses_every_element() -> None:
+    problem = Problem(TableFunction(np.zeros(16)), [0, 0, 1, 1], None, 0, 0)
+    plans = [tuple(random_plan(problem, seed=s).elements.tolist()) for s in range(40)]
+    assert set(plans) == {(0, 2), (0, 3), (1, 2), (1, 3)}
+    assert plans[7] == tuple(random_plan(problem, seed=7).elements.tolist())
