@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from ratt_opt.errors import FileFormatError, InputError, ProofError
     from ratt_opt.graph.caa import CaaResult, caa
     from ratt_opt.problem import Attack, Plan, Problem
+    from ratt_opt.scenario.files import load_input, load_scenario, save_scenario, scenario_schema
+    from ratt_opt.scenario.generator import random_scenario
+    from ratt_opt.scenario.model import Robot, Scenario, Target
+    from ratt_opt.scenario.model_free import InformationInput
+    from ratt_opt.scenario.mrclam import from_mrclam
+    from ratt_opt.scenario.sensor import Sensor
     from ratt_opt.setfunctions.base import SetFunction
     from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
     from ratt_opt.setfunctions.table import TableFunction
@@ -32,6 +38,7 @@ _HOME = {
     "AttackResult": "attackers.result",
     "CaaResult": "graph.caa",
     "FileFormatError": "errors",
+    "InformationInput": "scenario.model_free",
     "InputError": "errors",
     "LogDetObjective": "setfunctions.information",
     "MaxEigenvalueObjective": "setfunctions.information",
@@ -39,20 +46,30 @@ _HOME = {
     "Plan": "problem",
     "Problem": "problem",
     "ProofError": "errors",
+    "Robot": "scenario.model",
+    "Scenario": "scenario.model",
+    "Sensor": "scenario.sensor",
     "SetFunction": "setfunctions.base",
     "Stop": "stopping",
     "TableFunction": "setfunctions.table",
+    "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
     "bounded_rational_attack": "attackers.bounded_rational",
     "caa": "graph.caa",
     "exhaustive_optimum": "solvers.exhaustive",
+    "from_mrclam": "scenario.mrclam",
     "greedy": "solvers.baselines",
     "greedy_attack": "attackers.greedy",
+    "load_input": "scenario.files",
+    "load_scenario": "scenario.files",
     "myopic": "solvers.baselines",
     "nonrobust_optimum": "solvers.baselines",
     "random_attack": "attackers.random_attack",
     "random_plan": "solvers.baselines",
+    "random_scenario": "scenario.generator",
     "ratt": "solvers.ratt",
+    "save_scenario": "scenario.files",
+    "scenario_schema": "scenario.files",
     "worst_case_attack": "attackers.exact",
 }
 

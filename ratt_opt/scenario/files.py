@@ -1,0 +1,139 @@
+"""Scenario files: strict, versioned JSON.
+
+Policy on versions: a file states ``format`` and ``version``. This release reads version 1, the first.
+A later release will read every older version it documents, or refuse it naming the release that can;
+a version newer than the program knows is refused.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ratt_opt._files import write_json
+from ratt_opt.errors import FileFormatError, InputError
+from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.model_free import InformationInput
+
+if TYPE_CHECKING:
+    from ratt_opt.scenario.record import Record
+
+__all__ = ["load_input", "load_scenario", "read_json", "save_scenario", "scenario_schema"]
+
+LARGEST_FILE = 256 * 2**20
+"""Bytes; a longer input file is refused before it is read."""
+
+_KINDS: dict[str, type[Scenario] | type[InformationInput]] = {
+    "ratt-opt scenario": Scenario,
+    "ratt-opt information": InformationInput,
+}
+_VERSION = 1
+
+
+def load_scenario(path: str | Path) -> Scenario:
+    """Read a scenario file.
+
+    Raises
+    ------
+    FileFormatError : unreadable, not strict JSON, or a field breaks its rule; the text names the line or field.
+    """
+    loaded = load_input(path)
+    if not isinstance(loaded, Scenario):
+        raise FileFormatError(f"{path}: format", "must be 'ratt-opt scenario'", loaded.format)
+    return loaded
+
+
+def load_input(path: str | Path) -> Scenario | InformationInput:
+    """Read a scenario or a model-free information file; ``format`` says which.
+
+    Raises
+    ------
+    FileFormatError : unreadable, not strict JSON, or a field breaks its rule; the text names the line or field.
+    """
+    document = read_json(path)
+    if not isinstance(document, dict):
+        raise FileFormatError(str(path), "must hold a JSON object", type(document).__name__)
+    known = " or ".join(f"'{name}'" for name in _KINDS)
+    kind = document.get("format")
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise FileFormatError(f"{path}: format", f"must be {known}", "nothing" if kind is None else kind)
+    version = document.get("version")
+    if version != _VERSION or isinstance(version, bool):
+        raise FileFormatError(f"{path}: version", f"must be {_VERSION}", "nothing" if version is None else version)
+    try:
+        return _KINDS[kind](**document)
+    except InputError as error:
+        raise FileFormatError(f"{path}: {error.argument}", error.rule, error.value) from None
+
+
+def save_scenario(scenario: Scenario, path: str | Path) -> None:
+    """Write a scenario file that :func:`load_scenario` reads back equal, whole or not at all.
+
+    Raises
+    ------
+    InputError : the file cannot be written.
+    """
+    write_json(path, scenario.model_dump(mode="json"))
+
+
+def scenario_schema(kind: str = "scenario") -> dict[str, Any]:
+    """Return the JSON Schema of ``"scenario"`` or ``"information"`` files.
+
+    Raises
+    ------
+    InputError : any other kind.
+    """
+    record: type[Record] | None = _KINDS.get(f"ratt-opt {kind}")
+    if record is None:
+        raise InputError("kind", "must be scenario or information", kind)
+    schema = record.model_json_schema()
+    schema["required"] = sorted({*schema.get("required", []), "format", "version"})
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def read_json(path: str | Path) -> Any:
+    """Read strict JSON: UTF-8, no NaN or Infinity, no repeated keys, of bounded size and depth.
+
+    Raises
+    ------
+    FileFormatError : any of these is broken, with the line where one is known.
+    """
+    text = _read_text(Path(path))
+    try:
+        return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_repeats)
+    except json.JSONDecodeError as error:
+        where = f"{path} line {error.lineno}, column {error.colno}"
+        raise FileFormatError(where, "must be strict JSON", error.msg) from None
+    except _NotStrictError as error:
+        raise FileFormatError(str(path), "must be strict JSON", error) from None
+    except RecursionError:
+        raise FileFormatError(str(path), "must be strict JSON", "lists or objects nested too deeply") from None
+
+
+class _NotStrictError(Exception):
+    pass
+
+
+def _refuse_constant(name: str) -> None:
+    raise _NotStrictError(f"the constant {name}")
+
+
+def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    document = dict(pairs)
+    if len(document) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise _NotStrictError(f"the field {next(name for name in names if names.count(name) > 1)!r} twice")
+    return document
+
+
+def _read_text(path: Path) -> str:
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise FileFormatError(str(path), f"must be at most {LARGEST_FILE} bytes", size)
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileFormatError(str(path), "must be a file that can be read", error.strerror or "unreadable") from None
+    except UnicodeDecodeError as error:
+        raise FileFormatError(str(path), "must be UTF-8 text", f"byte {error.start} is not") from None

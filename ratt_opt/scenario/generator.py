@@ -1,0 +1,92 @@
+"""Random scenarios of Section VI of the paper, reproducible across machines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+from ratt_opt.scenario.model import DEFAULT_CONTROLS, Robot, Scenario, Target
+from ratt_opt.scenario.sensor import Sensor
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["TARGET_SPEEDS", "TARGET_TURN_RATES", "random_scenario"]
+
+TARGET_SPEEDS = (5 / 3, -5 / 3, 5 / 2, -5 / 2, 5.0, -5.0)
+"""[m/s]. Source: ratt.tex, Section VI, common parameters."""
+TARGET_TURN_RATES = (1 / 10, 1 / 20, 1 / 30)
+"""[rad/s]. Source: ratt.tex, Section VI, common parameters."""
+
+
+def random_scenario(
+    n_robots: int,
+    n_targets: int,
+    *,
+    alpha_s: int,
+    alpha_c: int,
+    seed: int,
+    side: float = 100.0,
+    prior_std: float = 3.0,
+    process_std: float = 0.5,
+    sensor: Sensor | None = None,
+    controls: Sequence[tuple[float, float]] = DEFAULT_CONTROLS,
+    communication_range: float | None = None,
+) -> Scenario:
+    """Draw robots and targets uniformly in a square, headings zero, as the paper's trials do.
+
+    Robots and targets come from two child streams of ``SeedSequence(seed)``, one number after the
+    other: with the same seed the first robots stay where they are when more are asked for.
+
+    Parameters
+    ----------
+    n_robots, n_targets : N, M >= 1
+    alpha_s, alpha_c : robots that may be blinded, links that may be cut
+    seed : integer >= 0
+    side : side of the square [m]
+    prior_std, process_std : standard deviation per axis of each target's estimate and motion noise [m]
+    sensor : noise and reach; the default sensor where ``None``
+    controls : (speed [m/s], turn rate [rad/s]) pairs of every robot
+    communication_range : robots within this distance are linked [m]; all are where ``None``
+
+    Raises
+    ------
+    InputError : a number is out of range.
+
+    Source: ratt.tex, Section VI.
+    """
+    n_robots = check_integer("n_robots", n_robots, low=1)
+    n_targets = check_integer("n_targets", n_targets, low=1)
+    if not side > 0:
+        raise InputError("side", "must be positive", side)
+    robots_seed, targets_seed = np.random.SeedSequence(check_integer("seed", seed, low=0)).spawn(2)
+    robots, targets = np.random.default_rng(robots_seed), np.random.default_rng(targets_seed)
+    return Scenario(
+        robots=tuple(
+            Robot(x=_place(robots, side), y=_place(robots, side), controls=tuple(controls)) for _ in range(n_robots)
+        ),
+        targets=tuple(_target(targets, side, prior_std, process_std) for _ in range(n_targets)),
+        sensor=sensor or Sensor(),
+        alpha_s=alpha_s,
+        alpha_c=alpha_c,
+        communication_range=communication_range,
+    )
+
+
+def _place(rng: np.random.Generator, side: float) -> float:
+    return side * float(rng.random())
+
+
+def _target(rng: np.random.Generator, side: float, prior_std: float, process_std: float) -> Target:
+    variance = prior_std**2
+    return Target(
+        x=_place(rng, side),
+        y=_place(rng, side),
+        covariance=((variance, 0.0), (0.0, variance)),
+        speed=TARGET_SPEEDS[int(rng.random() * len(TARGET_SPEEDS))],
+        turn_rate=TARGET_TURN_RATES[int(rng.random() * len(TARGET_TURN_RATES))],
+        process_std=process_std,
+    )

@@ -1,0 +1,207 @@
+"""Scenario: robots, targets, sensors, links and budgets, as in Section VI of the paper."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+import networkx as nx
+import numpy as np
+from pydantic import Field, model_validator
+
+from ratt_opt.errors import InputError
+from ratt_opt.problem import Problem
+from ratt_opt.scenario.motion import move_robots, predict_targets
+from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Whole
+from ratt_opt.scenario.sensor import Sensor
+from ratt_opt.scenario.threat_fields import Link, check_threat_fields, objective_class
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+
+__all__ = ["DEFAULT_CONTROLS", "Robot", "Scenario", "Target"]
+
+DEFAULT_CONTROLS = tuple((speed, turn) for speed in (1.0, -1.0, 3.0, -3.0) for turn in (0.0, 1.0, 3.0))
+"""{1, -1, 3, -3} m/s x {0, 1, 3} rad/s. Source: ratt.tex, Section VI, common parameters."""
+
+ON_TOP = 1e-9
+"""A predicted range [m] below this is refused: the bearing has no derivative there."""
+
+
+class Robot(Record):
+    """A unicycle robot: pose now, and the finite set of controls it can execute.
+
+    ``x``, ``y`` [m], ``heading`` [rad]; ``controls`` : (speed [m/s], turn rate [rad/s]) pairs;
+    ``sensor`` : its own sensor, or ``None`` for the team's.
+    """
+
+    x: Number
+    y: Number
+    heading: Number = 0.0
+    controls: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1)] = DEFAULT_CONTROLS
+    sensor: Sensor | None = None
+    name: str = ""
+
+
+class Target(Record):
+    """A target: what is believed about it now, and how it moves.
+
+    ``x``, ``y`` : estimated position [m]; ``covariance`` : of that estimate [m^2], symmetric positive
+    definite; ``speed`` [m/s], ``turn_rate`` [rad/s], ``heading`` [rad] : its motion;
+    ``process_std`` : standard deviation per axis of the motion noise in one period [m];
+    ``weight`` : importance.
+
+    The paper leaves covariance and noise open. Defaults: 3 m and 0.5 m standard deviation, a target
+    known to within a few of the robots' steps.
+    """
+
+    x: Number
+    y: Number
+    covariance: tuple[tuple[Number, Number], tuple[Number, Number]] = ((9.0, 0.0), (0.0, 9.0))
+    speed: Number = 0.0
+    turn_rate: Number = 0.0
+    heading: Number = 0.0
+    process_std: NonNegative = 0.5
+    weight: Positive = 1.0
+    name: str = ""
+
+    @model_validator(mode="after")
+    def _check_covariance(self) -> Self:
+        (a, b), (c, d) = self.covariance
+        if b != c:
+            raise InputError("covariance", "must be symmetric", self.covariance)
+        if not (a > 0 and a * d - b * c > 0):
+            raise InputError("covariance", "must be positive definite", self.covariance)
+        return self
+
+
+class Scenario(Record):
+    """A team, its targets and the adversary's budgets: everything one planning step needs.
+
+    ``links`` : pairs of robots that can communicate, or ``None``; ``communication_range`` : robots
+    within this distance now are linked [m], or ``None``; with both ``None`` every pair is linked (the paper's case).
+    ``sampling_period`` [s]. ``notes`` : remarks kept with the file, for instance corrections made on import.
+    """
+
+    format: Literal["ratt-opt scenario"] = "ratt-opt scenario"
+    version: Literal[1] = 1
+    robots: Annotated[tuple[Robot, ...], Field(min_length=1)]
+    targets: Annotated[tuple[Target, ...], Field(min_length=1)]
+    sensor: Sensor = Sensor()
+    sampling_period: Positive = 1.0
+    alpha_s: Whole
+    alpha_c: Whole
+    links: tuple[Link, ...] | None = None
+    communication_range: Positive | None = None
+    protected_robots: tuple[Whole, ...] = ()
+    protected_links: tuple[Link, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_whole(self) -> Self:
+        if self.links is not None and self.communication_range is not None:
+            raise InputError("communication_range", "must be absent where links are listed", self.communication_range)
+        check_threat_fields(self, self.n_robots, self.graph)
+        self._check_ranges()
+        return self
+
+    @property
+    def n_robots(self) -> int:
+        """Number of robots N."""
+        return len(self.robots)
+
+    @property
+    def n_targets(self) -> int:
+        """Number of targets M."""
+        return len(self.targets)
+
+    @cached_property
+    def robot(self) -> IntArray:
+        """(E,) owner of each element; elements are the robots' controls, robot by robot, in file order."""
+        return np.repeat(np.arange(self.n_robots), [len(robot.controls) for robot in self.robots])
+
+    @cached_property
+    def controls(self) -> FloatArray:
+        """(E, 2) speed [m/s] and turn rate [rad/s] of each element."""
+        return np.array([control for robot in self.robots for control in robot.controls])
+
+    @cached_property
+    def poses(self) -> FloatArray:
+        """(N, 3) poses now: x [m], y [m], heading [rad]."""
+        return np.array([(robot.x, robot.y, robot.heading) for robot in self.robots])
+
+    @cached_property
+    def predicted_poses(self) -> FloatArray:
+        """(E, 3) pose of the owner after each element's control."""
+        return move_robots(self.poses[self.robot], self.controls, self.sampling_period)
+
+    @cached_property
+    def predicted_targets(self) -> FloatArray:
+        """(M, 2) predicted mean positions [m], where the sensor model is linearised."""
+        positions = np.array([(target.x, target.y) for target in self.targets])
+        motions = np.array([(target.speed, target.turn_rate, target.heading) for target in self.targets])
+        return predict_targets(positions, motions, self.sampling_period)
+
+    @cached_property
+    def prior(self) -> FloatArray:
+        """(M, 2, 2) predicted covariances ``P + Q`` [m^2] (EKF prediction)."""
+        noise = np.array([target.process_std**2 for target in self.targets])
+        return np.array([target.covariance for target in self.targets]) + noise[:, None, None] * np.eye(2)
+
+    @cached_property
+    def information(self) -> FloatArray:
+        """(E, M, 2, 2) information ``H^T R^{-1} H`` of each element about each target [1/m^2]."""
+        information = np.empty((len(self.robot), self.n_targets, 2, 2))
+        for i, robot in enumerate(self.robots):
+            own = self.robot == i
+            information[own] = (robot.sensor or self.sensor).information(
+                self.predicted_poses[own], self.predicted_targets
+            )
+        return information
+
+    @property
+    def graph(self) -> nx.Graph | None:
+        """The communication graph, or ``None`` for the complete one."""
+        if self.links is None and self.communication_range is None:
+            return None
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(range(self.n_robots))
+        if self.links is not None:
+            graph.add_edges_from(self.links)
+            return graph
+        apart = np.linalg.norm(self.poses[:, None, :2] - self.poses[None, :, :2], axis=-1)
+        close = np.argwhere(np.triu(apart <= self.communication_range, 1))
+        graph.add_edges_from((int(i), int(j)) for i, j in close)
+        return graph
+
+    @cached_property
+    def element_labels(self) -> tuple[str, ...]:
+        """(E,) what each element is, for people."""
+        return tuple(f"{speed:g} m/s, {turn:g} rad/s" for speed, turn in self.controls)
+
+    def problem(self, objective: str = "trace") -> Problem:
+        """Return the max-min problem for ``"trace"``, ``"logdet"`` or ``"maxeig"``.
+
+        Raises
+        ------
+        InputError : the objective is unknown.
+        """
+        weights = np.array([target.weight for target in self.targets])
+        return Problem(
+            objective_class(objective)(self.prior, self.information, weights),
+            self.robot,
+            self.graph,
+            self.alpha_s,
+            self.alpha_c,
+            frozenset(self.protected_robots),
+            frozenset(self.protected_links),
+        )
+
+    def _check_ranges(self) -> None:
+        apart = np.linalg.norm(self.predicted_poses[:, None, :2] - self.predicted_targets[None], axis=-1)
+        if apart.min() < ON_TOP:
+            e, j = (int(k) for k in np.argwhere(apart < ON_TOP)[0])
+            rule = f"must not end on top of target {j}'s predicted position (range 0 has no bearing)"
+            raise InputError(
+                f"robots[{self.robot[e]}] with control {self.element_labels[e]}", rule, tuple(self.predicted_targets[j])
+            )

@@ -1,0 +1,108 @@
+"""The second input: covariances, information matrices and owners, for users whose robots are not unicycles."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+import networkx as nx
+import numpy as np
+from pydantic import Field, model_validator
+
+from ratt_opt.errors import InputError
+from ratt_opt.problem import Problem
+from ratt_opt.scenario.record import Number, Positive, Record, Whole
+from ratt_opt.scenario.threat_fields import Link, check_threat_fields, objective_class
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["InformationInput"]
+
+Matrix = tuple[tuple[Number, ...], ...]
+
+
+class InformationInput(Record):
+    """A max-min problem given by its matrices.
+
+    ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
+    each element; ``weights`` : (M,) or ``None``; ``labels`` : (E,) what each element is, or ``None``.
+    Links, budgets and protections are those of a scenario.
+    """
+
+    format: Literal["ratt-opt information"] = "ratt-opt information"
+    version: Literal[1] = 1
+    prior: Annotated[tuple[Matrix, ...], Field(min_length=1)]
+    information: Annotated[tuple[tuple[Matrix, ...], ...], Field(min_length=1)]
+    robot: Annotated[tuple[Whole, ...], Field(min_length=1)]
+    alpha_s: Whole
+    alpha_c: Whole
+    weights: tuple[Positive, ...] | None = None
+    labels: tuple[str, ...] | None = None
+    links: tuple[Link, ...] | None = None
+    protected_robots: tuple[Whole, ...] = ()
+    protected_links: tuple[Link, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_whole(self) -> Self:
+        if self.labels is not None and len(self.labels) != len(self.robot):
+            raise InputError("labels", f"must have {len(self.robot)} entries, one per element", len(self.labels))
+        check_threat_fields(self, self.n_robots, self.graph)
+        self.problem()
+        return self
+
+    @property
+    def n_robots(self) -> int:
+        """Number of robots N."""
+        return max(self.robot) + 1
+
+    @property
+    def n_targets(self) -> int:
+        """Number of targets M."""
+        return len(self.prior)
+
+    @property
+    def graph(self) -> nx.Graph | None:
+        """The communication graph, or ``None`` for the complete one."""
+        if self.links is None:
+            return None
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(range(self.n_robots))
+        graph.add_edges_from(self.links)
+        return graph
+
+    @property
+    def element_labels(self) -> tuple[str, ...] | None:
+        """(E,) what each element is, or ``None``."""
+        return self.labels
+
+    @cached_property
+    def matrices(self) -> tuple[FloatArray, FloatArray]:
+        """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
+        return _array("prior", self.prior), _array("information", self.information)
+
+    def problem(self, objective: str = "trace") -> Problem:
+        """Return the max-min problem for ``"trace"``, ``"logdet"`` or ``"maxeig"``.
+
+        Raises
+        ------
+        InputError : the objective is unknown, or a matrix breaks its rule.
+        """
+        weights = None if self.weights is None else np.array(self.weights)
+        return Problem(
+            objective_class(objective)(*self.matrices, weights),
+            np.array(self.robot),
+            self.graph,
+            self.alpha_s,
+            self.alpha_c,
+            frozenset(self.protected_robots),
+            frozenset(self.protected_links),
+        )
+
+
+def _array(name: str, nested: object) -> FloatArray:
+    try:
+        return np.array(nested, dtype=np.float64)
+    except ValueError:
+        raise InputError(name, "must hold square matrices of one size", "lists of different lengths") from None

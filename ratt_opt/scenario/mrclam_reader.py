@@ -1,0 +1,118 @@
+"""Read the text files of the UTIAS MRCLAM multi-robot dataset.
+
+Source: K. Y. K. Leung, Y. Halpern, T. D. Barfoot, H. H. T. Liu, "The UTIAS Multi-Robot Cooperative
+Localization and Mapping Dataset", International Journal of Robotics Research 30(8):969-974, 2011.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["DATASET_1_CORRECTIONS", "MrclamData", "read_mrclam"]
+
+DATASET_1_CORRECTIONS: Mapping[int, int] = {11: 17, 17: 11}
+"""Label errors of dataset 1: what the barcode table calls subject 11 is the tube at subject 17's position,
+and the other way round. None of the 3670 sightings of the two fits as labelled, all fit exchanged. Whether the
+barcode or the landmark table is wrong cannot be told and makes no difference; the barcodes are what is corrected."""
+
+_POSE_FILES = ("Robot{}_Groundtruth.dat", "Robot{}_Pose_estimated.dat")
+"""In order of preference: the dataset's own ground truth, then poses estimated from its measurements."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MrclamData:
+    """The tables of one dataset folder.
+
+    ``landmarks`` : subject -> (x, y) [m]; ``subject_of`` : barcode -> subject, after corrections;
+    ``corrections`` : those applied; ``poses`` : per robot (K, 4) time [s], x [m], y [m], heading [rad];
+    ``measurements`` : per robot (L, 4) time [s], barcode, range [m], bearing [rad]; ``pose_files`` : names read.
+    """
+
+    landmarks: Mapping[int, tuple[float, float]]
+    subject_of: Mapping[int, int]
+    corrections: Mapping[int, int]
+    poses: tuple[FloatArray, ...]
+    measurements: tuple[FloatArray, ...]
+    pose_files: tuple[str, ...]
+
+
+def read_mrclam(directory: str | Path, corrections: Mapping[int, int] = DATASET_1_CORRECTIONS) -> MrclamData:
+    """Read a dataset folder: landmark and barcode tables, and each robot's poses and measurements.
+
+    Parameters
+    ----------
+    directory : folder with ``Barcodes.dat``, ``Landmark_Groundtruth.dat``, ``RobotN_Measurement.dat`` and
+        ``RobotN_Groundtruth.dat`` or ``RobotN_Pose_estimated.dat``, N = 1, 2, ...
+    corrections : subject named in the barcode table -> subject meant; empty for none
+
+    Raises
+    ------
+    FileFormatError : a file is missing or a line is not numbers; the text names file and line.
+    """
+    folder = Path(directory)
+    landmarks = {int(row[0]): (float(row[1]), float(row[2])) for row in _table(folder / "Landmark_Groundtruth.dat", 3)}
+    barcodes = _table(folder / "Barcodes.dat", 2)
+    subject_of = {int(code): corrections.get(int(subject), int(subject)) for subject, code in barcodes[:, :2]}
+    pose_files: list[Path] = []
+    while (file := _pose_file(folder, len(pose_files) + 1)) is not None:
+        pose_files.append(file)
+    if not pose_files:
+        raise FileFormatError(str(folder), f"must hold {' or '.join(_POSE_FILES).format(1, 1)}", "neither")
+    measurements = [_table(folder / f"Robot{k + 1}_Measurement.dat", 4) for k in range(len(pose_files))]
+    return MrclamData(
+        landmarks=landmarks,
+        subject_of=subject_of,
+        corrections={a: b for a, b in corrections.items() if a in set(barcodes[:, 0].astype(int).tolist())},
+        poses=tuple(_increasing(file, _table(file, 4)) for file in pose_files),
+        measurements=tuple(measurements),
+        pose_files=tuple(file.name for file in pose_files),
+    )
+
+
+def _pose_file(folder: Path, number: int) -> Path | None:
+    files = (folder / name.format(number) for name in _POSE_FILES)
+    return next((file for file in files if file.exists()), None)
+
+
+def _table(path: Path, columns: int) -> FloatArray:
+    """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not UTF-8 text"
+        raise FileFormatError(str(path), "must be a text file that can be read", reason) from None
+    rows = []
+    for number, line in enumerate(lines, start=1):
+        words = line.split("#", 1)[0].split()
+        if not words:
+            continue
+        try:
+            row = [float(word) for word in words]
+        except ValueError:
+            row = []
+        if len(row) < columns or not np.isfinite(row).all():
+            raise FileFormatError(f"{path} line {number}", f"must hold {columns} finite numbers or more", line.strip())
+        rows.append(row[:columns])
+    if not rows:
+        raise FileFormatError(str(path), "must hold at least one line of numbers", "none")
+    return np.array(rows)
+
+
+def _increasing(path: Path, poses: FloatArray) -> FloatArray:
+    if (np.diff(poses[:, 0]) <= 0).any():
+        row = int(np.argmax(np.diff(poses[:, 0]) <= 0)) + 1
+        raise FileFormatError(
+            str(path), "must have increasing times", f"{poses[row, 0]:.3f} after {poses[row - 1, 0]:.3f}"
+        )
+    return poses

@@ -1,0 +1,83 @@
+"""The base of every record that is also a file's content: frozen, strict, with one-line errors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+__all__ = ["NonNegative", "Number", "Positive", "Record", "Whole", "first_fault"]
+
+Number = Annotated[float, Field(strict=True)]
+"""A number: no text, no boolean."""
+Positive = Annotated[float, Field(strict=True, gt=0)]
+NonNegative = Annotated[float, Field(strict=True, ge=0)]
+Whole = Annotated[int, Field(strict=True, ge=0)]
+
+_RULES = {
+    "missing": "is missing",
+    "extra_forbidden": "is not a field of this format",
+    "finite_number": "must be finite",
+    "too_short": "must not be empty",
+    "float_type": "must be a number",
+    "int_type": "must be an integer",
+    "string_type": "must be text",
+    "model_type": "must be an object",
+    "tuple_type": "must be a list",
+}
+
+
+class Record(BaseModel):
+    """A frozen record; unknown fields, NaN and infinities are refused with an :class:`InputError`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise first_fault(error) from None
+
+    def __eq__(self, other: object) -> bool:
+        # Fields only: what a record has computed and kept is not part of what it is.
+        return type(self) is type(other) and self._fields() == other._fields()
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._fields().values()))
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a checked copy with some fields changed."""
+        return type(self)(**(self._fields() | changes))
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in type(self).model_fields}
+
+
+def first_fault(error: ValidationError) -> InputError:
+    """Return the first fault of a validation as one line: field path, rule, value."""
+    fault = error.errors(include_url=False)[0]
+    inner = fault.get("ctx", {}).get("error")
+    path = _path(fault)
+    if isinstance(inner, InputError):
+        return InputError(".".join(filter(None, (path, inner.argument))), inner.rule, inner.value)
+    if fault["type"] in {"missing", "extra_forbidden"}:
+        where = "nothing" if fault["type"] == "missing" else _short(fault["input"])
+        return InputError(path, _RULES[fault["type"]], where)
+    rule = _RULES.get(fault["type"]) or f"is not valid: {fault['msg'][0].lower()}{fault['msg'][1:]}"
+    return InputError(path or "scenario", rule, _short(fault["input"]))
+
+
+def _path(fault: ErrorDetails) -> str:
+    path = ""
+    for part in fault["loc"]:
+        path += f"[{part}]" if isinstance(part, int) else f".{part}" if path else str(part)
+    return path
+
+
+def _short(value: object) -> object:
+    return value if isinstance(value, (int, float, str, type(None))) else type(value).__name__

@@ -1,0 +1,135 @@
+"""Reading the MRCLAM text format: a tiny synthetic set always, the real data where it is present."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ratt_opt import FileFormatError, InputError, Scenario, from_mrclam, ratt, worst_case_attack
+from ratt_opt.scenario.mrclam import label_evidence
+from ratt_opt.scenario.mrclam_reader import read_mrclam
+
+REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "mrclam"
+START = 1248272276.0
+LANDMARKS = {6: (3.0, 0.0), 11: (0.0, 3.0), 17: (-3.0, 0.0)}
+BARCODES = {1: 5, 2: 14, 6: 72, 11: 18, 17: 61}
+
+
+def _synthetic(folder: Path, *, swapped: bool = True) -> Path:
+    """Two robots that turn on the spot; ``swapped``: barcodes 18 and 61 are each seen at the other's landmark."""
+    header = "# a comment\n#Subject x y\n"
+    (folder / "Landmark_Groundtruth.dat").write_text(
+        header + "".join(f"{s}\t{x}\t{y}\t0.0001\t0.0001\n" for s, (x, y) in LANDMARKS.items())
+    )
+    (folder / "Barcodes.dat").write_text(header + "".join(f" {s} \t {b}\n" for s, b in BARCODES.items()))
+    seen_as = {6: 72, 11: 61 if swapped else 18, 17: 18 if swapped else 61}
+    for robot, (x, y) in enumerate([(0.0, 0.0), (0.5, 0.5)], start=1):
+        poses, sightings = [], []
+        for k in range(8):
+            heading = math.remainder(3.0 + 0.2 * k, 2 * math.pi)
+            poses.append(f"{START + k:.3f}\t{x}\t{y}\t{heading:.9f}\t0.01\t0.01\t0.01")
+            for subject, (u, v) in LANDMARKS.items():
+                bearing = math.remainder(math.atan2(v - y, u - x) - heading, 2 * math.pi)
+                sightings.append(f"{START + k:.3f}\t{seen_as[subject]}\t{math.hypot(u - x, v - y):.3f}\t{bearing:.3f}")
+        sightings.append(f"{START + 3:.3f}\t43\t1.0\t0.0")
+        (folder / f"Robot{robot}_Pose_estimated.dat").write_text(header + "\n".join(poses) + "\n")
+        (folder / f"Robot{robot}_Measurement.dat").write_text(header + "\n".join(sightings) + "\n")
+    return folder
+
+
+def test_a_scenario_from_the_synthetic_set(tmp_path: Path) -> None:
+    scenario = from_mrclam(_synthetic(tmp_path), 2.5, alpha_s=1, alpha_c=1)
+    assert isinstance(scenario, Scenario)
+    assert scenario.n_robots == 2
+    assert [t.name for t in scenario.targets] == ["landmark 6", "landmark 11", "landmark 17"]
+    assert [(t.x, t.y) for t in scenario.targets] == list(LANDMARKS.values())
+    # The heading passes pi between rows 0 and 1: interpolation takes the short way round.
+    early = from_mrclam(tmp_path, 0.9, alpha_s=0, alpha_c=0)
+    assert early.robots[0].heading == pytest.approx(math.remainder(3.18, 2 * math.pi), abs=1e-7)
+    assert from_mrclam(tmp_path, START + 2.5, alpha_s=1, alpha_c=1) == scenario
+    assert "11 means 17, 17 means 11; of 32 such sightings 0 fit as labelled and 32 as corrected" in scenario.notes[1]
+    assert scenario.notes[2] == "2 measurements with unlisted barcodes ignored: [43]"
+    assert scenario.sensor.law == "std"
+
+
+def test_corrections_are_never_silent(tmp_path: Path) -> None:
+    _synthetic(tmp_path, swapped=False)
+    with pytest.raises(InputError, match="corrections must be confirmed by the measurements"):
+        from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0)
+    plain = from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0, corrections={})
+    assert not any("corrected" in note for note in plain.notes)
+    data = read_mrclam(tmp_path)
+    assert (data.subject_of[18], data.subject_of[61]) == (17, 11)
+
+
+def test_ground_truth_is_preferred_to_estimates(tmp_path: Path) -> None:
+    _synthetic(tmp_path)
+    truth = "\n".join(f"{START + k} 9 9 0" for k in range(8))
+    (tmp_path / "Robot1_Groundtruth.dat").write_text(truth)
+    scenario = from_mrclam(tmp_path, 1.0, alpha_s=0, alpha_c=0, corrections={})
+    assert (scenario.robots[0].x, scenario.robots[1].x) == (9.0, 0.5)
+    assert "Robot1_Groundtruth.dat" in scenario.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "text"),
+    [
+        ("Barcodes.dat", "7 x", r"Barcodes.dat line 8 must hold 2 finite numbers"),
+        ("Landmark_Groundtruth.dat", "7 1.0", r"line 6 must hold 3 finite numbers or more; got 7 1.0"),
+        ("Robot2_Measurement.dat", "1248272276 5 nan 0", r"Robot2_Measurement.dat line \d+ must hold 4 finite"),
+        ("Robot1_Pose_estimated.dat", "1 2 3 4", "must have increasing times; got 1.000 after"),
+    ],
+)
+def test_malformed_lines_are_named(tmp_path: Path, file: str, line: str, text: str) -> None:
+    _synthetic(tmp_path)
+    with (tmp_path / file).open("a") as handle:
+        handle.write(line + "\n")
+    with pytest.raises(FileFormatError, match=text):
+        from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0)
+
+
+@pytest.mark.parametrize("file", ["Barcodes.dat", "Landmark_Groundtruth.dat", "Robot2_Measurement.dat"])
+def test_missing_files_are_named(tmp_path: Path, file: str) -> None:
+    (_synthetic(tmp_path) / file).unlink()
+    with pytest.raises(FileFormatError, match=f"{file} must be a text file that can be read; got No such file"):
+        from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0)
+
+
+def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileFormatError, match=r"Landmark_Groundtruth\.dat"):
+        from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0)
+
+
+@pytest.mark.parametrize("time", [-0.1, 7.5, START - 1, START + 8])
+def test_times_outside_the_poses_are_refused(tmp_path: Path, time: float) -> None:
+    with pytest.raises(InputError, match=r"time must be in \[0, 7.000\] seconds since the start"):
+        from_mrclam(_synthetic(tmp_path), time, alpha_s=0, alpha_c=0)
+
+
+def test_times_in_a_gap_are_refused(tmp_path: Path) -> None:
+    _synthetic(tmp_path)
+    file = tmp_path / "Robot2_Pose_estimated.dat"
+    kept = [
+        line for line in file.read_text().splitlines() if not line.startswith((f"{START + 3:.3f}", f"{START + 4:.3f}"))
+    ]
+    file.write_text("\n".join(kept))
+    with pytest.raises(InputError, match=r"must not fall between poses more than 2.0 s apart \(robot 2\)"):
+        from_mrclam(tmp_path, 3.5, alpha_s=0, alpha_c=0)
+    assert from_mrclam(tmp_path, 5.0, alpha_s=0, alpha_c=0).n_robots == 2
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason=f"the MRCLAM data is not at {REAL}")
+def test_the_real_dataset() -> None:
+    evidence = label_evidence(read_mrclam(REAL))
+    assert evidence.fit_as_labelled == 0
+    assert evidence.fit_as_corrected == evidence.sightings > 3600
+    scenario = from_mrclam(REAL, 600.0, alpha_s=1, alpha_c=4)
+    assert (scenario.n_robots, scenario.n_targets) == (5, 15)
+    seen = (np.abs(scenario.information).max(axis=(2, 3)) > 0).sum(axis=1)
+    assert seen.max() > 3
+    problem = scenario.problem()
+    result = worst_case_attack(problem, ratt(problem).elements)
+    assert 0 < result.lower == result.upper
