@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.greedy import greedy_attack
     from ratt_opt.attackers.random_attack import random_attack
     from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.bounds.relaxation import RelaxationBound, relaxation_bound
     from ratt_opt.errors import FileFormatError, InputError, ProofError
     from ratt_opt.graph.caa import CaaResult, caa
     from ratt_opt.problem import Attack, Plan, Problem
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.table import TableFunction
     from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
     from ratt_opt.solvers.exhaustive import exhaustive_optimum
+    from ratt_opt.solvers.maxmin import solve_maxmin
     from ratt_opt.solvers.ratt import ratt
     from ratt_opt.solvers.result import MaxMinResult
     from ratt_opt.stopping import Stop
@@ -46,6 +48,7 @@ _HOME = {
     "Plan": "problem",
     "Problem": "problem",
     "ProofError": "errors",
+    "RelaxationBound": "bounds.relaxation",
     "Robot": "scenario.model",
     "Scenario": "scenario.model",
     "Sensor": "scenario.sensor",
@@ -68,8 +71,10 @@ _HOME = {
     "random_plan": "solvers.baselines",
     "random_scenario": "scenario.generator",
     "ratt": "solvers.ratt",
+    "relaxation_bound": "bounds.relaxation",
     "save_scenario": "scenario.files",
     "scenario_schema": "scenario.files",
+    "solve_maxmin": "solvers.maxmin",
     "worst_case_attack": "attackers.exact",
 }
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.solvers.proof import UpperProof
     from ratt_opt.stopping import Stop
 
 __all__ = ["MaxMinResult"]
@@ -25,3 +26,5 @@ class MaxMinResult:
     stop: Stop
     evaluations: int
     nodes: int = 0
+    proof: UpperProof | None = None
+    """What ``upper`` rests on; ``None`` where it was enumerated."""

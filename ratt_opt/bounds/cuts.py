@@ -1,0 +1,130 @@
+"""Linear upper bounds on the value of one group, valid for every plan.
+
+All three criteria are concave in the posterior information ``Lambda``, and ``Lambda`` is linear
+in the elements chosen. A supergradient at any point therefore bounds the value of
+every plan by a constant plus one score per chosen element:
+
+    phi(elements of the group's robots) <= constant + sum over robots i of the group of scores[e_i].
+
+Any convex combination of such bounds, over groups that attain the team value of attacks,
+bounds the worst-case value of every plan; its largest value splits into one maximum a robot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["GroupCut", "combined_bound", "tangent_cut", "worst_targets"]
+
+ROUNDING = 64 * np.finfo(np.float64).eps
+"""Relative margin added to every bound: sums of at most a few thousand terms lose less."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroupCut:
+    """``phi(plan on group) <= constant + sum_{i in group} scores[e_i]`` for every plan.
+
+    ``group`` : robots, ascending. ``scores`` : (E,), zero for robots outside the group.
+    ``point`` : (M, d, d) posterior information ``Lambda`` where the bound touches, from which a
+    checker can derive it again (``Y = Lambda^{-1}`` in its Fenchel form). ``target`` : for the max-eigenvalue
+    criterion, the target whose largest eigenvalue the bound is about.
+    """
+
+    group: tuple[int, ...]
+    constant: float
+    scores: FloatArray
+    point: FloatArray
+    target: int | None = None
+
+
+def worst_targets(objective: InformationObjective, point: FloatArray, level: float, most: int) -> list[int | None]:
+    """Targets whose tangent at ``point`` cuts ``level`` off, worst first; ``[None]`` for sums over targets."""
+    if not isinstance(objective, MaxEigenvalueObjective):
+        return [None]
+    values = objective.criterion(objective.prior_information).max() - objective.criterion(point)
+    order = np.argsort(values, kind="stable")[:most].tolist()
+    return [j for j in order if values[j] < level] or [order[0]]
+
+
+def tangent_cut(
+    problem: Problem,
+    objective: InformationObjective,
+    group: Iterable[int],
+    point: FloatArray,
+    target: int | None = None,
+) -> GroupCut:
+    """Bound the value of one group by the tangent at the posterior information ``point`` (M, d, d).
+
+    ``target`` : for the max-eigenvalue criterion, the target to use; the worst one where ``None``.
+
+    The Fenchel form is evaluated, not ``value + gradient``: ``tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y)``,
+    ``logdet L <= tr(Y L) - logdet Y - d`` and ``lambda_max(L^{-1}) >= 2t - t^2 v'Lv / v'v`` hold for
+    *any* symmetric (positive definite) ``Y`` and any ``v``, so an inexact point costs strength, never validity.
+    """
+    members = tuple(sorted(group))
+    if target is None:
+        target = worst_targets(objective, point, -np.inf, 1)[0]
+    slope, offset = _fenchel(objective, point, target)
+    inside = np.isin(problem.robot, members)
+    scores = np.zeros(objective.n)
+    scores[inside] = np.einsum("jkl,ejkl->e", slope, objective.information[inside])
+    prior_part = float(np.einsum("jkl,jkl->", slope, objective.prior_information))
+    constant = offset + prior_part
+    constant += ROUNDING * (abs(offset) + abs(prior_part) + float(np.abs(scores).max(initial=0.0)) * len(members))
+    return GroupCut(group=members, constant=constant, scores=scores, point=point, target=target)
+
+
+def _fenchel(objective: InformationObjective, point: FloatArray, target: int | None) -> tuple[FloatArray, float]:
+    """``(slope, offset)`` with ``value(L) <= offset + sum_j <slope_j, L_j>`` for every ``L > 0``."""
+    weights = objective.weights
+    inverse = np.linalg.inv(point)
+    inverse = (inverse + np.swapaxes(inverse, -1, -2)) / 2
+    baseline = objective.criterion(objective.prior_information)
+    if isinstance(objective, TraceObjective):
+        traces = np.trace(inverse, axis1=-2, axis2=-1)
+        return weights[:, None, None] * (inverse @ inverse), float((baseline - 2 * weights * traces).sum())
+    if isinstance(objective, LogDetObjective):
+        # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
+        logdets = np.linalg.slogdet(inverse)[1] + objective.dimension
+        return weights[:, None, None] * inverse, float((baseline - weights * logdets).sum())
+    assert isinstance(objective, MaxEigenvalueObjective)
+    assert target is not None
+    eigenvalues, vectors = np.linalg.eigh(point[target])
+    t, v = 1 / eigenvalues[0], vectors[:, 0]
+    slope = np.zeros_like(point)
+    slope[target] = weights[target] * t * t * np.outer(v, v) / (v @ v)
+    return slope, float(baseline.max() - weights[target] * 2 * t)
+
+
+def combined_bound(
+    constants: FloatArray, scores: FloatArray, weights: FloatArray, choices: Sequence[IntArray]
+) -> tuple[float, FloatArray]:
+    """Largest value of a convex combination of cuts over plans with elements in ``choices``.
+
+    Parameters
+    ----------
+    constants : (K,); scores : (K, E); weights : (K,) >= 0, not all zero (normalised here)
+    choices : per robot, the elements that remain
+
+    Returns
+    -------
+    The bound, and the (E,) combined scores it came from.
+    """
+    share = weights / weights.sum()
+    combined = share @ scores
+    terms = [float(combined[choice].max()) for choice in choices]
+    constant = float(share @ constants)
+    magnitude = abs(constant) + float(np.abs(share * constants).sum()) + sum(map(abs, terms))
+    return constant + sum(terms) + ROUNDING * magnitude, combined

@@ -1,0 +1,179 @@
+"""The concave relaxation over a set of attacks, as a conic program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut, worst_targets
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective, TraceObjective
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.problem import Attack, Problem
+
+__all__ = ["RelaxationBound", "relaxation_bound"]
+
+TARGETS_A_GROUP = 6
+AVERAGING_STEPS = 12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelaxationBound:
+    """Claim: ``Phi* <= upper``, derived from the problem's matrices by tangent cuts at ``selection``.
+
+    ``claimed`` : what the conic solver reports as its optimum, for comparison only.
+    ``selection`` : (E,) the relaxed plan it found.
+    """
+
+    upper: float
+    claimed: float
+    selection: FloatArray
+    status: str
+
+
+def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationBound:
+    """Bound the optimum by letting every robot mix its elements against the given attacks.
+
+    Of an attack's groups the largest enters the program; the value of the others is bounded by itself, and
+    the result is the larger of the two (the team value is the best group's). Modelled in
+    cvxpy and solved by Clarabel; the bound is *not* the solver's objective but the best convex combination of
+    tangent cuts at the point it returns, so a wrong answer gives a weak bound, never a false one.
+
+    Parameters
+    ----------
+    problem : its objective is an information criterion
+    attacks : at least one, within the budgets; the worst attacks on good plans give good bounds
+
+    Raises
+    ------
+    InputError : no attack, one outside the budgets, or another kind of set function.
+
+    Source: concavity of the three criteria in the posterior information; Boyd and Vandenberghe 2004, Section 7.5.
+    """
+    objective = problem.objective
+    if not isinstance(objective, InformationObjective):
+        raise InputError("objective", "must be an information criterion for the relaxation", type(objective).__name__)
+    if not attacks:
+        raise InputError("attacks", "must hold at least one attack", "none")
+    largest, others = _groups(problem, attacks)
+    claimed, selection, status = _solve(problem, objective, largest)
+    cuts = [cut for group in largest for cut in _cuts_at(problem, objective, group, selection)]
+    upper = max([_best_combination(problem, cuts), *(_group_bound(problem, objective, group) for group in others)])
+    return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
+
+
+def _groups(problem: Problem, attacks: Sequence[Attack]) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
+    """The largest group of non-blinded robots of each attack, and all other groups; each once."""
+    largest: dict[tuple[int, ...], None] = {}
+    others: dict[tuple[int, ...], None] = {}
+    for attack in attacks:
+        problem.check_attack(attack)
+        parts = problem.communication.groups(attack.links)
+        left = sorted((tuple(sorted(part - attack.sensing)) for part in parts), key=lambda g: (-len(g), g))
+        largest[left[0]] = None
+        others.update(dict.fromkeys(group for group in left[1:] if group))
+    return list(largest), list(others)
+
+
+def _solve(
+    problem: Problem, objective: InformationObjective, groups: Sequence[tuple[int, ...]]
+) -> tuple[float, FloatArray, str]:
+    import cvxpy as cp
+
+    z = cp.Variable(objective.n, nonneg=True)
+    t = cp.Variable()
+    constraints = [cp.sum(z[choice]) == 1 for choice in problem.choices]
+    constraints += [_value_constraint(objective, _posterior(problem, objective, group, z), t) for group in groups]
+    program = cp.Problem(cp.Maximize(t), constraints)
+    uniform = np.concatenate([np.full(len(c), 1 / len(c)) for c in problem.choices])
+    selection = np.empty(objective.n)
+    selection[np.concatenate(problem.choices)] = uniform
+    try:
+        program.solve(solver=cp.CLARABEL)
+    except cp.error.SolverError as error:
+        return float("nan"), selection, f"solver error: {error}"
+    if z.value is not None:
+        selection = np.clip(z.value, 0, None)
+        for choice in problem.choices:
+            selection[choice] /= selection[choice].sum()
+    return float(program.value), selection, str(program.status)
+
+
+def _posterior(problem: Problem, objective: InformationObjective, group: tuple[int, ...], z: Any) -> list[Any]:
+    """One affine (d, d) expression per target."""
+    inside = np.flatnonzero(np.isin(problem.robot, group))
+    d = objective.dimension
+    matrices = []
+    for j in range(objective.n_targets):
+        constant = objective.prior_information[j]
+        flat = objective.information[inside, j].reshape(len(inside), -1)
+        mixed = (flat.T @ z[inside]).reshape((d, d), order="C") if len(inside) else np.zeros((d, d))
+        matrices.append(constant + mixed)
+    return matrices
+
+
+def _value_constraint(objective: InformationObjective, posterior: list[Any], t: Any) -> Any:
+    """``t <= value`` as a convex constraint."""
+    import cvxpy as cp
+
+    baseline = objective.criterion(objective.prior_information)
+    weights = objective.weights
+    if isinstance(objective, TraceObjective):
+        return t + sum(w * cp.tr_inv(L) for w, L in zip(weights, posterior, strict=True)) <= baseline.sum()
+    if isinstance(objective, LogDetObjective):
+        return t <= baseline.sum() + sum(w * cp.log_det(L) for w, L in zip(weights, posterior, strict=True))
+    worst = cp.max(cp.hstack([w * cp.inv_pos(cp.lambda_min(L)) for w, L in zip(weights, posterior, strict=True)]))
+    return t + worst <= baseline.max()
+
+
+def _cuts_at(
+    problem: Problem, objective: InformationObjective, group: tuple[int, ...], selection: FloatArray
+) -> list[GroupCut]:
+    inside = np.isin(problem.robot, group)
+    point = objective.prior_information + np.einsum("e,ejkl->jkl", selection[inside], objective.information[inside])
+    targets = worst_targets(objective, point, np.inf, TARGETS_A_GROUP)
+    return [tangent_cut(problem, objective, group, point, target) for target in targets]
+
+
+def _best_combination(problem: Problem, cuts: Sequence[GroupCut]) -> float:
+    """The smallest bound that a convex combination of the cuts gives: the multipliers of a linear program."""
+    from scipy.optimize import linprog
+
+    n, robots = problem.objective.n, problem.n_robots
+    constants = np.array([cut.constant for cut in cuts])
+    scores = np.array([cut.scores for cut in cuts])
+    owners = np.zeros((robots, n + 1))
+    owners[problem.robot, np.arange(n)] = 1.0
+    cost = np.append(np.zeros(n), -1.0)
+    rows = np.concatenate([-scores, np.ones((len(cuts), 1))], axis=1)
+    bounds = [(0.0, None)] * n + [(None, None)]
+    solved = linprog(cost, A_ub=rows, b_ub=constants, A_eq=owners, b_eq=np.ones(robots), bounds=bounds)
+    candidates = [np.eye(len(cuts))[k] for k in range(len(cuts))]
+    if solved.status == 0:
+        multipliers = np.clip(-solved.ineqlin.marginals, 0.0, None)
+        if multipliers.sum() > 0:
+            candidates.append(multipliers)
+    return min(combined_bound(constants, scores, weights, problem.choices)[0] for weights in candidates)
+
+
+def _group_bound(problem: Problem, objective: InformationObjective, group: tuple[int, ...]) -> float:
+    """Upper bound on one group's value for every plan: tangents along conditional-gradient averaging steps."""
+    single = objective.singletons()
+    best = np.array([choice[single[choice].argmax()] for choice in problem.choices])
+    selection = np.zeros(objective.n)
+    selection[best] = 1.0
+    upper = np.inf
+    for step in range(AVERAGING_STEPS):
+        cut = _cuts_at(problem, objective, group, selection)[0]
+        bound, combined = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), problem.choices)
+        upper = min(upper, bound)
+        vertex = np.zeros(objective.n)
+        vertex[[choice[combined[choice].argmax()] for choice in problem.choices]] = 1.0
+        selection += 2 / (step + 2) * (vertex - selection) if step else 0.5 * (vertex - selection)
+    return upper

@@ -1,0 +1,81 @@
+"""Known outcomes of attacks and the values of plans and relaxed selections under them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["OutcomePool"]
+
+
+class OutcomePool:
+    """Attacks with the groups of non-blinded robots they leave; equal outcomes are kept once.
+
+    ``attacks[o]`` leaves the groups ``groups[g]`` for ``g`` in ``of_outcome[o]``.
+    """
+
+    def __init__(self, problem: Problem, objective: InformationObjective) -> None:
+        self.problem = problem
+        self.objective = objective
+        self.attacks: list[Attack] = []
+        self.groups: list[tuple[int, ...]] = []
+        self.of_outcome: list[tuple[int, ...]] = []
+        self._number: dict[tuple[int, ...], int] = {}
+        self._known: dict[tuple[int, ...], int] = {}
+        self._membership = np.zeros((0, problem.n_robots))
+
+    def add(self, attack: Attack) -> int:
+        """Add the outcome of one attack and return its index, new or old."""
+        parts = self.problem.communication.groups(attack.links)
+        left = [tuple(sorted(part - attack.sensing)) for part in parts]
+        numbers = tuple(sorted({self._group(group) for group in left if group} or {self._group(())}))
+        if numbers not in self._known:
+            self._known[numbers] = len(self.attacks)
+            self.attacks.append(attack)
+            self.of_outcome.append(numbers)
+        return self._known[numbers]
+
+    def _group(self, group: tuple[int, ...]) -> int:
+        if group not in self._number:
+            self._number[group] = len(self.groups)
+            self.groups.append(group)
+        return self._number[group]
+
+    def membership(self) -> FloatArray:
+        """(G, N) 1 where the robot belongs to the group."""
+        known = len(self._membership)
+        if known < len(self.groups):
+            rows = np.zeros((len(self.groups) - known, self.problem.n_robots))
+            for row, group in zip(rows, self.groups[known:], strict=True):
+                row[list(group)] = 1.0
+            self._membership = np.concatenate([self._membership, rows])
+        return self._membership
+
+    def group_points(self, of_robot: FloatArray) -> FloatArray:
+        """(G, M, d, d) posterior information of every group, each robot contributing ``of_robot[i]`` (M, d, d)."""
+        flat = of_robot.reshape(len(of_robot), -1)
+        sums = (self.membership() @ flat).reshape(-1, *self.objective.prior.shape)
+        return np.asarray(sums + self.objective.prior_information)
+
+    def group_values(self, of_robot: FloatArray) -> FloatArray:
+        """(G,) value of every group; concave in ``of_robot`` (N, M, d, d)."""
+        return self.objective.value(self.group_points(of_robot))
+
+    def outcome_values(self, group_values: FloatArray) -> FloatArray:
+        """(O,) team value of every outcome: the best of its groups; works along the last axis."""
+        if not self.of_outcome:
+            return np.full((*group_values.shape[:-1], 0), np.inf)
+        flat = np.concatenate([np.array(numbers) for numbers in self.of_outcome])
+        starts = np.cumsum([0, *(len(numbers) for numbers in self.of_outcome[:-1])])
+        return np.asarray(np.maximum.reduceat(group_values[..., flat], starts, axis=-1))
+
+    def plan_value(self, elements: IntArray) -> float:
+        """Smallest team value of a plan under the known outcomes: an upper bound on its worst case."""
+        values = self.outcome_values(self.group_values(self.objective.information[elements]))
+        return float(values.min(initial=np.inf))

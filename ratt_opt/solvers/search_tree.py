@@ -1,0 +1,62 @@
+"""The search tree while it grows, and its proof when it stops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ratt_opt.solvers.proof import ElementBranch, Leaf, WinnerBranch
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
+    from ratt_opt.solvers.proof import Node
+
+__all__ = ["TreeNode", "freeze"]
+
+
+@dataclass(slots=True, eq=False)
+class TreeNode:
+    """A node of the search.
+
+    ``choices`` : remaining elements per robot (one of each class of equal elements); ``winners`` : outcome ->
+    declared group; ``bound`` : proved for its plans by ``leaf``; ``split`` : what it was divided by, once it was.
+    """
+
+    choices: tuple[IntArray, ...]
+    winners: dict[int, int]
+    bound: float
+    leaf: Leaf
+    split: tuple[str, int, list[tuple[tuple[int, ...], TreeNode]]] | None = None
+    depth: int = 0
+
+    def child(self, choices: tuple[IntArray, ...] | None = None, winner: tuple[int, int] | None = None) -> TreeNode:
+        """A node below this one, proved so far by the same leaf."""
+        return TreeNode(
+            choices=self.choices if choices is None else choices,
+            winners=self.winners if winner is None else {**self.winners, winner[0]: winner[1]},
+            bound=self.bound,
+            leaf=self.leaf,
+            depth=self.depth + 1,
+        )
+
+
+def freeze(root: TreeNode) -> Node:
+    """Return the proof below ``root``; iterative, as chains of eliminations may be long."""
+    order, stack = [], [root]
+    while stack:
+        node = stack.pop()
+        order.append(node)
+        if node.split is not None:
+            stack.extend(child for _, child in node.split[2])
+    done: dict[int, Node] = {}
+    for node in reversed(order):
+        if node.split is None:
+            done[id(node)] = node.leaf
+            continue
+        kind, subject, parts = node.split
+        children = tuple((members, done[id(child)]) for members, child in parts)
+        if kind == "element":
+            done[id(node)] = ElementBranch(robot=subject, children=children)
+        else:
+            done[id(node)] = WinnerBranch(attack=subject, children=children)
+    return done[id(root)]

@@ -1,0 +1,161 @@
+"""The max-min solver against the exhaustive optimum, and its proofs against an independent reading."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ratt_opt import (
+    InputError,
+    LogDetObjective,
+    Problem,
+    TraceObjective,
+    exhaustive_optimum,
+    random_scenario,
+    solve_maxmin,
+    worst_case_attack,
+)
+from ratt_opt.solvers.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.stopping import Stop
+from tests.oracles import groups_left
+from tests.strategies import OBJECTIVES, random_problem
+
+
+def proved_upper(problem: Problem, proof: UpperProof) -> float:
+    """Walk the tree and bound every leaf from the matrices; assert that it covers all plans."""
+    f = problem.objective
+
+    def bound_at(cut, winners):
+        attack = proof.attacks[cut.attack]
+        problem.check_attack(attack)
+        groups = {tuple(sorted(g - attack.sensing)) for g in groups_left(problem, attack.links)} - {()} or {()}
+        assert cut.group in groups
+        assert len(groups) == 1 or winners.get(cut.attack) == cut.group
+        value, slope = tangent(f, cut.point, cut.target)
+        constant = value + sum(np.vdot(slope[j], f.prior_information[j] - cut.point[j]) for j in range(f.n_targets))
+        scores = np.array([sum(np.vdot(slope[j], f.information[e, j]) for j in range(f.n_targets)) for e in range(f.n)])
+        return constant, np.where(np.isin(problem.robot, cut.group), scores, 0.0)
+
+    def visit(node, choices, winners):
+        if isinstance(node, Leaf):
+            assert node.cuts
+            assert min(node.weights) >= 0
+            bounds = [bound_at(proof.cuts[k], winners) for k in node.cuts]
+            share = np.array(node.weights) / sum(node.weights)
+            total = share @ np.array([b[1] for b in bounds])
+            return share @ np.array([b[0] for b in bounds]) + sum(max(total[e] for e in c) for c in choices)
+        if isinstance(node, ElementBranch):
+            parts = [set(members) for members, _ in node.children]
+            assert set.union(*parts) == set(choices[node.robot])
+            assert sum(map(len, parts)) == len(choices[node.robot])
+            below = [(*choices[: node.robot], list(m), *choices[node.robot + 1 :]) for m, _ in node.children]
+            return max(visit(child, c, winners) for c, (_, child) in zip(below, node.children, strict=True))
+        assert isinstance(node, WinnerBranch)
+        attack = proof.attacks[node.attack]
+        groups = {tuple(sorted(g - attack.sensing)) for g in groups_left(problem, attack.links)} - {()}
+        assert {members for members, _ in node.children} == groups
+        return max(visit(child, choices, {**winners, node.attack: members}) for members, child in node.children)
+
+    return visit(proof.root, tuple(c.tolist() for c in problem.choices), {})
+
+
+def tangent(f, point, target):
+    """Value and supergradient at one posterior information, from the definitions."""
+    inverse = np.linalg.inv(point)
+    if isinstance(f, TraceObjective):
+        traces = [np.trace(p) - np.trace(q) for p, q in zip(f.prior, inverse, strict=True)]
+        return f.weights @ traces, f.weights[:, None, None] * (inverse @ inverse)
+    if isinstance(f, LogDetObjective):
+        gains = [np.linalg.slogdet(L)[1] + np.linalg.slogdet(p)[1] for L, p in zip(point, f.prior, strict=True)]
+        return f.weights @ gains, f.weights[:, None, None] * inverse
+    values, vectors = np.linalg.eigh(inverse[target])
+    slope = np.zeros_like(point)
+    slope[target] = f.weights[target] * values[-1] ** 2 * np.outer(vectors[:, -1], vectors[:, -1])
+    return max(f.weights * np.linalg.eigvalsh(f.prior)[:, -1]) - f.weights[target] * values[-1], slope
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_equals_the_exhaustive_optimum(seed: int) -> None:
+    rng = np.random.default_rng([5, seed])
+    problem = random_problem(rng, int(rng.integers(1, 6)), controls=4)
+    expected = exhaustive_optimum(problem).lower
+    result = solve_maxmin(problem)
+    scale = max(1.0, abs(expected))
+    assert result.lower <= result.upper
+    assert result.lower == pytest.approx(expected, abs=1e-8 * scale)
+    assert result.upper == pytest.approx(expected, abs=1e-8 * scale)
+    assert worst_case_attack(problem, result.elements).lower >= result.lower - 1e-12 * scale
+    if result.proof is not None:
+        assert proved_upper(problem, result.proof) <= result.upper + 1e-10 * scale
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("max_nodes", [1, 2, 3, 5, 8])
+def test_stopping_early_leaves_a_valid_proved_bracket(kind: str, max_nodes: int) -> None:
+    problem = random_scenario(4, 3, alpha_s=1, alpha_c=2, seed=17).problem(kind)
+    optimum = exhaustive_optimum(problem).lower
+    result = solve_maxmin(problem, max_nodes=max_nodes)
+    again = solve_maxmin(problem, max_nodes=max_nodes)
+    assert result.lower <= optimum * (1 + 1e-12)
+    assert result.upper >= optimum * (1 - 1e-12)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+    assert (again.lower, again.upper, again.nodes) == (result.lower, result.upper, result.nodes)
+
+
+def test_an_interrupt_keeps_the_bracket() -> None:
+    problem = random_scenario(6, 6, alpha_s=2, alpha_c=5, seed=3).problem("maxeig")
+    brackets = []
+
+    def interrupt(_: int, lower: float, upper: float) -> None:
+        brackets.append((lower, upper))
+        raise KeyboardInterrupt
+
+    result = solve_maxmin(problem, progress=interrupt)
+    if brackets:
+        assert result.stop is Stop.INTERRUPTED
+        assert (result.lower, result.upper) == brackets[0]
+    full = solve_maxmin(problem)
+    assert result.lower <= full.upper * (1 + 1e-12)
+    assert full.lower <= result.upper * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": 0}, {"max_nodes": 0}])
+def test_bad_limits_are_refused(limits: dict[str, float]) -> None:
+    problem = random_scenario(2, 2, alpha_s=0, alpha_c=0, seed=0).problem()
+    with pytest.raises(InputError, match=next(iter(limits))):
+        solve_maxmin(problem, **limits)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_metamorphic(kind: str) -> None:
+    """More choice cannot hurt, more attacks cannot help, duplicates and relabelling change nothing."""
+    base = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=8)
+    value = solve_maxmin(base.problem(kind)).upper
+    assert solve_maxmin(base.replace(alpha_c=4).problem(kind)).upper <= value * (1 + 1e-9)
+    assert solve_maxmin(base.replace(robots=base.robots[::-1]).problem(kind)).upper == pytest.approx(value, rel=1e-8)
+    richer = base.robots[0].replace(controls=(*base.robots[0].controls, base.robots[0].controls[0], (2.0, 0.5)))
+    assert solve_maxmin(base.replace(robots=(richer, *base.robots[1:])).problem(kind)).upper >= value * (1 - 1e-9)
+
+
+def quadratic_regression(objective, robots: int, points: int = 21) -> Problem:
+    """Every robot may measure ``a + b x + c x^2`` at any point of a grid over [-1, 1]; nobody attacks."""
+    x = np.linspace(-1, 1, points)
+    rows = np.stack([np.ones_like(x), x, x * x], axis=1)
+    information = np.tile(rows[:, None, :, None] * rows[:, None, None, :], (robots, 1, 1, 1))
+    owners = np.repeat(np.arange(robots), points)
+    return Problem(objective(1e6 * np.eye(3)[None], information), owners, None, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("objective", "robots", "shares"),
+    [(LogDetObjective, 6, {0: 2, 10: 2, 20: 2}), (TraceObjective, 8, {0: 2, 10: 4, 20: 2})],
+)
+def test_optimal_designs_known_in_closed_form(objective, robots: int, shares: dict[int, int]) -> None:
+    """D-optimal: thirds at -1, 0, 1. A-optimal: a quarter, a half, a quarter."""
+    problem = quadratic_regression(objective, robots)
+    result = solve_maxmin(problem, gap=1e-9, time_limit=60)
+    chosen = (result.elements % 21).tolist()
+    best = problem.objective([i * 21 + point for i, point in enumerate(p for p, k in shares.items() for _ in range(k))])
+    assert result.upper >= best * (1 - 1e-12)
+    assert result.lower == pytest.approx(best, rel=1e-9)
+    assert {point: chosen.count(point) for point in set(chosen)} == shares
