@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["load_input", "load_scenario", "read_json", "save_scenario", "scenario_schema"]
 
 LARGEST_FILE = 256 * 2**20
-"""Bytes; a longer input file is refused before it is read."""
+"""Bytes; a longer input file is refused, and never held whole."""
 
 _KINDS: dict[str, type[Scenario] | type[InformationInput]] = {
     "ratt-opt scenario": Scenario,
@@ -107,12 +107,15 @@ def read_json(path: str | Path) -> Any:
         raise FileFormatError(where, "must be strict JSON", error.msg) from None
     except _NotStrictError as error:
         raise FileFormatError(str(path), "must be strict JSON", error) from None
+    except ValueError:
+        # Only int() is left to fail: Python refuses to convert more digits than its safety limit.
+        raise FileFormatError(str(path), "must be strict JSON", "an integer with too many digits") from None
     except RecursionError:
         raise FileFormatError(str(path), "must be strict JSON", "lists or objects nested too deeply") from None
 
 
 class _NotStrictError(Exception):
-    pass
+    """The text is JSON to Python but not to the standard."""
 
 
 def _refuse_constant(name: str) -> None:
@@ -129,10 +132,12 @@ def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _read_text(path: Path) -> str:
     try:
-        size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise FileFormatError(str(path), f"must be at most {LARGEST_FILE} bytes", size)
-        return path.read_text(encoding="utf-8")
+        # Pipes and devices have no size to ask for, so reading itself stops past the limit.
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise FileFormatError(str(path), f"must be at most {LARGEST_FILE} bytes", "more")
+        return content.decode("utf-8")
     except OSError as error:
         raise FileFormatError(str(path), "must be a file that can be read", error.strerror or "unreadable") from None
     except UnicodeDecodeError as error:

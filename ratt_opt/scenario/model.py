@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.motion import move_robots, predict_targets
-from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Whole
+from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.threat_fields import Link, check_threat_fields, objective_class
 
@@ -40,7 +40,7 @@ class Robot(Record):
     heading: Number = 0.0
     controls: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1)] = DEFAULT_CONTROLS
     sensor: Sensor | None = None
-    name: str = ""
+    name: Text = ""
 
 
 class Target(Record):
@@ -63,7 +63,7 @@ class Target(Record):
     heading: Number = 0.0
     process_std: NonNegative = 0.5
     weight: Positive = 1.0
-    name: str = ""
+    name: Text = ""
 
     @model_validator(mode="after")
     def _check_covariance(self) -> Self:
@@ -95,7 +95,7 @@ class Scenario(Record):
     communication_range: Positive | None = None
     protected_robots: tuple[Whole, ...] = ()
     protected_links: tuple[Link, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Text, ...] = ()
 
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
@@ -103,6 +103,7 @@ class Scenario(Record):
             raise InputError("communication_range", "must be absent where links are listed", self.communication_range)
         check_threat_fields(self, self.n_robots, self.graph)
         self._check_ranges()
+        self.problem()  # every rule of the matrices too: what loads can be planned
         return self
 
     @property

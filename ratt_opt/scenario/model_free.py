@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
-from ratt_opt.scenario.record import Number, Positive, Record, Whole
+from ratt_opt.scenario.record import Positive, Record, Text, Whole
 from ratt_opt.scenario.threat_fields import Link, check_threat_fields, objective_class
 
 if TYPE_CHECKING:
@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 __all__ = ["InformationInput"]
 
-Matrix = tuple[tuple[Number, ...], ...]
+LARGEST_ENTRY = 1e100
+"""Units are the user's, so far larger entries than a scenario's are accepted; products of two stay finite."""
+
+Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY)]
+Matrix = tuple[tuple[Entry, ...], ...]
 
 
 class InformationInput(Record):
@@ -38,19 +42,27 @@ class InformationInput(Record):
     alpha_s: Whole
     alpha_c: Whole
     weights: tuple[Positive, ...] | None = None
-    labels: tuple[str, ...] | None = None
+    labels: tuple[Text, ...] | None = None
     links: tuple[Link, ...] | None = None
     protected_robots: tuple[Whole, ...] = ()
     protected_links: tuple[Link, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Text, ...] = ()
 
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
         if self.labels is not None and len(self.labels) != len(self.robot):
             raise InputError("labels", f"must have {len(self.robot)} entries, one per element", len(self.labels))
+        # Before anything is built on the robots: a stray index of 10^9 would ask for a graph of that size.
+        missing = next(i for i in range(len(self.robot) + 1) if i not in self._owners)
+        if missing <= max(self.robot):
+            raise InputError("robot", "must give every robot at least one element", f"none for robot {missing}")
         check_threat_fields(self, self.n_robots, self.graph)
         self.problem()
         return self
+
+    @cached_property
+    def _owners(self) -> frozenset[int]:
+        return frozenset(self.robot)
 
     @property
     def n_robots(self) -> int:

@@ -4,20 +4,34 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-__all__ = ["NonNegative", "Number", "Positive", "Record", "Whole", "first_fault"]
+__all__ = ["NonNegative", "Number", "Positive", "Record", "Text", "Whole", "first_fault"]
 
-Number = Annotated[float, Field(strict=True)]
+LARGEST = 1e12
+"""Physical quantities beyond this, or positive ones below its inverse, are refused: squares and
+products of a few of them stay far from overflow and underflow, so no later step can meet infinity."""
+
+Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST)]
 """A number: no text, no boolean."""
-Positive = Annotated[float, Field(strict=True, gt=0)]
-NonNegative = Annotated[float, Field(strict=True, ge=0)]
+Positive = Annotated[float, Field(strict=True, ge=1 / LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(strict=True, ge=0, le=LARGEST)]
 Whole = Annotated[int, Field(strict=True, ge=0)]
+
+
+def _printable(text: str) -> str:
+    if not text.isprintable():
+        raise InputError("", "must be one line of printable text", ascii(text))
+    return text
+
+
+Text = Annotated[str, AfterValidator(_printable)]
+"""Text that can be shown in a table or on a terminal as it is: no line breaks, no escapes."""
 
 _RULES = {
     "missing": "is missing",
@@ -31,13 +45,20 @@ _RULES = {
     "tuple_type": "must be a list",
 }
 
+_BOUNDS = {
+    "greater_than": "must be > {gt:g}",
+    "greater_than_equal": "must be >= {ge:g}",
+    "less_than_equal": "must be <= {le:g}",
+    "too_long": "must have at most {max_length} entries",
+}
+
 
 class Record(BaseModel):
     """A frozen record; unknown fields, NaN and infinities are refused with an :class:`InputError`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)
         except ValidationError as error:
@@ -68,15 +89,25 @@ def first_fault(error: ValidationError) -> InputError:
     if fault["type"] in {"missing", "extra_forbidden"}:
         where = "nothing" if fault["type"] == "missing" else _short(fault["input"])
         return InputError(path, _RULES[fault["type"]], where)
-    rule = _RULES.get(fault["type"]) or f"is not valid: {fault['msg'][0].lower()}{fault['msg'][1:]}"
+    bound = _BOUNDS.get(fault["type"], "").format(**fault.get("ctx", {}))
+    rule = bound or _RULES.get(fault["type"]) or f"is not valid: {fault['msg'][0].lower()}{fault['msg'][1:]}"
     return InputError(path or "scenario", rule, _short(fault["input"]))
 
 
 def _path(fault: ErrorDetails) -> str:
     path = ""
     for part in fault["loc"]:
-        path += f"[{part}]" if isinstance(part, int) else f".{part}" if path else str(part)
+        if isinstance(part, int):
+            path += f"[{part}]"
+        else:
+            # A field name from a file may hold anything, and the error must stay one line.
+            name = part if part.isidentifier() else _cut(ascii(part))
+            path += f".{name}" if path else name
     return path
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:37]}..."
 
 
 def _short(value: object) -> object:

@@ -81,7 +81,9 @@ class Sensor(Record):
 
 def wrap_angle(angle: FloatArray) -> FloatArray:
     """The same angle in ``(-pi, pi]`` [rad]."""
-    return np.asarray(np.pi - np.mod(np.pi - angle, 2 * np.pi))
+    wrapped = np.pi - np.mod(np.pi - angle, 2 * np.pi)
+    # Just above pi the remainder rounds to 2 pi, which would give the excluded end.
+    return np.where(wrapped <= -np.pi, np.pi, wrapped)
 
 
 def bearing_of(poses: FloatArray, targets: FloatArray) -> FloatArray:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
@@ -23,9 +24,6 @@ from ratt_opt import (
     scenario_schema,
 )
 from tests.strategies import information_data
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def _document() -> dict[str, Any]:
@@ -139,6 +137,22 @@ BAD = [
     (_information() | {"prior": [[[1, 0, 0], [0, -1, 0], [0, 0, 1]]] * 2}, r"prior\[0\] must be positive definite"),
     (_information() | {"weights": [1]}, "weights must have shape"),
     (_information() | {"labels": ["a"]}, "labels must have 4 entries"),
+    (_information() | {"robot": [0, 0, 1, 10**9]}, "robot must give every robot at least one element; got none for"),
+    (_information() | {"robot": [0, 0, 1, 10**20]}, "robot must give every robot at least one element; got none for"),
+    (_information() | {"prior": [[[1e200]]]}, r"prior\[0\]\[0\]\[0\] must be <= 1e\+100; got 1e\+200"),
+    (_document() | {"self": 1}, "self is not a field of this format"),
+    (_document() | {"two\nlines": 1}, r"'two\\nlines' is not a field of this format"),
+    (_document() | {"notes": ["\x1b[31m"]}, r"notes\[0\] must be one line of printable text"),
+    (_document() | {"notes": ["\ud800"]}, r"notes\[0\] must be one line of printable text"),
+    (_robot(name="a\nb"), r"robots\[1\].name must be one line of printable text"),
+    (_robot(x=1e200), r"robots\[1\].x must be <= 1e\+12; got 1e\+200"),
+    (_robot(controls=[[1e308, 0]]), r"robots\[1\].controls\[0\]\[0\] must be <= 1e\+12"),
+    (_target(process_std=1e200), r"targets\[0\].process_std must be <= 1e\+12"),
+    (_target(covariance=[[1, 1 - 1e-16], [1 - 1e-16, 1]], process_std=0), r"prior\[0\] must be positive definite"),
+    (_document() | {"sensor": {"range_noise": 1e-320}}, "sensor.range_noise must be >= 1e-12"),
+    (_document() | {"links": [[0, 1, 2]]}, r"links\[0\] must have at most 2 entries"),
+    ('{"version": ' + "1" * 5000 + "}", "must be strict JSON; got an integer with too many digits"),
+    ("\ufeff{}", "line 1, column 1 must be strict JSON"),
 ]
 
 
@@ -166,6 +180,13 @@ def test_an_oversized_file_is_not_read(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr("ratt_opt.scenario.files.LARGEST_FILE", 10)
     with pytest.raises(FileFormatError, match="must be at most 10 bytes"):
         load_input(_write(tmp_path, _document()))
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no endless file here")
+def test_an_endless_file_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ratt_opt.scenario.files.LARGEST_FILE", 1000)
+    with pytest.raises(FileFormatError, match="/dev/zero must be at most 1000 bytes; got more"):
+        load_input("/dev/zero")
 
 
 def test_records_refuse_bad_values_when_built_in_python() -> None:

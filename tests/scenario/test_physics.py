@@ -87,7 +87,14 @@ def test_prior_is_the_predicted_covariance() -> None:
 
 
 @pytest.mark.parametrize(
-    ("bearing", "wrapped"), [(math.pi, math.pi), (-math.pi, math.pi), (3.5, 3.5 - 2 * math.pi), (0.0, 0.0)]
+    ("bearing", "wrapped"),
+    [
+        (math.pi, math.pi),
+        (-math.pi, math.pi),
+        (math.nextafter(math.pi, 4), math.pi),
+        (3.5, 3.5 - 2 * math.pi),
+        (0.0, 0.0),
+    ],
 )
 def test_angles_wrap_to_the_half_open_interval(bearing: float, wrapped: float) -> None:
     assert wrap_angle(np.array(bearing)) == pytest.approx(wrapped)
