@@ -60,8 +60,9 @@ def random_scenario(
     """
     n_robots = check_integer("n_robots", n_robots, low=1)
     n_targets = check_integer("n_targets", n_targets, low=1)
-    if not side > 0:
-        raise InputError("side", "must be positive", side)
+    for name, value in (("side", side), ("prior_std", prior_std)):
+        if not value > 0:
+            raise InputError(name, "must be positive", value)
     robots_seed, targets_seed = np.random.SeedSequence(check_integer("seed", seed, low=0)).spawn(2)
     robots, targets = np.random.default_rng(robots_seed), np.random.default_rng(targets_seed)
     return Scenario(

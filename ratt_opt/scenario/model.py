@@ -204,5 +204,7 @@ class Scenario(Record):
             e, j = (int(k) for k in np.argwhere(apart < ON_TOP)[0])
             rule = f"must not end on top of target {j}'s predicted position (range 0 has no bearing)"
             raise InputError(
-                f"robots[{self.robot[e]}] with control {self.element_labels[e]}", rule, tuple(self.predicted_targets[j])
+                f"robots[{self.robot[e]}] with control {self.element_labels[e]}",
+                rule,
+                tuple(self.predicted_targets[j].tolist()),
             )

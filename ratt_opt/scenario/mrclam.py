@@ -84,6 +84,8 @@ def from_mrclam(
     FileFormatError : a file is missing or malformed.
     InputError : the time is outside the poses or in a gap, or the measurements contradict the corrections.
     """
+    if not prior_std > 0:
+        raise InputError("prior_std", "must be positive", prior_std)
     data = read_mrclam(directory, corrections)
     instant = _instant(data, time)
     variance = prior_std**2
@@ -165,6 +167,9 @@ def _notes(data: MrclamData, instant: float) -> tuple[str, ...]:
             f"labels corrected: {table}; of {evidence.sightings} such sightings "
             f"{evidence.fit_as_labelled} fit as labelled and {evidence.fit_as_corrected} as corrected"
         )
+    if data.inapplicable:
+        table = ", ".join(f"{named} means {meant}" for named, meant in sorted(data.inapplicable.items()))
+        notes.append(f"label corrections not applied, their subjects are not in this set: {table}")
     if unlisted:
         notes.append(f"{len(unlisted)} measurements with unlisted barcodes ignored: {sorted(set(unlisted))}")
     return tuple(notes)

@@ -6,16 +6,17 @@ Localization and Mapping Dataset", International Journal of Robotics Research 30
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.errors import FileFormatError
+from ratt_opt.errors import FileFormatError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from ratt_opt._validation import FloatArray
 
@@ -26,6 +27,9 @@ DATASET_1_CORRECTIONS: Mapping[int, int] = {11: 17, 17: 11}
 and the other way round. None of the 3670 sightings of the two fits as labelled, all fit exchanged. Whether the
 barcode or the landmark table is wrong cannot be told and makes no difference; the barcodes are what is corrected."""
 
+LARGEST_IDENTIFIER = 10**9
+"""Far above any subject or barcode, and exact as a float."""
+
 _POSE_FILES = ("Robot{}_Groundtruth.dat", "Robot{}_Pose_estimated.dat")
 """In order of preference: the dataset's own ground truth, then poses estimated from its measurements."""
 
@@ -35,13 +39,15 @@ class MrclamData:
     """The tables of one dataset folder.
 
     ``landmarks`` : subject -> (x, y) [m]; ``subject_of`` : barcode -> subject, after corrections;
-    ``corrections`` : those applied; ``poses`` : per robot (K, 4) time [s], x [m], y [m], heading [rad];
+    ``corrections`` : those applied; ``inapplicable`` : those that name a subject this set does not have;
+    ``poses`` : per robot (K, 4) time [s], x [m], y [m], heading [rad];
     ``measurements`` : per robot (L, 4) time [s], barcode, range [m], bearing [rad]; ``pose_files`` : names read.
     """
 
     landmarks: Mapping[int, tuple[float, float]]
     subject_of: Mapping[int, int]
     corrections: Mapping[int, int]
+    inapplicable: Mapping[int, int]
     poses: tuple[FloatArray, ...]
     measurements: tuple[FloatArray, ...]
     pose_files: tuple[str, ...]
@@ -54,30 +60,51 @@ def read_mrclam(directory: str | Path, corrections: Mapping[int, int] = DATASET_
     ----------
     directory : folder with ``Barcodes.dat``, ``Landmark_Groundtruth.dat``, ``RobotN_Measurement.dat`` and
         ``RobotN_Groundtruth.dat`` or ``RobotN_Pose_estimated.dat``, N = 1, 2, ...
-    corrections : subject named in the barcode table -> subject meant; empty for none
+    corrections : subject named in the barcode table -> subject meant, a permutation; empty for none.
+        One that names a subject this set does not have is set aside in ``inapplicable``.
 
     Raises
     ------
     FileFormatError : a file is missing or a line is not numbers; the text names file and line.
+    InputError : the corrections are not a permutation, so that two labels would mean one subject.
     """
     folder = Path(directory)
-    landmarks = {int(row[0]): (float(row[1]), float(row[2])) for row in _table(folder / "Landmark_Groundtruth.dat", 3)}
-    barcodes = _table(folder / "Barcodes.dat", 2)
-    subject_of = {int(code): corrections.get(int(subject), int(subject)) for subject, code in barcodes[:, :2]}
-    pose_files: list[Path] = []
-    while (file := _pose_file(folder, len(pose_files) + 1)) is not None:
-        pose_files.append(file)
-    if not pose_files:
-        raise FileFormatError(str(folder), f"must hold {' or '.join(_POSE_FILES).format(1, 1)}", "neither")
-    measurements = [_table(folder / f"Robot{k + 1}_Measurement.dat", 4) for k in range(len(pose_files))]
+    table = _table(folder / "Landmark_Groundtruth.dat", 3, identifiers=(0,))
+    landmarks = {int(row[0]): (float(row[1]), float(row[2])) for row in table}
+    barcodes = _table(folder / "Barcodes.dat", 2, identifiers=(0, 1))
+    known = landmarks.keys() & set(barcodes[:, 0].astype(int).tolist())
+    applied = {a: b for a, b in corrections.items() if {a, b} <= known}
+    if set(applied) != set(applied.values()):
+        raise InputError("corrections", "must exchange labels: every subject named is meant once", dict(corrections))
+    pose_files = _pose_files(folder)
+    measurements = [
+        _table(folder / f"Robot{k + 1}_Measurement.dat", 4, identifiers=(1,), unique=False)
+        for k in range(len(pose_files))
+    ]
     return MrclamData(
         landmarks=landmarks,
-        subject_of=subject_of,
-        corrections={a: b for a, b in corrections.items() if a in set(barcodes[:, 0].astype(int).tolist())},
+        subject_of={int(code): applied.get(int(subject), int(subject)) for subject, code in barcodes},
+        corrections=applied,
+        inapplicable={a: b for a, b in corrections.items() if a not in applied},
         poses=tuple(_increasing(file, _table(file, 4)) for file in pose_files),
         measurements=tuple(measurements),
         pose_files=tuple(file.name for file in pose_files),
     )
+
+
+def _pose_files(folder: Path) -> list[Path]:
+    """One pose file per robot, none missing: a robot must not vanish from the team because its file did."""
+    names = (re.fullmatch(r"Robot([1-9]\d{0,3})_\w+\.dat", file.name) for file in folder.glob("Robot*.dat"))
+    count = max((int(name[1]) for name in names if name), default=1)
+    files = []
+    for number in range(1, count + 1):
+        file = _pose_file(folder, number)
+        if file is None:
+            raise FileFormatError(
+                str(folder), f"must hold {' or '.join(_POSE_FILES).format(number, number)}", "neither"
+            )
+        files.append(file)
+    return files
 
 
 def _pose_file(folder: Path, number: int) -> Path | None:
@@ -85,14 +112,17 @@ def _pose_file(folder: Path, number: int) -> Path | None:
     return next((file for file in files if file.exists()), None)
 
 
-def _table(path: Path, columns: int) -> FloatArray:
-    """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment."""
+def _table(path: Path, columns: int, *, identifiers: tuple[int, ...] = (), unique: bool = True) -> FloatArray:
+    """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment.
+
+    The columns ``identifiers`` hold whole numbers, in each column all different where ``unique``.
+    """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "not UTF-8 text"
         raise FileFormatError(str(path), "must be a text file that can be read", reason) from None
-    rows = []
+    rows: list[list[float]] = []
     for number, line in enumerate(lines, start=1):
         words = line.split("#", 1)[0].split()
         if not words:
@@ -103,10 +133,19 @@ def _table(path: Path, columns: int) -> FloatArray:
             row = []
         if len(row) < columns or not np.isfinite(row).all():
             raise FileFormatError(f"{path} line {number}", f"must hold {columns} finite numbers or more", line.strip())
+        for c in identifiers:
+            _check_identifier(f"{path} line {number}", row[c], [other[c] for other in rows] if unique else ())
         rows.append(row[:columns])
     if not rows:
         raise FileFormatError(str(path), "must hold at least one line of numbers", "none")
     return np.array(rows)
+
+
+def _check_identifier(where: str, value: float, others: Sequence[float]) -> None:
+    if not (value.is_integer() and 0 <= value <= LARGEST_IDENTIFIER):
+        raise FileFormatError(where, f"must name subjects and barcodes by integers in [0, {LARGEST_IDENTIFIER}]", value)
+    if value in others:
+        raise FileFormatError(where, "must not repeat a subject or barcode", int(value))
 
 
 def _increasing(path: Path, poses: FloatArray) -> FloatArray:

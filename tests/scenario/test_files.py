@@ -210,7 +210,9 @@ def test_records_refuse_bad_values_when_built_in_python() -> None:
         ({"seed": 1.5}, "seed must be"),
         ({"alpha_s": 9}, r"alpha_s must be an integer in \[0, 2\]; got 9"),
         ({"side": 0}, "side must be positive"),
-        ({"prior_std": float("nan")}, "covariance"),
+        ({"prior_std": float("nan")}, "prior_std must be positive; got nan"),
+        ({"prior_std": -3.0}, "prior_std must be positive; got -3.0"),
+        ({"side": float("inf")}, "x must be finite"),
     ],
 )
 def test_the_generator_refuses_bad_numbers(change: dict[str, Any], text: str) -> None:

@@ -65,6 +65,34 @@ def test_corrections_are_never_silent(tmp_path: Path) -> None:
     assert (data.subject_of[18], data.subject_of[61]) == (17, 11)
 
 
+def test_corrections_of_absent_subjects_are_set_aside_and_noted(tmp_path: Path) -> None:
+    _synthetic(tmp_path)
+    landmarks = tmp_path / "Landmark_Groundtruth.dat"
+    landmarks.write_text(
+        "".join(line for line in landmarks.read_text().splitlines(keepends=True) if not line.startswith("17"))
+    )
+    scenario = from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0)
+    assert scenario.notes[1].endswith("their subjects are not in this set: 11 means 17, 17 means 11")
+
+
+@pytest.mark.parametrize("corrections", [{11: 17}, {11: 17, 6: 17}])
+def test_corrections_must_be_a_permutation(tmp_path: Path, corrections: dict[int, int]) -> None:
+    with pytest.raises(InputError, match="corrections must exchange labels"):
+        from_mrclam(_synthetic(tmp_path), 0, alpha_s=0, alpha_c=0, corrections=corrections)
+
+
+def test_no_robot_vanishes_with_its_pose_file(tmp_path: Path) -> None:
+    _synthetic(tmp_path)
+    (tmp_path / "Robot3_Measurement.dat").write_text(f"{START} 5 1 1\n")
+    with pytest.raises(FileFormatError, match=r"must hold Robot3_Groundtruth.dat or Robot3_Pose_estimated.dat"):
+        from_mrclam(tmp_path, 0, alpha_s=0, alpha_c=0)
+
+
+def test_a_negative_standard_deviation_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="prior_std must be positive; got -1"):
+        from_mrclam(_synthetic(tmp_path), 0, alpha_s=0, alpha_c=0, prior_std=-1.0)
+
+
 def test_ground_truth_is_preferred_to_estimates(tmp_path: Path) -> None:
     _synthetic(tmp_path)
     truth = "\n".join(f"{START + k} 9 9 0" for k in range(8))
@@ -80,6 +108,10 @@ def test_ground_truth_is_preferred_to_estimates(tmp_path: Path) -> None:
         ("Barcodes.dat", "7 x", r"Barcodes.dat line 8 must hold 2 finite numbers"),
         ("Landmark_Groundtruth.dat", "7 1.0", r"line 6 must hold 3 finite numbers or more; got 7 1.0"),
         ("Robot2_Measurement.dat", "1248272276 5 nan 0", r"Robot2_Measurement.dat line \d+ must hold 4 finite"),
+        ("Barcodes.dat", "7.5 90", r"Barcodes.dat line 8 must name subjects and barcodes by integers"),
+        ("Barcodes.dat", "7 72", r"Barcodes.dat line 8 must not repeat a subject or barcode; got 72"),
+        ("Landmark_Groundtruth.dat", "6 1 1", r"line 6 must not repeat a subject or barcode; got 6"),
+        ("Robot1_Measurement.dat", "1248272277 1e30 1 1", r"line \d+ must name subjects and barcodes by integers"),
         ("Robot1_Pose_estimated.dat", "1 2 3 4", "must have increasing times; got 1.000 after"),
     ],
 )
