@@ -9,6 +9,7 @@ import networkx as nx
 import numpy as np
 from pydantic import Field, model_validator
 
+from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.motion import move_robots, predict_targets
@@ -119,35 +120,35 @@ class Scenario(Record):
     @cached_property
     def robot(self) -> IntArray:
         """(E,) owner of each element; elements are the robots' controls, robot by robot, in file order."""
-        return np.repeat(np.arange(self.n_robots), [len(robot.controls) for robot in self.robots])
+        return readonly(np.repeat(np.arange(self.n_robots), [len(robot.controls) for robot in self.robots]))
 
     @cached_property
     def controls(self) -> FloatArray:
         """(E, 2) speed [m/s] and turn rate [rad/s] of each element."""
-        return np.array([control for robot in self.robots for control in robot.controls])
+        return readonly(np.array([control for robot in self.robots for control in robot.controls]))
 
     @cached_property
     def poses(self) -> FloatArray:
         """(N, 3) poses now: x [m], y [m], heading [rad]."""
-        return np.array([(robot.x, robot.y, robot.heading) for robot in self.robots])
+        return readonly(np.array([(robot.x, robot.y, robot.heading) for robot in self.robots]))
 
     @cached_property
     def predicted_poses(self) -> FloatArray:
         """(E, 3) pose of the owner after each element's control."""
-        return move_robots(self.poses[self.robot], self.controls, self.sampling_period)
+        return readonly(move_robots(self.poses[self.robot], self.controls, self.sampling_period))
 
     @cached_property
     def predicted_targets(self) -> FloatArray:
         """(M, 2) predicted mean positions [m], where the sensor model is linearised."""
         positions = np.array([(target.x, target.y) for target in self.targets])
         motions = np.array([(target.speed, target.turn_rate, target.heading) for target in self.targets])
-        return predict_targets(positions, motions, self.sampling_period)
+        return readonly(predict_targets(positions, motions, self.sampling_period))
 
     @cached_property
     def prior(self) -> FloatArray:
         """(M, 2, 2) predicted covariances ``P + Q`` [m^2] (EKF prediction)."""
         noise = np.array([target.process_std**2 for target in self.targets])
-        return np.array([target.covariance for target in self.targets]) + noise[:, None, None] * np.eye(2)
+        return readonly(np.array([target.covariance for target in self.targets]) + noise[:, None, None] * np.eye(2))
 
     @cached_property
     def information(self) -> FloatArray:
@@ -158,7 +159,7 @@ class Scenario(Record):
             information[own] = (robot.sensor or self.sensor).information(
                 self.predicted_poses[own], self.predicted_targets
             )
-        return information
+        return readonly(information)
 
     @property
     def graph(self) -> nx.Graph | None:

@@ -9,6 +9,7 @@ import networkx as nx
 import numpy as np
 from pydantic import Field, model_validator
 
+from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.record import Positive, Record, Text, Whole
@@ -92,7 +93,7 @@ class InformationInput(Record):
     @cached_property
     def matrices(self) -> tuple[FloatArray, FloatArray]:
         """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
-        return _array("prior", self.prior), _array("information", self.information)
+        return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
 
     def problem(self, objective: str = "trace") -> Problem:
         """Return the max-min problem for ``"trace"``, ``"logdet"`` or ``"maxeig"``.

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import pickle
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from ratt_opt import InputError, Robot, Scenario, Sensor, Target, random_scenario
 from ratt_opt.scenario.motion import move_robots, predict_targets
@@ -207,3 +209,26 @@ def test_a_communication_range_makes_a_disk_graph() -> None:
     assert sorted(problem.communication.links) == [(0, 1), (1, 2)]
     assert problem.protected_links == {(1, 2)}
     assert [sorted(g) for g in problem.communication.groups()] == [[0, 1, 2], [3]]
+
+
+def test_a_scenario_cannot_be_changed_through_its_arrays() -> None:
+    scenario = random_scenario(2, 2, alpha_s=0, alpha_c=0, seed=1)
+    names = ("robot", "controls", "poses", "predicted_poses", "predicted_targets", "prior", "information")
+    assert not any(getattr(scenario, name).flags.writeable for name in names)
+    with pytest.raises(ValidationError, match="frozen"):
+        scenario.alpha_s = 1
+    again = pickle.loads(pickle.dumps(scenario))
+    assert again == scenario
+    assert hash(again) == hash(scenario)
+
+
+def test_default_noise_neither_hides_nor_saturates_the_gain() -> None:
+    """The best single measurement and ten robots together remove a share of the prior trace well inside (0, 1)."""
+    for seed in range(5):
+        scenario = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=seed)
+        f = scenario.problem().objective
+        total = float(np.trace(scenario.prior, axis1=1, axis2=2).sum())
+        assert 0.3 < max(f([e]) for e in range(f.n)) / total < 0.7
+        assert 0.8 < f(range(0, f.n, 12)) / total < 0.97
+        first = scenario.information[:12].reshape(12, -1)
+        assert len(np.unique(first, axis=0)) == 12  # the paper's controls do not collapse into ties
