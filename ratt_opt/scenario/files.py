@@ -8,6 +8,7 @@ a version newer than the program knows is refused.
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,7 +102,7 @@ def read_json(path: str | Path) -> Any:
     """
     text = _read_text(Path(path))
     try:
-        return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_repeats)
+        document = json.loads(text, object_pairs_hook=_refuse_repeats)
     except json.JSONDecodeError as error:
         where = f"{path} line {error.lineno}, column {error.colno}"
         raise FileFormatError(where, "must be strict JSON", error.msg) from None
@@ -112,14 +113,23 @@ def read_json(path: str | Path) -> Any:
         raise FileFormatError(str(path), "must be strict JSON", "an integer with too many digits") from None
     except RecursionError:
         raise FileFormatError(str(path), "must be strict JSON", "lists or objects nested too deeply") from None
+    _refuse_constants(path, text)
+    return document
 
 
 class _NotStrictError(Exception):
     """The text is JSON to Python but not to the standard."""
 
 
-def _refuse_constant(name: str) -> None:
-    raise _NotStrictError(f"the constant {name}")
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|(-?Infinity|NaN)', re.DOTALL)
+"""Strings, which are passed over, and the constants that Python reads but JSON does not have."""
+
+
+def _refuse_constants(path: str | Path, text: str) -> None:
+    for token in _TOKEN.finditer(text):
+        if token[1]:
+            line = text.count("\n", 0, token.start()) + 1
+            raise FileFormatError(f"{path} line {line}", "must be strict JSON", f"the constant {token[1]}")
 
 
 def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -94,7 +94,7 @@ BAD = [
     ('{"format": "ratt-opt sc', "line 1"),
     ('{"a": 1,\n "b": }', "line 2, column 7 must be strict JSON"),
     ('{"a": 1, "a": 2}', "the field 'a' twice"),
-    ('{"a": NaN}', "the constant NaN"),
+    ('{"NaN \\\\": 1,\n "b\\"": "NaN",\n "c": [NaN]}', "line 3 must be strict JSON; got the constant NaN"),
     ('{"a": -Infinity}', "the constant -Infinity"),
     ("[" * 100_000, "nested too deeply"),
     ([], "must hold a JSON object; got list"),
