@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,8 +136,8 @@ def _refuse_constants(path: str | Path, text: str) -> None:
 def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     document = dict(pairs)
     if len(document) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise _NotStrictError(f"the field {next(name for name in names if names.count(name) > 1)!r} twice")
+        repeated = next(name for name, count in Counter(name for name, _ in pairs).items() if count > 1)
+        raise _NotStrictError(f"the field {repeated!r} twice")
     return document
 
 

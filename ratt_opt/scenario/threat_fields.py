@@ -57,11 +57,13 @@ def check_threat_fields(fields: _ThreatFields, n_robots: int, graph: nx.Graph | 
     InputError : a link names no robot or is repeated, a budget is out of range, or a protection names nothing.
     """
     links = fields.links or ()
+    known: set[tuple[int, int]] = set()
     for k, link in enumerate(links):
         if link[1] >= n_robots:
             raise InputError(f"links[{k}]", f"must join robots in [0, {n_robots - 1}]", list(link))
-        if link in links[:k]:
+        if link in known:
             raise InputError(f"links[{k}]", "must not be repeated", list(link))
+        known.add(link)
     complete = CommunicationGraph.complete(n_robots)
     communication = complete if graph is None else CommunicationGraph.from_networkx(graph, n_robots)
     protections = frozenset(fields.protected_robots), frozenset(fields.protected_links)
