@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
+from ratt_opt.attackers.compact import CompactTeam
 from ratt_opt.attackers.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
@@ -66,6 +67,11 @@ def worst_case_attack(
 def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:
     if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
         return threshold_search(problem, values, bracket, budget)
+    team = CompactTeam.of(problem.objective, values.plan)
+    if team is not None and problem.threat.links_alike:
+        from ratt_opt.attackers.large_team import LargeTeamSearch  # compiles
+
+        return LargeTeamSearch(problem, team, values, bracket, budget).run()
     better = greedy_attack(problem, values.plan)
     bracket.offer(better.attack, better.upper)
     return Stop.HEURISTIC

@@ -1,0 +1,186 @@
+"""Compiled loops of the large-team attacker (2 by 2 information matrices as ``(a, b, c)`` triples).
+
+Imported only where a large team is attacked: compiling takes seconds, once per machine (cached).
+The plain versions these are tested against are in the tests.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+
+__all__ = ["FINISHED", "FOUND", "PAUSED", "SearchState", "criterion", "cut_polytopes", "search"]
+
+FINISHED, PAUSED, FOUND = 0, 1, 2
+"""Why :func:`search` returned: all sets decided, node limit, or a set below the threshold."""
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+def criterion(kind: int, weights: Any, matrices: Any) -> float:
+    """Weighted criterion over all targets, lower is better: (M,), (M, 3) -> scalar."""
+    total = 0.0
+    for j in range(matrices.shape[0]):
+        a, b, c = matrices[j, 0], matrices[j, 1], matrices[j, 2]
+        determinant = a * c - b * b
+        if kind == 0:
+            total += weights[j] * (a + c) / determinant
+        elif kind == 1:
+            total -= weights[j] * np.log(determinant)
+        else:
+            half = (a - c) / 2
+            worst = weights[j] * ((a + c) / 2 + np.sqrt(half * half + b * b)) / determinant
+            total = max(total, worst)
+    return total
+
+
+class SearchState:
+    """Where a depth-first search over sets of ``size`` of some robots stands; it can be resumed.
+
+    ``position`` : (size + 1,) next robot to try at each depth; the chosen ones are ``position[:depth] - 1``
+    """
+
+    __slots__ = ("counters", "linear", "position", "sums")
+
+    def __init__(self, start: Any, size: int) -> None:
+        self.position = np.zeros(size + 1, dtype=np.int64)
+        self.sums = np.zeros((size + 1, *start.shape))
+        self.sums[0] = start
+        self.linear = np.zeros(size + 1)
+        self.counters = np.zeros(2, dtype=np.int64)  # depth, nodes
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+def search(
+    kind: int,
+    weights: Any,
+    baseline: float,
+    information: Any,
+    scores: Any,
+    smallest: Any,
+    threshold: float,
+    limit: int,
+    position: Any,
+    sums: Any,
+    linear: Any,
+    counters: Any,
+) -> int:
+    """Continue to the next set of ``size`` robots whose value is below ``threshold``.
+
+    Robots are tried in the order given. A partial choice is left when its own value (values do not
+    decrease) or the affine minorant ``linear + scores`` of every completion reaches the threshold.
+
+    Parameters
+    ----------
+    information : (F, M, 3) of the robots to choose from
+    scores : (F,) affine minorant: value of a set >= linear[0] + sum of its scores
+    smallest : (F + 1, size + 1) sum of the q smallest scores among robots p.. at [p, q]
+    limit : nodes (partial choices looked at) before pausing, counted in ``counters[1]``
+    """
+    n_robots, n_targets = information.shape[0], information.shape[1]
+    size = position.shape[0] - 1
+    depth = counters[0]
+    while depth >= 0:
+        p = position[depth]
+        left = size - depth
+        if p > n_robots - left or linear[depth] + smallest[p, left] >= threshold:
+            depth -= 1
+            continue
+        if counters[1] >= limit:
+            counters[0] = depth
+            return 1
+        counters[1] += 1
+        position[depth] = p + 1
+        bound = linear[depth] + scores[p]
+        if bound + smallest[p + 1, left - 1] >= threshold:
+            continue
+        for j in range(n_targets):
+            for t in range(3):
+                sums[depth + 1, j, t] = sums[depth, j, t] + information[p, j, t]
+        if baseline - criterion(kind, weights, sums[depth + 1]) >= threshold:
+            continue
+        if left == 1:
+            counters[0] = depth
+            return 2
+        linear[depth + 1] = bound
+        position[depth + 1] = p + 1
+        depth += 1
+    counters[0] = depth
+    return 0
+
+
+@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+def cut_polytopes(normals: Any, offsets: Any, capacity: int) -> Any:
+    """Vertices of many polytopes in three dimensions.
+
+    Polytope ``k`` is ``{y : normals[k] y >= offsets[k]}``; its first six rows are the axes and their
+    negatives (a box). Each further row cuts the vertices found so far: a new vertex lies on every
+    segment between a kept and a lost vertex that share two facets. Segments that are not edges only
+    add points of the polytope, which does no harm to an outer approximation.
+
+    Parameters
+    ----------
+    normals : (K, D, 3), D <= 64
+    offsets : (K, D)
+
+    Returns
+    -------
+    (K, capacity, 3) vertices and (K,) their numbers, -1 where the capacity did not suffice
+    """
+    count, n_rows = normals.shape[0], normals.shape[1]
+    vertices = np.zeros((count, capacity, 3))
+    numbers = np.zeros(count, dtype=np.int64)
+    old, new = np.zeros((capacity, 3)), np.zeros((capacity, 3))
+    old_facets, new_facets = np.zeros(capacity, dtype=np.uint64), np.zeros(capacity, dtype=np.uint64)
+    slack = np.zeros(capacity)
+    one = np.uint64(1)
+    for k in range(count):
+        for i in range(8):
+            old_facets[i] = 0
+            for t in range(3):
+                high = (i >> t) & 1
+                old[i, t] = -offsets[k, 3 + t] if high else offsets[k, t]
+                old_facets[i] |= one << np.uint64(t + 3 * high)
+        n = 8
+        for row in range(6, n_rows):
+            lost = 0
+            for i in range(n):
+                slack[i] = -offsets[k, row]
+                for t in range(3):
+                    slack[i] += normals[k, row, t] * old[i, t]
+                if slack[i] < 0:
+                    lost += 1
+            if lost == 0:
+                continue
+            m = 0
+            for i in range(n):
+                if slack[i] >= 0:
+                    new[m] = old[i]
+                    new_facets[m] = old_facets[i]
+                    m += 1
+            for i in range(n):
+                if slack[i] >= 0 or m < 0:
+                    continue
+                for q in range(n):
+                    shared = old_facets[i] & old_facets[q]
+                    if slack[q] < 0 or shared & (shared - one) == 0:
+                        continue
+                    if m >= capacity:
+                        m = -1
+                        break
+                    ratio = slack[q] / (slack[q] - slack[i])
+                    for t in range(3):
+                        new[m, t] = old[q, t] + ratio * (old[i, t] - old[q, t])
+                    new_facets[m] = shared | (one << np.uint64(row))
+                    m += 1
+            n = m
+            if n <= 0:
+                break
+            for i in range(n):
+                old[i] = new[i]
+                old_facets[i] = new_facets[i]
+        numbers[k] = n if n > 0 else -1
+        for i in range(max(n, 0)):
+            vertices[k, i] = old[i]
+    return vertices, numbers

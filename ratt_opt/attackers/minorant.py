@@ -1,0 +1,232 @@
+"""An affine minorant of the value of sets of robots of one size, from a linear program.
+
+Target ``j``'s criterion is concave in its information matrix. For sets ``R`` of ``r`` of the free robots,
+``Lambda_j(R)`` lies in every half-space ``<g, Lambda> >= (sum of the r smallest <g, I_e>)``, so in the polytope
+``Q_j`` of some of them. Hence an affine function of ``Lambda`` that is below the value ``phi_j`` at the vertices of
+``Q_j`` is below it for every ``R``. Directions ``g = v v'`` keep ``Q_j`` among the positive definite matrices.
+The concavity of ``phi_j`` comes mostly from the few robots next to the target: these "heavy" ones are
+enumerated, with a polytope of the light ones for each pattern, and get scores of their own.
+
+The best minorants at the weakest fractional set come from one linear program: its multipliers are the
+minorant's slopes. Its constant is recomputed here from the vertices, so nothing depends on the solver.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.compact import LOG_DET, TRACE
+from ratt_opt.attackers.compiled import cut_polytopes
+from ratt_opt.attackers.linear_program import solve_equality_form
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+
+__all__ = ["Minorant", "SetFamily", "affine_minorant"]
+
+SPHERE_DIRECTIONS = 10
+RANK_ONE_DIRECTIONS = 12
+CAPACITY = 128
+"""Vertices kept per polytope: 28 half-spaces have at most 52, the rest is for repeated points."""
+
+SAFETY = 1e-9
+"""Relative amount by which every half-space is widened against rounding; distinct per row, so no two meet."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetFamily:
+    """All ``R`` of ``size`` of F free robots, beside those already chosen.
+
+    ``kind`` : TRACE or LOG_DET; ``weights`` : (M,); ``prior`` : (M, 3) criterion's zero; ``start`` : (M, 3)
+    prior plus the chosen robots' information; ``information`` : (F, M, 3)
+    """
+
+    kind: int
+    weights: FloatArray
+    prior: FloatArray
+    start: FloatArray
+    information: FloatArray
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class Minorant:
+    """``value(R) >= constant + sum of scores over R`` for every set of the family.
+
+    ``scores`` : (F,); ``fraction`` : (F,) where the linear program puts the weakest set; ``tension`` : (F,) each
+    robot's share of what concavity hides there (branching guide, not a claim).
+    """
+
+    constant: float
+    scores: FloatArray
+    fraction: FloatArray
+    tension: FloatArray
+
+
+def affine_minorant(family: SetFamily, n_heavy: int) -> Minorant:
+    """Best found affine minorant; valid whatever the solver answers."""
+    gains = _values(family, family.start[None] + family.information)
+    n_heavy = min(n_heavy, family.size, len(gains) - family.size)
+    heavy = np.argsort(-gains, axis=0, kind="stable")[:n_heavy].T
+    light = np.ones(gains.shape, dtype=np.bool_)
+    np.put_along_axis(light, heavy.T, False, axis=0)
+    patterns = np.arange(2**n_heavy)[:, None] >> np.arange(n_heavy) & 1
+    points = _outer_points(family, heavy, light, patterns)
+    return _solve(family, heavy, patterns, points)
+
+
+def _values(family: SetFamily, matrices: FloatArray) -> FloatArray:
+    """Value of each target's information (..., M, 3) -> (..., M); minus infinity where it is not positive definite."""
+    a, b, c = matrices[..., 0], matrices[..., 1], matrices[..., 2]
+    determinant = a * c - b * b
+    safe = (determinant > 1e-12 * (a + c) ** 2) & (a + c > 0)
+    determinant = np.where(safe, determinant, 1.0)
+    prior = family.prior
+    zero = prior[:, 0] * prior[:, 2] - prior[:, 1] ** 2
+    if family.kind == TRACE:
+        value = (prior[:, 0] + prior[:, 2]) / zero - (a + c) / determinant
+    else:
+        assert family.kind == LOG_DET
+        value = np.log(determinant / zero)
+    return np.where(safe, family.weights * value, -np.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class _Points:
+    """Vertices of all outer polytopes; ``sound[j]`` says that target ``j``'s are all positive definite.
+
+    ``target``, ``pattern`` : (V,); ``sums`` : (V, 3) information of the set; ``values`` : (V,)
+    """
+
+    target: IntArray
+    pattern: IntArray
+    sums: FloatArray
+    values: FloatArray
+    sound: BoolArray
+
+
+def _outer_points(family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray) -> _Points:
+    n_free, n_targets, _ = family.information.shape
+    factor = _whitening(family, light)
+    white = np.linalg.solve(factor, family.information.transpose(1, 2, 0))  # (M, 3, F)
+    normals = _directions(factor)
+    heights = np.where(light.T[:, None, :], normals @ white, np.inf)
+    heights.sort(axis=-1)
+    sums = np.concatenate([np.zeros((*heights.shape[:2], 1)), np.cumsum(heights, axis=-1)], axis=-1)
+    counts = family.size - patterns.sum(axis=1)
+    feasible = (counts >= 0) & (counts <= n_free - heavy.shape[1])
+    patterns, counts = patterns[feasible], counts[feasible]
+    picked = np.take_along_axis(white, heavy[:, None, :], axis=2)  # (M, 3, h)
+    base = picked @ patterns.T  # (M, 3, P)
+    support = sums[:, :, counts] + normals @ base  # (M, D, P)
+    widen = SAFETY * (1 + np.arange(normals.shape[1]) / normals.shape[1])
+    support -= widen[None, :, None] * (1 + np.abs(support))
+    n_patterns = len(patterns)
+    vertices, numbers = cut_polytopes(
+        np.repeat(normals, n_patterns, axis=0),
+        np.ascontiguousarray(support.transpose(0, 2, 1)).reshape(n_targets * n_patterns, -1),
+        CAPACITY,
+    )
+    owner, slot = np.nonzero(np.arange(CAPACITY) < numbers[:, None])
+    target = owner // n_patterns
+    points = np.einsum("vst,vt->vs", factor[target], vertices[owner, slot])
+    values = _point_values(family, target, points)
+    sound = (numbers.reshape(n_targets, n_patterns) > 0).all(axis=1)
+    sound[target[np.isneginf(values)]] = False
+    keep = sound[target]
+    which = np.flatnonzero(feasible)[owner % n_patterns]
+    return _Points(target[keep], which[keep], points[keep], values[keep], sound)
+
+
+def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
+    """(M, 3, 3) lower-triangular factors of the spread of the light robots' information about each target."""
+    share = light / light.sum(axis=0)
+    centred = family.information - np.einsum("fm,fmt->mt", share, family.information)
+    spread = np.einsum("fm,fms,fmt->mst", share, centred, centred)
+    size = np.trace(spread, axis1=1, axis2=2) + 1e-12 * (family.start**2).sum(axis=1)
+    return np.asarray(np.linalg.cholesky(spread + 1e-8 * size[:, None, None] * np.eye(3)))
+
+
+def _directions(factor: FloatArray) -> FloatArray:
+    """(M, D, 3) half-space normals in whitened coordinates: a box, a sphere's points, rank-one directions."""
+    index = np.arange(SPHERE_DIRECTIONS) + 0.5
+    height, turn = 1 - 2 * index / SPHERE_DIRECTIONS, np.pi * (1 + 5**0.5) * index
+    flat = np.sqrt(1 - height**2)
+    sphere = np.stack([np.cos(turn) * flat, np.sin(turn) * flat, height], axis=-1)
+    angle = (np.arange(RANK_ONE_DIRECTIONS) + 0.5) * np.pi / RANK_ONE_DIRECTIONS
+    rank_one = np.stack([np.cos(angle) ** 2, np.sin(2 * angle), np.sin(angle) ** 2], axis=-1) @ factor
+    rank_one /= np.linalg.norm(rank_one, axis=-1, keepdims=True)
+    fixed = np.concatenate([np.eye(3), -np.eye(3), sphere])
+    return np.concatenate([np.broadcast_to(fixed, (len(factor), *fixed.shape)), rank_one], axis=1)
+
+
+def _point_values(family: SetFamily, target: IntArray, points: FloatArray) -> FloatArray:
+    one = SetFamily(
+        family.kind, family.weights[target], family.prior[target], family.start[target], family.information, family.size
+    )
+    return _values(one, one.start + points)
+
+
+def _solve(family: SetFamily, heavy: IntArray, patterns: IntArray, points: _Points) -> Minorant:
+    """Set up and solve the linear program, then recompute the minorant from its multipliers.
+
+    minimise sum of values * share  over shares of the vertices and fractions x of the robots, where each
+    target's shares sum to 1, reproduce ``sum_e x_e I_ej`` and, for heavy robots, their ``x_e``.
+    """
+    n_free, n_targets, _ = family.information.shape
+    n_heavy = heavy.shape[1]
+    rows_each = 4 + n_heavy
+    scale = np.maximum(np.abs(family.information).max(axis=(0, 2)), 1e-300)
+    block = np.zeros((n_targets, rows_each, n_free))
+    block[:, :3] = -(family.information / scale[:, None]).transpose(1, 2, 0)
+    j, q = np.indices(heavy.shape)
+    block[j, 4 + q, heavy] = -1.0
+    block[~points.sound] = 0.0
+    robots = np.vstack([block.reshape(-1, n_free), np.ones((1, n_free))])
+    shares = np.concatenate(
+        [points.sums / scale[points.target, None], np.ones((len(points.target), 1)), patterns[points.pattern]], axis=1
+    )
+    right = np.zeros(n_targets * rows_each + 1)
+    right[3:-1:rows_each] = points.sound
+    right[-1] = family.size
+    first_row = points.target * rows_each
+    fraction, duals = solve_equality_form(robots, shares, first_row, points.values, right)
+    slopes = duals[:-1].reshape(n_targets, rows_each) * points.sound[:, None]
+    return _recompute(family, heavy, patterns, points, slopes, scale, fraction)
+
+
+def _recompute(
+    family: SetFamily,
+    heavy: IntArray,
+    patterns: IntArray,
+    points: _Points,
+    slopes: FloatArray,
+    scale: FloatArray,
+    fraction: FloatArray,
+) -> Minorant:
+    matrix_slopes = slopes[:, :3] / scale[:, None]
+    own = slopes[:, 4:]
+    scores = np.einsum("fmt,mt->f", family.information, matrix_slopes)
+    np.add.at(scores, heavy.ravel(), own.ravel())
+    rest = points.values - (points.sums * matrix_slopes[points.target]).sum(axis=1)
+    rest -= (patterns[points.pattern] * own[points.target]).sum(axis=1)
+    constants = _values(family, family.start)  # a target without sound polytope is worth what is chosen already
+    for_sound = np.full(len(constants), np.inf)
+    np.minimum.at(for_sound, points.target, rest)
+    constants = np.where(points.sound, for_sound, constants)
+    mean = family.start + np.einsum("f,fmt->mt", fraction, family.information)
+    envelope = constants + np.einsum("f,fmt,mt->m", fraction, family.information, matrix_slopes)
+    envelope += (own * fraction[heavy]).sum(axis=1)
+    hidden = np.maximum(_values(family, mean) - envelope, 0.0)
+    tension = _tension(family, mean, hidden)
+    return Minorant(float(constants.sum()), scores, fraction, tension)
+
+
+def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:
+    """(F,) sum over targets of the hidden value times the robot's share of the target's information."""
+    trace = family.information[..., 0] + family.information[..., 2]
+    share = trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300)
+    return np.asarray(np.minimum(share, 1.0) @ np.where(np.isfinite(hidden), hidden, 0.0))

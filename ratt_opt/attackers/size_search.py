@@ -1,0 +1,160 @@
+"""Branch and bound over the largest group of an outcome on a complete graph.
+
+Every attack leaves a group with at least ``k`` seeing robots (``forced_group_size``), so the smallest
+value of any ``k`` robots is a lower bound. Nodes fix robots inside or outside that group; an affine
+minorant (``minorant.py``) bounds them, fixes more robots by reduced cost, and guides a compiled
+depth-first enumeration that finishes small nodes. Whenever a set below the incumbent is found, the
+other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.compact import MAX_EIGENVALUE
+from ratt_opt.attackers.low_sets import LowSets
+from ratt_opt.attackers.minorant import Minorant, SetFamily, affine_minorant
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attackers.bracket import Budget
+    from ratt_opt.attackers.compact import CompactTeam
+
+__all__ = ["SizeNode", "SizeSearch"]
+
+FIRST_ENUMERATION = 2_000_000
+ENUMERATION = 300_000
+"""Compiled nodes spent on one branch-and-bound node before it is split; the root gets more."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class SizeNode:
+    """Sets of robots that contain ``inside`` and avoid ``outside``; none is worth less than ``bound``."""
+
+    bound: float
+    serial: int
+    inside: frozenset[int] = field(compare=False)
+    outside: frozenset[int] = field(compare=False)
+
+
+class SizeSearch:
+    """Searches the sets of ``size`` robots for one that ``offer`` turns into a better attack.
+
+    Parameters
+    ----------
+    offer : is given each set below the threshold and returns the new threshold
+    """
+
+    def __init__(self, team: CompactTeam, size: int, offer: Callable[[frozenset[int]], float], floor: float) -> None:
+        self.team, self.size, self.offer = team, size, offer
+        self.n_heavy = 2
+        self._serial = 0
+        self.open = [SizeNode(floor, 0, frozenset(), frozenset())]
+
+    @property
+    def lower(self) -> float:
+        """No set still undecided is worth less; infinite once all are decided."""
+        return self.open[0].bound if self.open else np.inf
+
+    def run(self, threshold: float, budget: Budget, progress: Callable[[], None]) -> float:
+        """Decide every set against the falling threshold; returns the last threshold.
+
+        The open nodes stay valid when the budget runs out or the user interrupts.
+        """
+        while self.open and self.open[0].bound < threshold:
+            node = self.open[0]
+            children, threshold = self._expand(node, threshold, budget)
+            heapq.heappop(self.open)
+            for child in children:
+                heapq.heappush(self.open, child)
+            progress()
+        self.open.clear()
+        return threshold
+
+    def _expand(self, node: SizeNode, threshold: float, budget: Budget) -> tuple[list[SizeNode], float]:
+        budget.spend()
+        inside, robots = set(node.inside), self._free(node)
+        size = self.size - len(inside)
+        if size < 0 or size > len(robots):
+            return [], threshold
+        minorant, bound = None, node.bound
+        if 0 < size < len(robots) and self.team.kind != MAX_EIGENVALUE:
+            minorant = affine_minorant(self._family(node.inside, robots, size), self.n_heavy)
+            bound = max(bound, minorant.constant + float(np.partition(minorant.scores, size - 1)[:size].sum()))
+            threshold = self._round(node.inside, robots, size, minorant, threshold)
+        if bound >= threshold:
+            return [], threshold
+        finished, threshold = self._enumerate(node, robots, size, minorant, threshold, budget)
+        if finished:
+            return [], threshold
+        return self._split(node, bound, robots, size, minorant), threshold
+
+    def _free(self, node: SizeNode) -> IntArray:
+        """Undecided robots, strongest first."""
+        order = np.argsort(-self.team.single, kind="stable")
+        return np.array([i for i in order.tolist() if i not in node.inside and i not in node.outside], dtype=np.int64)
+
+    def _family(self, inside: frozenset[int], robots: IntArray, size: int) -> SetFamily:
+        team = self.team
+        return SetFamily(team.kind, team.weights, team.prior, team.sums(inside), team.information[robots], size)
+
+    def _round(
+        self, inside: frozenset[int], robots: IntArray, size: int, minorant: Minorant, threshold: float
+    ) -> float:
+        """Offer the set that the linear program's fractions suggest."""
+        order = np.lexsort((minorant.scores, -minorant.fraction))
+        candidate = inside | frozenset(robots[order[:size]].tolist())
+        if self.team.value(candidate) < threshold:
+            return self.offer(candidate)
+        return threshold
+
+    def _enumerate(
+        self,
+        node: SizeNode,
+        robots: IntArray,
+        size: int,
+        minorant: Minorant | None,
+        threshold: float,
+        budget: Budget,
+    ) -> tuple[bool, float]:
+        """Enumerate the node's sets below the threshold up to a limit; returns whether all were decided."""
+        if minorant is None:
+            low = LowSets(self.team, robots, node.inside, size)
+        else:
+            middle = np.partition(minorant.scores, size - 1)[size - 1]
+            order = np.argsort(-np.abs(minorant.scores - middle), kind="stable")
+            low = LowSets(
+                self.team, robots[order], node.inside, size, minorant.constant, minorant.scores[order]
+            )
+        limit = FIRST_ENUMERATION if not node.inside and not node.outside else ENUMERATION
+        while not low.finished:
+            before = low.nodes
+            allowed = budget.nodes_left(limit - before) if limit > before else 0
+            if not allowed:
+                return False, threshold
+            found = low.next_below(threshold, before + allowed)
+            budget.nodes += low.nodes - before
+            if found is not None:
+                threshold = self.offer(found)
+        return True, threshold
+
+    def _split(
+        self, node: SizeNode, bound: float, robots: IntArray, size: int, minorant: Minorant | None
+    ) -> list[SizeNode]:
+        """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant)."""
+        pick = 0
+        if minorant is not None:
+            x = minorant.fraction
+            pick = int(np.argmax(minorant.tension * (0.05 + x * (1 - x))))
+        robot = int(robots[pick])
+        self._serial += 2
+        return [
+            SizeNode(bound, self._serial - 1, node.inside | {robot}, node.outside),
+            SizeNode(bound, self._serial, node.inside, node.outside | {robot}),
+        ]
