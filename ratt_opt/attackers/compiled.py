@@ -17,7 +17,7 @@ FINISHED, PAUSED, FOUND = 0, 1, 2
 """Why :func:`search` returned: all sets decided, node limit, or a set below the threshold."""
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
 def criterion(kind: int, weights: Any, matrices: Any) -> float:
     """Weighted criterion over all targets, lower is better: (M,), (M, 3) -> scalar."""
     total = 0.0
@@ -51,8 +51,8 @@ class SearchState:
         self.counters = np.zeros(2, dtype=np.int64)  # depth, nodes
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
-def search(
+@numba.njit(cache=True)
+def search(  # noqa: PLR0917  (compiled code takes arrays, not records)
     kind: int,
     weights: Any,
     baseline: float,
@@ -110,7 +110,38 @@ def search(
     return 0
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True)
+def _cut(normal: Any, offset: float, row: Any, points: Any, facets: Any, n: int) -> int:  # noqa: PLR0917
+    """Replace ``points[0, :n]`` by the vertices on or above the plane and those on it; returns their number."""
+    capacity = points.shape[1]
+    slack = points[0, :n] @ normal - offset
+    if slack.min() >= 0:
+        return n
+    m = 0
+    for i in range(n):
+        if slack[i] >= 0:
+            points[1, m] = points[0, i]
+            facets[1, m] = facets[0, i]
+            m += 1
+    for i in range(n):
+        if slack[i] >= 0:
+            continue
+        for q in range(n):
+            shared = facets[0, i] & facets[0, q]
+            if slack[q] < 0 or shared & (shared - np.uint64(1)) == 0:
+                continue
+            if m >= capacity:
+                return -1
+            ratio = slack[q] / (slack[q] - slack[i])
+            points[1, m] = points[0, q] + ratio * (points[0, i] - points[0, q])
+            facets[1, m] = shared | (np.uint64(1) << row)
+            m += 1
+    points[0, :m] = points[1, :m]
+    facets[0, :m] = facets[1, :m]
+    return m
+
+
+@numba.njit(cache=True)
 def cut_polytopes(normals: Any, offsets: Any, capacity: int) -> Any:
     """Vertices of many polytopes in three dimensions.
 
@@ -131,56 +162,21 @@ def cut_polytopes(normals: Any, offsets: Any, capacity: int) -> Any:
     count, n_rows = normals.shape[0], normals.shape[1]
     vertices = np.zeros((count, capacity, 3))
     numbers = np.zeros(count, dtype=np.int64)
-    old, new = np.zeros((capacity, 3)), np.zeros((capacity, 3))
-    old_facets, new_facets = np.zeros(capacity, dtype=np.uint64), np.zeros(capacity, dtype=np.uint64)
-    slack = np.zeros(capacity)
-    one = np.uint64(1)
+    points = np.zeros((2, capacity, 3))
+    facets = np.zeros((2, capacity), dtype=np.uint64)
     for k in range(count):
         for i in range(8):
-            old_facets[i] = 0
+            facets[0, i] = 0
             for t in range(3):
                 high = (i >> t) & 1
-                old[i, t] = -offsets[k, 3 + t] if high else offsets[k, t]
-                old_facets[i] |= one << np.uint64(t + 3 * high)
+                points[0, i, t] = -offsets[k, 3 + t] if high else offsets[k, t]
+                facets[0, i] |= np.uint64(1) << np.uint64(t + 3 * high)
         n = 8
         for row in range(6, n_rows):
-            lost = 0
-            for i in range(n):
-                slack[i] = -offsets[k, row]
-                for t in range(3):
-                    slack[i] += normals[k, row, t] * old[i, t]
-                if slack[i] < 0:
-                    lost += 1
-            if lost == 0:
-                continue
-            m = 0
-            for i in range(n):
-                if slack[i] >= 0:
-                    new[m] = old[i]
-                    new_facets[m] = old_facets[i]
-                    m += 1
-            for i in range(n):
-                if slack[i] >= 0 or m < 0:
-                    continue
-                for q in range(n):
-                    shared = old_facets[i] & old_facets[q]
-                    if slack[q] < 0 or shared & (shared - one) == 0:
-                        continue
-                    if m >= capacity:
-                        m = -1
-                        break
-                    ratio = slack[q] / (slack[q] - slack[i])
-                    for t in range(3):
-                        new[m, t] = old[q, t] + ratio * (old[i, t] - old[q, t])
-                    new_facets[m] = shared | (one << np.uint64(row))
-                    m += 1
-            n = m
+            n = _cut(normals[k, row], offsets[k, row], np.uint64(row), points, facets, n)
             if n <= 0:
                 break
-            for i in range(n):
-                old[i] = new[i]
-                old_facets[i] = new_facets[i]
         numbers[k] = n if n > 0 else -1
         for i in range(max(n, 0)):
-            vertices[k, i] = old[i]
+            vertices[k, i] = points[0, i]
     return vertices, numbers

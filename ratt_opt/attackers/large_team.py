@@ -58,7 +58,7 @@ class LargeTeamSearch:
         floor = self.bracket.lower
         for size in sizes:
             search = SizeSearch(self.team, size, self._offer, floor)
-            search.run(self._threshold, self.budget, lambda s=search: self._raise_lower(s.lower))
+            search.run(self._threshold, self.budget, self._raise_lower)
             # Larger groups contain sets of this size, all decided: none is worth less than this.
             floor = min(self.weakest, self._threshold)
             if floor >= self._threshold:

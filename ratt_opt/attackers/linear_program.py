@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def solve_equality_form(
     model.a_matrix_.start_ = np.concatenate([[0], np.cumsum(lengths)])
     model.a_matrix_.index_ = np.concatenate([rows, wide[kept]])
     model.a_matrix_.value_ = np.concatenate([robots[rows, columns], shares[kept]])
-    solver = highspy.Highs()
+    solver: Any = highspy.Highs()  # type: ignore[no-untyped-call]
     solver.setOptionValue("output_flag", False)
     solver.setOptionValue("threads", 1)
     solver.passModel(model)

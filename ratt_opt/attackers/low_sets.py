@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,15 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.compact import CompactTeam
 
-__all__ = ["LowSets"]
+__all__ = ["AffineBound", "LowSets"]
+
+
+@dataclass(frozen=True, slots=True)
+class AffineBound:
+    """Value of a set >= ``constant`` + sum of its robots' ``scores`` (aligned with the robots searched)."""
+
+    constant: float
+    scores: FloatArray
 
 
 class LowSets:
@@ -21,7 +30,7 @@ class LowSets:
     Parameters
     ----------
     robots : (F,) robots to choose from, distinct and not chosen
-    constant, scores : affine minorant of the value, aligned with ``robots``; trivial by default
+    affine : minorant of the value; none by default
     """
 
     def __init__(
@@ -30,14 +39,14 @@ class LowSets:
         robots: IntArray,
         chosen: frozenset[int],
         size: int,
-        constant: float = -np.inf,
-        scores: FloatArray | None = None,
+        affine: AffineBound | None = None,
     ) -> None:
         self._team, self._robots, self._chosen, self._size = team, robots, chosen, size
-        self._scores = np.zeros(len(robots)) if scores is None else scores
+        affine = affine or AffineBound(-np.inf, np.zeros(len(robots)))
+        self._scores = affine.scores
         self._smallest = _smallest_sums(self._scores, size)
         self._state = SearchState(team.sums(chosen), size)
-        self._state.linear[0] = constant
+        self._state.linear[0] = affine.constant
         self._baseline = float(criterion(team.kind, team.weights, team.prior))
         self._information = np.ascontiguousarray(team.information[robots])
         self.finished = False

@@ -75,7 +75,7 @@ def affine_minorant(family: SetFamily, n_heavy: int) -> Minorant:
     np.put_along_axis(light, heavy.T, False, axis=0)
     patterns = np.arange(2**n_heavy)[:, None] >> np.arange(n_heavy) & 1
     points = _outer_points(family, heavy, light, patterns)
-    return _solve(family, heavy, patterns, points)
+    return _solve(family, points)
 
 
 def _values(family: SetFamily, matrices: FloatArray) -> FloatArray:
@@ -98,7 +98,8 @@ def _values(family: SetFamily, matrices: FloatArray) -> FloatArray:
 class _Points:
     """Vertices of all outer polytopes; ``sound[j]`` says that target ``j``'s are all positive definite.
 
-    ``target``, ``pattern`` : (V,); ``sums`` : (V, 3) information of the set; ``values`` : (V,)
+    ``target``, ``pattern`` : (V,); ``sums`` : (V, 3) information of the set; ``values`` : (V,);
+    ``heavy`` : (M, h) robots enumerated for each target; ``patterns`` : (P, h) which of them are in the set
     """
 
     target: IntArray
@@ -106,6 +107,8 @@ class _Points:
     sums: FloatArray
     values: FloatArray
     sound: BoolArray
+    heavy: IntArray
+    patterns: IntArray
 
 
 def _outer_points(family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray) -> _Points:
@@ -118,13 +121,13 @@ def _outer_points(family: SetFamily, heavy: IntArray, light: BoolArray, patterns
     sums = np.concatenate([np.zeros((*heights.shape[:2], 1)), np.cumsum(heights, axis=-1)], axis=-1)
     counts = family.size - patterns.sum(axis=1)
     feasible = (counts >= 0) & (counts <= n_free - heavy.shape[1])
-    patterns, counts = patterns[feasible], counts[feasible]
+    kept, counts = patterns[feasible], counts[feasible]
     picked = np.take_along_axis(white, heavy[:, None, :], axis=2)  # (M, 3, h)
-    base = picked @ patterns.T  # (M, 3, P)
+    base = picked @ kept.T  # (M, 3, P)
     support = sums[:, :, counts] + normals @ base  # (M, D, P)
     widen = SAFETY * (1 + np.arange(normals.shape[1]) / normals.shape[1])
     support -= widen[None, :, None] * (1 + np.abs(support))
-    n_patterns = len(patterns)
+    n_patterns = len(kept)
     vertices, numbers = cut_polytopes(
         np.repeat(normals, n_patterns, axis=0),
         np.ascontiguousarray(support.transpose(0, 2, 1)).reshape(n_targets * n_patterns, -1),
@@ -136,9 +139,9 @@ def _outer_points(family: SetFamily, heavy: IntArray, light: BoolArray, patterns
     values = _point_values(family, target, points)
     sound = (numbers.reshape(n_targets, n_patterns) > 0).all(axis=1)
     sound[target[np.isneginf(values)]] = False
-    keep = sound[target]
+    used = sound[target]
     which = np.flatnonzero(feasible)[owner % n_patterns]
-    return _Points(target[keep], which[keep], points[keep], values[keep], sound)
+    return _Points(target[used], which[used], points[used], values[used], sound, heavy, patterns)
 
 
 def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
@@ -170,24 +173,24 @@ def _point_values(family: SetFamily, target: IntArray, points: FloatArray) -> Fl
     return _values(one, one.start + points)
 
 
-def _solve(family: SetFamily, heavy: IntArray, patterns: IntArray, points: _Points) -> Minorant:
+def _solve(family: SetFamily, points: _Points) -> Minorant:
     """Set up and solve the linear program, then recompute the minorant from its multipliers.
 
     minimise sum of values * share  over shares of the vertices and fractions x of the robots, where each
     target's shares sum to 1, reproduce ``sum_e x_e I_ej`` and, for heavy robots, their ``x_e``.
     """
     n_free, n_targets, _ = family.information.shape
-    n_heavy = heavy.shape[1]
-    rows_each = 4 + n_heavy
+    rows_each = 4 + points.heavy.shape[1]
     scale = np.maximum(np.abs(family.information).max(axis=(0, 2)), 1e-300)
     block = np.zeros((n_targets, rows_each, n_free))
     block[:, :3] = -(family.information / scale[:, None]).transpose(1, 2, 0)
-    j, q = np.indices(heavy.shape)
-    block[j, 4 + q, heavy] = -1.0
+    j, q = np.indices(points.heavy.shape)
+    block[j, 4 + q, points.heavy] = -1.0
     block[~points.sound] = 0.0
     robots = np.vstack([block.reshape(-1, n_free), np.ones((1, n_free))])
     shares = np.concatenate(
-        [points.sums / scale[points.target, None], np.ones((len(points.target), 1)), patterns[points.pattern]], axis=1
+        [points.sums / scale[points.target, None], np.ones((len(points.target), 1)), points.patterns[points.pattern]],
+        axis=1,
     )
     right = np.zeros(n_targets * rows_each + 1)
     right[3:-1:rows_each] = points.sound
@@ -195,31 +198,24 @@ def _solve(family: SetFamily, heavy: IntArray, patterns: IntArray, points: _Poin
     first_row = points.target * rows_each
     fraction, duals = solve_equality_form(robots, shares, first_row, points.values, right)
     slopes = duals[:-1].reshape(n_targets, rows_each) * points.sound[:, None]
-    return _recompute(family, heavy, patterns, points, slopes, scale, fraction)
+    return _recompute(family, points, slopes[:, :3] / scale[:, None], slopes[:, 3 + 1 :], fraction)
 
 
 def _recompute(
-    family: SetFamily,
-    heavy: IntArray,
-    patterns: IntArray,
-    points: _Points,
-    slopes: FloatArray,
-    scale: FloatArray,
-    fraction: FloatArray,
+    family: SetFamily, points: _Points, matrix_slopes: FloatArray, own: FloatArray, fraction: FloatArray
 ) -> Minorant:
-    matrix_slopes = slopes[:, :3] / scale[:, None]
-    own = slopes[:, 4:]
+    """The minorant with these slopes (M, 3) and heavy robots' own scores (M, h): its constant from the vertices."""
     scores = np.einsum("fmt,mt->f", family.information, matrix_slopes)
-    np.add.at(scores, heavy.ravel(), own.ravel())
+    np.add.at(scores, points.heavy.ravel(), own.ravel())
     rest = points.values - (points.sums * matrix_slopes[points.target]).sum(axis=1)
-    rest -= (patterns[points.pattern] * own[points.target]).sum(axis=1)
+    rest -= (points.patterns[points.pattern] * own[points.target]).sum(axis=1)
     constants = _values(family, family.start)  # a target without sound polytope is worth what is chosen already
     for_sound = np.full(len(constants), np.inf)
     np.minimum.at(for_sound, points.target, rest)
     constants = np.where(points.sound, for_sound, constants)
     mean = family.start + np.einsum("f,fmt->mt", fraction, family.information)
     envelope = constants + np.einsum("f,fmt,mt->m", fraction, family.information, matrix_slopes)
-    envelope += (own * fraction[heavy]).sum(axis=1)
+    envelope += (own * fraction[points.heavy]).sum(axis=1)
     hidden = np.maximum(_values(family, mean) - envelope, 0.0)
     tension = _tension(family, mean, hidden)
     return Minorant(float(constants.sum()), scores, fraction, tension)

@@ -16,21 +16,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.compact import MAX_EIGENVALUE
-from ratt_opt.attackers.low_sets import LowSets
+from ratt_opt.attackers.low_sets import AffineBound, LowSets
 from ratt_opt.attackers.minorant import Minorant, SetFamily, affine_minorant
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import IntArray
     from ratt_opt.attackers.bracket import Budget
     from ratt_opt.attackers.compact import CompactTeam
 
 __all__ = ["SizeNode", "SizeSearch"]
 
 FIRST_ENUMERATION = 2_000_000
-ENUMERATION = 300_000
-"""Compiled nodes spent on one branch-and-bound node before it is split; the root gets more."""
+SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 20_000, 1_000_000
+"""Compiled nodes spent on one branch-and-bound node before it is split: more after successes, fewer after failures."""
+
+UNINTERRUPTED = 2_000_000
+"""Compiled nodes between two looks at the clock and at interrupts (about half a second)."""
+
+HEAVY_ROBOTS = 2
+"""Robots per target whose patterns the minorant enumerates."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -53,8 +59,8 @@ class SizeSearch:
 
     def __init__(self, team: CompactTeam, size: int, offer: Callable[[frozenset[int]], float], floor: float) -> None:
         self.team, self.size, self.offer = team, size, offer
-        self.n_heavy = 2
         self._serial = 0
+        self._limit = FIRST_ENUMERATION
         self.open = [SizeNode(floor, 0, frozenset(), frozenset())]
 
     @property
@@ -62,9 +68,10 @@ class SizeSearch:
         """No set still undecided is worth less; infinite once all are decided."""
         return self.open[0].bound if self.open else np.inf
 
-    def run(self, threshold: float, budget: Budget, progress: Callable[[], None]) -> float:
+    def run(self, threshold: float, budget: Budget, progress: Callable[[float], None]) -> float:
         """Decide every set against the falling threshold; returns the last threshold.
 
+        ``progress`` is told what no undecided set falls below, after every node.
         The open nodes stay valid when the budget runs out or the user interrupts.
         """
         while self.open and self.open[0].bound < threshold:
@@ -73,27 +80,27 @@ class SizeSearch:
             heapq.heappop(self.open)
             for child in children:
                 heapq.heappush(self.open, child)
-            progress()
+            progress(self.lower)
         self.open.clear()
         return threshold
 
     def _expand(self, node: SizeNode, threshold: float, budget: Budget) -> tuple[list[SizeNode], float]:
         budget.spend()
-        inside, robots = set(node.inside), self._free(node)
-        size = self.size - len(inside)
+        robots = self._free(node)
+        size = self.size - len(node.inside)
         if size < 0 or size > len(robots):
             return [], threshold
         minorant, bound = None, node.bound
         if 0 < size < len(robots) and self.team.kind != MAX_EIGENVALUE:
-            minorant = affine_minorant(self._family(node.inside, robots, size), self.n_heavy)
+            minorant = affine_minorant(self._family(node.inside, robots, size), HEAVY_ROBOTS)
             bound = max(bound, minorant.constant + float(np.partition(minorant.scores, size - 1)[:size].sum()))
-            threshold = self._round(node.inside, robots, size, minorant, threshold)
+            threshold = self._round(node, robots, minorant, threshold)
         if bound >= threshold:
             return [], threshold
-        finished, threshold = self._enumerate(node, robots, size, minorant, threshold, budget)
-        if finished:
-            return [], threshold
-        return self._split(node, bound, robots, size, minorant), threshold
+        low = self._enumeration(node, robots, size, minorant)
+        threshold = self._enumerate(low, threshold, budget)
+        children = [] if low.finished else self._split(node, bound, robots, minorant)
+        return children, threshold
 
     def _free(self, node: SizeNode) -> IntArray:
         """Undecided robots, strongest first."""
@@ -104,49 +111,35 @@ class SizeSearch:
         team = self.team
         return SetFamily(team.kind, team.weights, team.prior, team.sums(inside), team.information[robots], size)
 
-    def _round(
-        self, inside: frozenset[int], robots: IntArray, size: int, minorant: Minorant, threshold: float
-    ) -> float:
+    def _round(self, node: SizeNode, robots: IntArray, minorant: Minorant, threshold: float) -> float:
         """Offer the set that the linear program's fractions suggest."""
         order = np.lexsort((minorant.scores, -minorant.fraction))
-        candidate = inside | frozenset(robots[order[:size]].tolist())
-        if self.team.value(candidate) < threshold:
-            return self.offer(candidate)
-        return threshold
+        candidate = node.inside | frozenset(robots[order[: self.size - len(node.inside)]].tolist())
+        return self.offer(candidate) if self.team.value(candidate) < threshold else threshold
 
-    def _enumerate(
-        self,
-        node: SizeNode,
-        robots: IntArray,
-        size: int,
-        minorant: Minorant | None,
-        threshold: float,
-        budget: Budget,
-    ) -> tuple[bool, float]:
-        """Enumerate the node's sets below the threshold up to a limit; returns whether all were decided."""
+    def _enumeration(self, node: SizeNode, robots: IntArray, size: int, minorant: Minorant | None) -> LowSets:
+        """The node's sets, those robots first whose side the minorant is surest of."""
         if minorant is None:
-            low = LowSets(self.team, robots, node.inside, size)
-        else:
-            middle = np.partition(minorant.scores, size - 1)[size - 1]
-            order = np.argsort(-np.abs(minorant.scores - middle), kind="stable")
-            low = LowSets(
-                self.team, robots[order], node.inside, size, minorant.constant, minorant.scores[order]
-            )
-        limit = FIRST_ENUMERATION if not node.inside and not node.outside else ENUMERATION
-        while not low.finished:
+            return LowSets(self.team, robots, node.inside, size)
+        middle = np.partition(minorant.scores, size - 1)[size - 1]
+        order = np.argsort(-np.abs(minorant.scores - middle), kind="stable")
+        affine = AffineBound(minorant.constant, minorant.scores[order])
+        return LowSets(self.team, robots[order], node.inside, size, affine)
+
+    def _enumerate(self, low: LowSets, threshold: float, budget: Budget) -> float:
+        """Offer the sets below the threshold, up to a node limit; returns the new threshold."""
+        while not low.finished and low.nodes < self._limit:
             before = low.nodes
-            allowed = budget.nodes_left(limit - before) if limit > before else 0
-            if not allowed:
-                return False, threshold
+            allowed = budget.nodes_left(min(self._limit - before, UNINTERRUPTED))
             found = low.next_below(threshold, before + allowed)
             budget.nodes += low.nodes - before
             if found is not None:
                 threshold = self.offer(found)
-        return True, threshold
+        limit = int(self._limit * (1.3 if low.finished else 0.8))
+        self._limit = min(max(limit, SHORTEST_ENUMERATION), LONGEST_ENUMERATION)
+        return threshold
 
-    def _split(
-        self, node: SizeNode, bound: float, robots: IntArray, size: int, minorant: Minorant | None
-    ) -> list[SizeNode]:
+    def _split(self, node: SizeNode, bound: float, robots: IntArray, minorant: Minorant | None) -> list[SizeNode]:
         """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant)."""
         pick = 0
         if minorant is not None:

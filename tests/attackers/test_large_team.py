@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers import size_search
+from ratt_opt.attackers.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
+from ratt_opt.attackers.compact import LOG_DET, TRACE, CompactTeam
+from ratt_opt.attackers.large_team import LargeTeamSearch
+from ratt_opt.attackers.low_sets import LowSets
+from ratt_opt.attackers.minorant import SetFamily, affine_minorant
+from ratt_opt.attackers.plan_values import PlanValues
+from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
+
+
+def team_problem(seed, n_robots, name, *, protect=False):
+    rng = np.random.default_rng(seed)
+    data = range_bearing(rng, n_robots, 4, 3) if seed % 2 else information_data(rng, 3 * n_robots, 3)
+    links = n_robots * (n_robots - 1) // 2
+    protected = frozenset(i for i in range(n_robots) if protect and rng.random() < 0.3)
+    owners = np.repeat(np.arange(n_robots), 3)
+    budgets = int(rng.integers(0, n_robots)), int(rng.integers(0, links + 1))
+    problem = ro.Problem(OBJECTIVES[name](*data), owners, None, *budgets, protected)
+    return problem, random_elements(rng, problem)
+
+
+def run_large(problem, elements, max_nodes=None):
+    """The large-team search, also where ``worst_case_attack`` would use the one for small teams."""
+    values = PlanValues(problem, elements)
+    start = bounded_rational_attack(problem, elements)
+    bracket, budget = Bracket(start.attack, start.upper, 0.0), Budget(max_nodes, None)
+    team = CompactTeam.of(problem.objective, values.plan)
+    try:
+        stop = LargeTeamSearch(problem, team, values, bracket, budget).run()
+    except OutOfBudget as out:
+        stop = out.stop
+    return bracket, budget.nodes, stop
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("limit", [2_000_000, 3])
+def test_agrees_with_the_threshold_search(name, seed, limit, monkeypatch):
+    """Once by plain enumeration at the root, once with so little of it that branching decides."""
+    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", limit)
+    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 3)
+    monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", limit)
+    problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
+    expected = ro.worst_case_attack(problem, elements).upper
+    bracket, _, stop = run_large(problem, elements)
+    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
+    assert bracket.lower <= expected + 1e-12
+    assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
+    assert stop is ro.Stop.CLOSED
+    assert problem.team_value(elements, bracket.attack) == bracket.upper
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_bracket_is_valid_at_every_node_count(name, seed, monkeypatch):
+    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 4)
+    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 4)
+    problem, elements = team_problem(seed, 8, name)
+    problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)
+    expected = ro.worst_case_attack(problem, elements).upper
+    _, nodes, _ = run_large(problem, elements)
+    previous = 0.0
+    for limit in [*range(min(nodes, 150)), nodes, nodes + 1]:
+        bracket, used, stop = run_large(problem, elements, limit)
+        assert used <= limit
+        assert bracket.lower <= expected * (1 + 1e-12) + 1e-12
+        assert bracket.upper >= expected * (1 - 2e-10)
+        assert bracket.lower >= previous
+        previous = bracket.lower
+        assert (stop is ro.Stop.NODES) == (limit < nodes)
+
+
+@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("seed", range(12))
+def test_minorants_lie_below_every_set(kind, seed):
+    """Also where robots repeat, see nothing, or see along one line only."""
+    rng = np.random.default_rng(seed)
+    n_robots, size = 9, int(rng.integers(1, 9))
+    name = "trace" if kind == TRACE else "logdet"
+    data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 4)
+    data[1][3] = data[1][2]
+    data[1][4] = 0.0
+    team = CompactTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    family = SetFamily(kind, team.weights, team.prior, team.prior, team.information, size)
+    minorant = affine_minorant(family, 2)
+    slack = [
+        team.value(chosen) - minorant.constant - minorant.scores[list(chosen)].sum()
+        for chosen in combinations(range(n_robots), size)
+    ]
+    assert min(slack) >= -1e-9
+    # Not vacuous on sensor data (rank-one information can defeat the outer polytopes; the bound is then weak).
+    best = min(team.value(chosen) for chosen in combinations(range(n_robots), size))
+    bound = minorant.constant + np.sort(minorant.scores)[:size].sum()
+    assert bound <= best + 1e-9
+    assert seed % 2 == 0 or bound >= 0.3 * best - 1e-9
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_low_sets_are_all_of_them(seed):
+    rng = np.random.default_rng(seed)
+    team = CompactTeam.of(OBJECTIVES["trace"](*information_data(rng, 8, 3)), np.arange(8))
+    values = {frozenset(s): team.value(s) for s in combinations(range(8), 4)}
+    threshold = float(np.median(list(values.values())))
+    low, found = LowSets(team, np.arange(8), frozenset(), 4), set()
+    while not low.finished:
+        one = low.next_below(threshold, low.nodes + 7)
+        if one is not None:
+            found.add(one)
+    assert found == {s for s, value in values.items() if value < threshold}
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_a_team_of_twenty_closes_and_is_beaten_by_no_local_search(name):
+    rng = np.random.default_rng(5)
+    problem = ro.Problem(OBJECTIVES[name](*range_bearing(rng, 20, 20)), np.repeat(np.arange(20), 12), None, 10, 63)
+    plan = ro.ratt(problem).elements
+    result = ro.worst_case_attack(problem, plan)
+    assert result.stop is ro.Stop.CLOSED
+    assert result.upper - result.lower <= 1e-9 * result.upper
+    assert result.upper <= ro.greedy_attack(problem, plan).upper
+    team = CompactTeam.of(problem.objective, plan)
+    weakest = min(team.value(rng.choice(20, 7, replace=False)) for _ in range(3000))
+    assert result.lower <= weakest
+    again = ro.worst_case_attack(problem, plan)
+    assert (again.attack, again.nodes) == (result.attack, result.nodes)
+
+
+def test_everyone_blinded():
+    rng = np.random.default_rng(0)
+    problem = ro.Problem(OBJECTIVES["trace"](*range_bearing(rng, 14, 2, 1)), np.arange(14), None, 14, 3)
+    result = ro.worst_case_attack(problem, np.arange(14))
+    assert (result.lower, result.upper, result.stop) == (0.0, 0.0, ro.Stop.CLOSED)
