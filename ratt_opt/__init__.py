@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.relaxation import RelaxationBound, relaxation_bound
     from ratt_opt.errors import FileFormatError, InputError, ProofError
     from ratt_opt.graph.caa import CaaResult, caa
+    from ratt_opt.graph.largest_group import LargestGroup, smallest_largest_group
     from ratt_opt.problem import Attack, Plan, Problem
     from ratt_opt.scenario.files import load_input, load_scenario, save_scenario, scenario_schema
     from ratt_opt.scenario.generator import random_scenario
@@ -42,6 +43,7 @@ _HOME = {
     "FileFormatError": "errors",
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
+    "LargestGroup": "graph.largest_group",
     "LogDetObjective": "setfunctions.information",
     "MaxEigenvalueObjective": "setfunctions.information",
     "MaxMinResult": "solvers.result",
@@ -74,6 +76,7 @@ _HOME = {
     "relaxation_bound": "bounds.relaxation",
     "save_scenario": "scenario.files",
     "scenario_schema": "scenario.files",
+    "smallest_largest_group": "graph.largest_group",
     "solve_maxmin": "solvers.maxmin",
     "worst_case_attack": "attackers.exact",
 }

@@ -27,7 +27,7 @@ def worst_case_attack(
     """Find the attack that hurts one plan most.
 
     Up to ``LARGEST_THRESHOLD_SEARCH`` robots, on any graph and for any objective, thresholds are
-    decided one after the other (``attackers/threshold.py``; a node is one threshold) and the result
+    decided one after the other (``graph/threshold.py``; a node is one threshold) and the result
     relies on nothing. A keyboard interrupt or a spent budget returns the bracket reached.
 
     Parameters

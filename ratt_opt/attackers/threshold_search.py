@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.threshold import GroupSplit, ThresholdTest
+from ratt_opt.graph.threshold import GroupSplit, ThresholdTest
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 

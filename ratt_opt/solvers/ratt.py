@@ -5,18 +5,29 @@ from __future__ import annotations
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.largest_group import smallest_largest_group
 from ratt_opt.problem import Plan, Problem
 
 __all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
 
 
-def equivalent_sensing_attacks(problem: Problem) -> int:
-    """Return ``alpha_cs``, the sensing attacks that the link attacks are worth (``N - n_max``).
+MILP_NODES = 1_000
+"""Nodes of the integer program for ``n_max`` on large graphs that are not complete; keeps RATT deterministic."""
 
-    Source: ratt.tex, Algorithm 2 (CAA).
+
+def equivalent_sensing_attacks(problem: Problem) -> int:
+    """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``.
+
+    Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots, the
+    integer program's up to 40, and a valid lower bound on it beyond that or where the program did not finish.
+
+    Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
-    return caa(problem.n_robots, problem.alpha_c).alpha_cs
+    found = smallest_largest_group(
+        problem.communication, problem.alpha_c, protected_links=problem.protected_links, max_nodes=MILP_NODES
+    )
+    solved = found.claimed_lower == found.upper
+    return problem.n_robots - (found.n_max if solved else found.lower)
 
 
 def ratt(problem: Problem) -> Plan:

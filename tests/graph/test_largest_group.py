@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+from itertools import combinations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.solvers.ratt import equivalent_sensing_attacks
+from tests.strategies import random_graph, random_problem
+
+
+def by_definition(graph, alpha_c, protected=()):
+    """Every set of at most alpha_c links."""
+    links = [e for e in graph.edges if tuple(sorted(e)) not in set(protected)]
+    best = graph.number_of_nodes()
+    for count in range(alpha_c + 1):
+        for cut in combinations(links, count):
+            rest = graph.copy()
+            rest.remove_edges_from(cut)
+            best = min(best, max(map(len, nx.connected_components(rest))))
+    return best
+
+
+def check(found, graph, alpha_c, protected=()):
+    assert len(found.cut) <= alpha_c
+    assert not found.cut & set(protected)
+    rest = graph.copy()
+    rest.remove_edges_from(found.cut)
+    assert rest.number_of_edges() == graph.number_of_edges() - len(found.cut)
+    assert max(map(len, nx.connected_components(rest))) == found.n_max == found.upper
+    assert found.lower <= found.claimed_lower <= found.upper
+    assert found.reason
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_any_graph_against_all_edge_subsets(seed):
+    rng = np.random.default_rng(seed)
+    graph = random_graph(rng, int(rng.integers(1, 7)))
+    if graph.number_of_edges() > 11:
+        graph.remove_edges_from(sorted(graph.edges)[11:])
+    links = [tuple(sorted(e)) for e in graph.edges]
+    protected = [link for link in links if rng.random() < 0.15]
+    alpha_c = int(rng.integers(0, len(links) + 1))
+    expected = by_definition(graph, alpha_c, protected)
+    for method in ("enumeration", "milp"):
+        found = smallest_largest_group(graph, alpha_c, method=method, protected_links=protected)
+        check(found, graph, alpha_c, protected)
+        assert found.n_max == expected
+        assert found.claimed_lower == expected
+    found = smallest_largest_group(graph, alpha_c, method="counting", protected_links=protected)
+    check(found, graph, alpha_c, protected)
+    assert found.lower <= expected <= found.upper
+
+
+@pytest.mark.parametrize("n_robots", range(1, 9))
+def test_all_ways_agree_on_complete_graphs(n_robots):
+    graph = nx.complete_graph(n_robots)
+    for alpha_c in range(0, graph.number_of_edges() + 1, 1 if n_robots < 7 else 4):
+        methods = ["caa", "partitions", "enumeration", "milp"] if n_robots < 7 else ["caa", "partitions", "enumeration"]
+        sizes = set()
+        for method in methods:
+            found = smallest_largest_group(graph, alpha_c, method=method)
+            check(found, graph, alpha_c)
+            sizes.add(found.n_max)
+            assert method == "milp" or found.is_exact
+        assert sizes == {ro.caa(n_robots, alpha_c).n_max}
+
+
+@pytest.mark.parametrize("n_robots", [13, 20, 30])
+def test_caa_agrees_with_integer_partitions(n_robots):
+    graph = nx.complete_graph(n_robots)
+    for alpha_c in range(0, graph.number_of_edges() + 1, 29):
+        found = smallest_largest_group(graph, alpha_c, method="partitions")
+        check(found, graph, alpha_c)
+        assert found.n_max == ro.caa(n_robots, alpha_c).n_max
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_enumeration_and_milp_agree_on_larger_graphs(seed):
+    rng = np.random.default_rng(seed)
+    graph = nx.gnp_random_graph(11, 0.35, seed=seed)
+    alpha_c = int(rng.integers(0, graph.number_of_edges() // 2 + 1))
+    exact = smallest_largest_group(graph, alpha_c, method="enumeration")
+    found = smallest_largest_group(graph, alpha_c, method="milp")
+    check(found, graph, alpha_c)
+    assert found.n_max == exact.n_max
+
+
+def test_known_graphs():
+    path = nx.path_graph(30)
+    assert smallest_largest_group(path, 2).n_max == 10
+    assert smallest_largest_group(path, 29).n_max == 1
+    assert smallest_largest_group(nx.star_graph(19), 5).n_max == 15
+    bridges = nx.barbell_graph(8, 0)
+    assert smallest_largest_group(bridges, 1).n_max == 8
+    assert smallest_largest_group(bridges, 1, protected_links=[(7, 8)]).n_max == 16
+    assert smallest_largest_group(nx.empty_graph(50), 0).n_max == 1
+
+
+def test_a_method_that_does_not_apply_names_one_that_would():
+    with pytest.raises(InputError, match="milp"):
+        smallest_largest_group(nx.path_graph(5), 1, method="caa")
+    with pytest.raises(InputError, match="milp"):
+        smallest_largest_group(nx.path_graph(5), 1, method="partitions")
+    with pytest.raises(InputError, match="milp"):
+        smallest_largest_group(nx.path_graph(20), 1, method="enumeration")
+    with pytest.raises(InputError, match="must be one of"):
+        smallest_largest_group(nx.path_graph(5), 1, method="magic")
+    with pytest.raises(InputError, match="alpha_c"):
+        smallest_largest_group(nx.path_graph(5), 5)
+    with pytest.raises(InputError, match="time_limit"):
+        smallest_largest_group(nx.path_graph(5), 1, method="milp", time_limit=-1)
+    loop = nx.path_graph(3)
+    loop.add_edge(1, 1)
+    for bad in (loop, nx.DiGraph([(0, 1)]), nx.MultiGraph([(0, 1)]), nx.Graph([(1, 2)]), "graph"):
+        with pytest.raises(InputError, match="graph"):
+            smallest_largest_group(bad, 0)
+
+
+def test_time_limit_zero_still_answers():
+    found = smallest_largest_group(nx.gnp_random_graph(25, 0.3, seed=1), 9, method="milp", time_limit=0)
+    assert found.lower <= found.upper
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_ratt_uses_the_exact_size_on_any_graph(seed):
+    problem = random_problem(np.random.default_rng(seed), 5, kind="trace", complete=False)
+    graph = nx.Graph(sorted(problem.communication.links))
+    graph.add_nodes_from(range(5))
+    expected = 5 - by_definition(graph, problem.alpha_c, problem.protected_links)
+    assert equivalent_sensing_attacks(problem) == expected
+    assert len(ro.ratt(problem).bait) == min(5, problem.alpha_s + expected)
