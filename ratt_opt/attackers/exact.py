@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
 from ratt_opt.attackers.compact import CompactTeam
+from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.threshold_search import LARGEST_THRESHOLD_SEARCH, threshold_search
+from ratt_opt.attackers.threshold_search import LARGEST_PLAIN, LARGEST_THRESHOLD_SEARCH, threshold_search
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -26,9 +27,16 @@ def worst_case_attack(
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
-    Up to ``LARGEST_THRESHOLD_SEARCH`` robots, on any graph and for any objective, thresholds are
-    decided one after the other (``graph/threshold.py``; a node is one threshold) and the result
-    relies on nothing. A keyboard interrupt or a spent budget returns the bracket reached.
+    - Up to 12 robots, and up to 20 where the next line does not apply, on any graph and for any
+      objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
+      threshold). The result relies on nothing.
+    - Larger teams with two-dimensional targets on a complete graph without protected links: branch
+      and bound (``large_team.py``; a node is a branch or a partial set). Relies on a non-decreasing
+      objective, which the three criteria are.
+    - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
+      ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
+
+    A keyboard interrupt or a spent budget returns the bracket reached.
 
     Parameters
     ----------
@@ -65,13 +73,15 @@ def worst_case_attack(
 
 
 def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:
-    if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
+    if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(problem, values, bracket, budget)
+    better = greedy_attack(problem, values.plan)
+    bracket.offer(better.attack, better.upper)
     team = CompactTeam.of(problem.objective, values.plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.large_team import LargeTeamSearch  # compiles
 
         return LargeTeamSearch(problem, team, values, bracket, budget).run()
-    better = greedy_attack(problem, values.plan)
-    bracket.offer(better.attack, better.upper)
-    return Stop.HEURISTIC
+    if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
+        return threshold_search(problem, values, bracket, budget)
+    return forced_group_bound(problem, values, team, bracket, budget)

@@ -11,14 +11,19 @@ from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
     from ratt_opt.attackers.bracket import Bracket, Budget
     from ratt_opt.attackers.plan_values import PlanValues
+    from ratt_opt.graph.compiled_threshold import CompiledThresholdTest
     from ratt_opt.problem import Problem
 
 __all__ = ["LARGEST_THRESHOLD_SEARCH", "threshold_search"]
 
-LARGEST_THRESHOLD_SEARCH = 12
+LARGEST_THRESHOLD_SEARCH = 20
 """Most robots whose 2**N sets are evaluated."""
+
+LARGEST_PLAIN = 12
+"""Most robots for which nothing is compiled."""
 
 
 def threshold_search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:
@@ -30,7 +35,7 @@ def threshold_search(problem: Problem, values: PlanValues, bracket: Bracket, bud
     budget.check_time()
     table = values.table()
     levels = np.unique(table)
-    test = ThresholdTest(problem.threat, table)
+    test = _test(problem, table)
     low, high = 0, int(np.searchsorted(levels, bracket.upper))  # the answer is in levels[low : high + 1]
     # The heuristic's value, computed alone, may round differently from the table's.
     high = min(high, len(levels) - 1)
@@ -48,6 +53,14 @@ def threshold_search(problem: Problem, values: PlanValues, bracket: Bracket, bud
         bracket.offer(attack, problem.team_value(values.plan, attack))
     bracket.lower = bracket.upper
     return Stop.EXHAUSTED
+
+
+def _test(problem: Problem, table: FloatArray) -> ThresholdTest | CompiledThresholdTest:
+    if problem.n_robots <= LARGEST_PLAIN:
+        return ThresholdTest(problem.threat, table)
+    from ratt_opt.graph.compiled_threshold import CompiledThresholdTest  # compiles
+
+    return CompiledThresholdTest(problem.threat, table)
 
 
 def _attack(problem: Problem, split: GroupSplit) -> Attack:

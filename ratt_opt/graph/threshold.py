@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["GroupSplit", "ThresholdTest"]
+__all__ = ["GroupSplit", "ThresholdTest", "fewest_blinded", "largest_survivors"]
 
 UNREACHABLE = np.int16(10_000)
 
@@ -81,7 +81,7 @@ class ThresholdTest:
 
     def split(self, threshold: float) -> GroupSplit | None:
         """Return an attack's groups and survivors with team value at most ``threshold``, or ``None``."""
-        need = self._need(threshold)
+        need = fewest_blinded(self.threat, self.values, threshold)
         links = np.full((2**self.n_robots, self.threat.alpha_s + 1), UNREACHABLE, dtype=np.int16)
         links[0] = 0
         for level in self._levels:
@@ -89,15 +89,6 @@ class ThresholdTest:
         if links[-1, -1] > self.threat.alpha_c:
             return None
         return self._trace(links, need, threshold)
-
-    def _need(self, threshold: float) -> IntArray:
-        """(2**N,) fewest robots to blind in each group; more than the budget where it cannot be done."""
-        kept = np.where(self.values <= threshold, self._sizes, -1 - self.n_robots)
-        for i in range(self.n_robots):
-            if i not in self.threat.protected_robots:
-                pairs = kept.reshape(-1, 2, 1 << i)
-                np.maximum(pairs[:, 1], pairs[:, 0], out=pairs[:, 1])
-        return np.asarray(self._sizes - kept)
 
     def _trace(self, links: IntArray, need: IntArray, threshold: float) -> GroupSplit:
         groups, survivors = [], []
@@ -107,16 +98,32 @@ class ThresholdTest:
             pick = int(_costs(one, links, need)[:, blinded].argmin())
             group = int(one.group[pick])
             groups.append(group)
-            survivors.append(self._survivors(group, threshold))
+            survivors.append(largest_survivors(self.threat, self.values, group, threshold))
             rest, blinded = int(one.rest[pick]), blinded - int(need[group])
         return GroupSplit(tuple(groups), tuple(survivors))
 
-    def _survivors(self, group: int, threshold: float) -> int:
-        """Largest set of survivors of a group within the threshold; the lowest mask among equals."""
-        fixed = sum(1 << i for i in self.threat.protected_robots if group >> i & 1)
-        sets = submasks(group ^ fixed) | fixed
-        sets = sets[self.values[sets] <= threshold]
-        return int(sets[self._sizes[sets].argmax()])
+
+def fewest_blinded(threat: Threat, values: FloatArray, threshold: float) -> IntArray:
+    """(2**N,) fewest robots to blind in each group so that the others are worth at most ``threshold``.
+
+    More than N where it cannot be done (protected robots, or a threshold below the value of no measurement).
+    """
+    n_robots = threat.graph.n_robots
+    sizes = np.bitwise_count(np.arange(2**n_robots)).astype(np.int64)
+    kept = np.where(values <= threshold, sizes, -1 - n_robots)
+    for i in range(n_robots):
+        if i not in threat.protected_robots:
+            pairs = kept.reshape(-1, 2, 1 << i)
+            np.maximum(pairs[:, 1], pairs[:, 0], out=pairs[:, 1])
+    return np.asarray(sizes - kept)
+
+
+def largest_survivors(threat: Threat, values: FloatArray, group: int, threshold: float) -> int:
+    """Largest set of survivors of a group within the threshold; the lowest mask among equals."""
+    fixed = sum(1 << i for i in threat.protected_robots if group >> i & 1)
+    sets = submasks(group ^ fixed) | fixed
+    sets = sets[values[sets] <= threshold]
+    return int(sets[np.bitwise_count(sets).argmax()])
 
 
 def _levels(lattice: SubsetLattice, alpha_c: int, sizes: IntArray) -> list[_Level]:

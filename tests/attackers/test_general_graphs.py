@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.compact import CompactTeam
+from ratt_opt.attackers.forced_group import forced_survivors
+from ratt_opt.graph.outcomes import non_dominated_outcomes
+from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_fourteen_robots_on_a_sparse_graph_close(name, seed):
+    rng = np.random.default_rng(seed)
+    graph = nx.random_regular_graph(3, 14, seed=seed)
+    problem = ro.Problem(OBJECTIVES[name](*range_bearing(rng, 14, 4, 1)), np.arange(14), graph, 2, 6)
+    plan = np.arange(14)
+    result = ro.worst_case_attack(problem, plan)
+    assert result.lower == result.upper == problem.team_value(plan, result.attack)
+    assert result.upper <= min(ro.greedy_attack(problem, plan).upper, ro.bounded_rational_attack(problem, plan).upper)
+    for seed_of_attack in range(200):
+        assert result.upper <= ro.random_attack(problem, plan, seed=seed_of_attack).upper + 1e-12
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_both_large_searches_agree_on_a_complete_graph(seed):
+    """Thirteen robots: branch and bound as it is, thresholds once the class of the objective is hidden."""
+    rng = np.random.default_rng(seed)
+    prior, information = range_bearing(rng, 13, 3, 1)
+
+    class Hidden(ro.TraceObjective):
+        pass
+
+    budgets = int(rng.integers(1, 6)), int(rng.integers(11, 40))
+    plan = np.arange(13)
+    shown = ro.worst_case_attack(ro.Problem(ro.TraceObjective(prior, information), plan, None, *budgets), plan)
+    hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, None, *budgets), plan)
+    assert CompactTeam.of(Hidden(prior, information), plan) is None
+    assert shown.stop is ro.Stop.CLOSED
+    assert hidden.stop is ro.Stop.EXHAUSTED
+    assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_a_group_of_the_forced_size_always_survives(seed):
+    threat = random_problem(np.random.default_rng(seed), kind="logdet").threat
+    assert forced_survivors(threat) <= min(max(map(len, outcome)) for outcome in non_dominated_outcomes(threat))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_a_large_team_on_any_graph_gets_a_valid_bracket(name, dimension):
+    rng = np.random.default_rng(dimension)
+    graph = nx.random_regular_graph(6, 24, seed=1)
+    objective = OBJECTIVES[name](*information_data(rng, 24, 3, dimension))
+    problem = ro.Problem(objective, np.arange(24), graph, 4, 12)
+    plan = np.arange(24)
+    result = ro.worst_case_attack(problem, plan, max_nodes=100_000)
+    assert result.lower <= result.upper == problem.team_value(plan, result.attack)
+    for seed in range(100):
+        assert result.lower <= ro.random_attack(problem, plan, seed=seed).upper
+    assert result.lower <= ro.greedy_attack(problem, plan).upper
