@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.bounded_rational import bounded_rational_attack
+    from ratt_opt.attackers.breaking_budgets import BreakingBudget, breaking_budgets
+    from ratt_opt.attackers.criticality import Criticality, criticality_ranking
     from ratt_opt.attackers.exact import worst_case_attack
     from ratt_opt.attackers.greedy import greedy_attack
     from ratt_opt.attackers.random_attack import random_attack
@@ -39,7 +41,9 @@ if TYPE_CHECKING:
 _HOME = {
     "Attack": "problem",
     "AttackResult": "attackers.result",
+    "BreakingBudget": "attackers.breaking_budgets",
     "CaaResult": "graph.caa",
+    "Criticality": "attackers.criticality",
     "FileFormatError": "errors",
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
@@ -60,7 +64,9 @@ _HOME = {
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
     "bounded_rational_attack": "attackers.bounded_rational",
+    "breaking_budgets": "attackers.breaking_budgets",
     "caa": "graph.caa",
+    "criticality_ranking": "attackers.criticality",
     "exhaustive_optimum": "solvers.exhaustive",
     "from_mrclam": "scenario.mrclam",
     "greedy": "solvers.baselines",

@@ -1,0 +1,101 @@
+"""Which robots and links a plan hangs on, and what they are worth protecting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.isolation import PartialAttack, team_values
+from ratt_opt.attackers.plan_values import PlanValues
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.graph.communication import Link
+    from ratt_opt.problem import Problem
+
+__all__ = ["Criticality", "criticality_ranking"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Criticality:
+    """One robot or link of a plan [values in the unit of the objective].
+
+    ``loss`` : team value lost when it alone is attacked and nothing else is.
+    ``gain_lower``, ``gain_upper`` : bracket on the worst-case value gained when it alone is protected
+    (equal up to rounding where the exact attacker closes).
+    """
+
+    target: int | Link
+    loss: float
+    gain_lower: float
+    gain_upper: float
+
+
+def criticality_ranking(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    links: Iterable[Link] | None = None,
+    max_nodes: int | None = None,
+    time_limit: float | None = None,
+) -> tuple[Criticality, ...]:
+    """Rank robots and links: largest certain gain from protection first, then largest loss, then robots by index.
+
+    Only what the worst attack uses can be worth protecting: otherwise that attack stays possible, so the
+    gain is 0 without a search.
+
+    Parameters
+    ----------
+    links : links to rank; all by default
+    max_nodes, time_limit : for each exact attack
+
+    Raises
+    ------
+    InputError : the plan is not one element per robot, a link does not exist, or a budget is not a number >= 0.
+    """
+    values = PlanValues(problem, elements)
+    base = worst_case_attack(problem, values.plan, max_nodes=max_nodes, time_limit=time_limit)
+    ranked_links = sorted(problem.communication.links if links is None else set(links))
+    replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
+    targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
+    untouched = PartialAttack(problem)
+    single = [
+        replace(untouched, blinded=frozenset([t])) if isinstance(t, int) else replace(untouched, cut=frozenset([t]))
+        for t in targets
+    ]
+    worth = team_values(values, [untouched, *single])
+    rows = []
+    for target, left in zip(targets, worth[1:].tolist(), strict=True):
+        after = _protected(problem, values, base, target, max_nodes, time_limit)
+        gain_lower, gain_upper = max(after.lower - base.upper, 0.0), max(after.upper - base.lower, 0.0)
+        if after is base:
+            gain_lower = gain_upper = 0.0
+        loss = float(worth[0]) - left
+        rows.append(Criticality(target=target, loss=loss, gain_lower=gain_lower, gain_upper=gain_upper))
+    order = sorted(range(len(rows)), key=lambda k: (-rows[k].gain_lower, -rows[k].loss, k))
+    return tuple(rows[k] for k in order)
+
+
+def _protected(  # noqa: PLR0917
+    problem: Problem,
+    values: PlanValues,
+    base: AttackResult,
+    target: int | Link,
+    max_nodes: int | None,
+    time_limit: float | None,
+) -> AttackResult:
+    """The worst case once ``target`` is protected; ``base`` itself where its attack stays possible."""
+    if isinstance(target, int):
+        if target not in base.attack.sensing:
+            return base
+        safer = replace(problem, protected_robots=problem.protected_robots | {target})
+    else:
+        if target not in base.attack.links:
+            return base
+        safer = replace(problem, protected_links=problem.protected_links | {target})
+    return worst_case_attack(safer, values.plan, max_nodes=max_nodes, time_limit=time_limit)

@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.breaking_budgets import breaking_budgets
+from ratt_opt.attackers.criticality import criticality_ranking
+from ratt_opt.errors import InputError
+from tests.oracles import brute_force_worst_case
+from tests.strategies import random_elements, random_problem
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_ranking_against_the_definition(seed):
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, int(rng.integers(1, 5)))
+    elements = random_elements(rng, problem)
+    ranking = criticality_ranking(problem, elements)
+    links = problem.communication.links
+    assert {row.target for row in ranking} == {*range(problem.n_robots), *links}
+    base = brute_force_worst_case(problem, elements)
+    nothing = replace(problem, alpha_s=0, alpha_c=0, protected_robots=frozenset(), protected_links=frozenset())
+    whole = brute_force_worst_case(nothing, elements)
+    for row in ranking:
+        if isinstance(row.target, int):
+            safer = replace(problem, protected_robots=problem.protected_robots | {row.target})
+            attack = ro.Attack(frozenset([row.target]))
+            alone = replace(nothing, alpha_s=1)
+        else:
+            safer = replace(problem, protected_links=problem.protected_links | {row.target})
+            attack = ro.Attack(links=frozenset([row.target]))
+            alone = replace(nothing, alpha_c=1)
+        gain = brute_force_worst_case(safer, elements) - base
+        assert row.gain_lower == pytest.approx(gain, abs=1e-9)
+        assert row.gain_upper == pytest.approx(gain, abs=1e-9)
+        assert row.loss == pytest.approx(whole - alone.team_value(elements, attack), abs=1e-9)
+    gains = [row.gain_lower for row in ranking]
+    assert gains == sorted(gains, reverse=True)
+
+
+def test_a_bridge_is_the_link_to_protect():
+    weights = np.arange(2**6)[:, None] >> np.arange(6) & 1
+    graph = nx.barbell_graph(3, 0)
+    problem = ro.Problem(ro.TableFunction(weights.sum(axis=1).astype(float)), np.arange(6), graph, 0, 1)
+    first = criticality_ranking(problem, np.arange(6))[0]
+    assert (first.target, first.loss, first.gain_lower) == ((2, 3), 3.0, 3.0)
+    only = criticality_ranking(problem, np.arange(6), links=[(0, 1)])
+    assert [row.target for row in only if not isinstance(row.target, int)] == [(0, 1)]
+    with pytest.raises(InputError, match="link"):
+        criticality_ranking(problem, np.arange(6), links=[(0, 5)])
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_smallest_budgets_against_every_budget(seed):
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, int(rng.integers(1, 5)))
+    elements = random_elements(rng, problem)
+    free = replace(problem, alpha_s=0, alpha_c=0)
+    goal = brute_force_worst_case(free, elements) * float(rng.choice([0.3, 0.6, 0.9, 1.0])) - 1e-9
+    n_links = len(problem.communication.links)
+    below = {
+        (s, c)
+        for s in range(problem.n_robots + 1)
+        for c in range(n_links + 1)
+        if brute_force_worst_case(replace(problem, alpha_s=s, alpha_c=c), elements) < goal
+    }
+    minimal = {b for b in below if not any(o != b and o[0] <= b[0] and o[1] <= b[1] for o in below)}
+    found = breaking_budgets(problem, elements, goal)
+    assert {(b.alpha_s, b.alpha_c) for b in found} == minimal
+    for budget in found:
+        assert budget.is_proved
+        asked = replace(problem, alpha_s=budget.alpha_s, alpha_c=budget.alpha_c)
+        assert asked.team_value(elements, budget.attack) == budget.value < goal
+
+
+def test_a_value_that_is_not_a_number_is_refused():
+    problem = random_problem(np.random.default_rng(0), 3)
+    with pytest.raises(InputError, match="value"):
+        breaking_budgets(problem, [c[0] for c in problem.choices], float("nan"))
