@@ -38,7 +38,7 @@ class NodeProgram:
         self._highspy = highspy
         self._n = n_elements
         self._robots = len(choices)
-        self._model = highspy.Highs()
+        self._model = highspy.Highs()  # type: ignore[no-untyped-call]
         for option, value in (("output_flag", False), ("threads", 1), ("solver", "simplex")):
             self._model.setOptionValue(option, value)
         self._infinity = highspy.kHighsInf
