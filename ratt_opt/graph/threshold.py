@@ -64,19 +64,20 @@ class ThresholdTest:
     ----------
     threat : N robots, at most ``LARGEST_LATTICE``
     values : (2**N,) value of every set of robots, by bit mask
+    largest_group : consider only attacks whose groups, blinded robots included, have at most so many robots
 
     Raises
     ------
     InputError : too many robots.
     """
 
-    def __init__(self, threat: Threat, values: FloatArray) -> None:
+    def __init__(self, threat: Threat, values: FloatArray, *, largest_group: int | None = None) -> None:
         self.threat = threat
         self.values = values
         self.n_robots = threat.graph.n_robots
         self._masks = np.arange(2**self.n_robots)
         self._sizes = np.bitwise_count(self._masks).astype(np.int64)
-        self._levels = _levels(SubsetLattice.of(threat), threat.alpha_c, self._sizes)
+        self._levels = _levels(SubsetLattice.of(threat), threat.alpha_c, self._sizes, largest_group or self.n_robots)
         self._level_of = {int(self._sizes[level.sets[0]]): level for level in self._levels}
 
     def split(self, threshold: float) -> GroupSplit | None:
@@ -126,7 +127,7 @@ def largest_survivors(threat: Threat, values: FloatArray, group: int, threshold:
     return int(sets[np.bitwise_count(sets).argmax()])
 
 
-def _levels(lattice: SubsetLattice, alpha_c: int, sizes: IntArray) -> list[_Level]:
+def _levels(lattice: SubsetLattice, alpha_c: int, sizes: IntArray, largest_group: int) -> list[_Level]:
     """Transitions of every set of robots, by its number of robots; those over the link budget are dropped."""
     n_robots = lattice.n_robots
     # All (set, group) pairs: a group holds the set's lowest robot and any of its others.
@@ -139,7 +140,7 @@ def _levels(lattice: SubsetLattice, alpha_c: int, sizes: IntArray) -> list[_Leve
         sets = np.concatenate([sets, sets | bit, sets | bit])
         groups = np.concatenate([groups, groups, groups | bit])
     sets, groups = np.concatenate(all_sets), np.concatenate(all_groups)
-    keep = lattice.connected[groups]
+    keep = lattice.connected[groups] & (sizes[groups] <= largest_group)
     sets, groups = sets[keep], groups[keep]
     cost = lattice.crossing(groups, sets ^ groups)
     keep = cost <= alpha_c

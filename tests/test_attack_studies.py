@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+from analysis import caa_conjecture, caa_validation
+from analysis.benchmarks import attack
+from analysis.tables import print_table, write_csv
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.solvers.ratt import ratt
+
+
+def test_tables_are_printed_and_written(tmp_path, capsys):
+    rows = [{"name": "a", "value": 1 / 3}, {"name": "bcd", "value": 2}]
+    print_table("Title", rows)
+    assert capsys.readouterr().out.split() == ["Title", "name", "value", "a", "0.3333", "bcd", "2"]
+    write_csv(tmp_path / "new" / "t.csv", rows)
+    with (tmp_path / "new" / "t.csv").open() as file:
+        assert [float(row["value"]) for row in csv.DictReader(file)] == [1 / 3, 2.0]
+
+
+def test_validation_finds_a_wrong_formula(monkeypatch):
+    right = caa_validation.complete_graphs.__globals__["caa"]
+    assert not caa_validation._differs(caa_validation.nx.complete_graph(5), 6, "partitions")
+
+    class Wrong:
+        n_max = 4
+
+    monkeypatch.setattr(caa_validation, "caa", lambda n, c: Wrong if (n, c) == (5, 6) else right(n, c))
+    assert caa_validation._differs(caa_validation.nx.complete_graph(5), 6, "partitions")
+    assert caa_validation._differs(caa_validation.nx.complete_graph(5), 6, "enumeration")
+
+
+def test_other_graphs_never_have_a_larger_group_than_the_complete_one():
+    for row in caa_validation.other_graphs(1):
+        assert row["mean_exact_n_max"] <= row["mean_caa_n_max"]
+
+
+def test_the_even_split_is_an_attack_and_no_worse_than_the_exact_one():
+    for seed in range(3):
+        run = caa_conjecture.one_run((6, 4, 2, 8), "trace", seed)
+        assert run["exact"] <= run["even_split"] + 1e-12
+        assert run["exact"] <= min(run["greedy"], run["bounded_rational"], run["random"]) + 1e-12
+    assert caa_conjecture.summary([run])[0]["runs"] == 1
+
+
+def test_the_benchmark_s_plain_ways_agree():
+    problem = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=0).problem("logdet")
+    plan = ratt(problem).elements
+    assert attack.plain_enumeration(problem, plan) == pytest.approx(worst_case_attack(problem, plan).upper, rel=1e-12)
+    assert attack.evaluations()[0]["ratio"] >= 100
