@@ -75,13 +75,13 @@ def worst_case_attack(
 def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(problem, values, bracket, budget)
-    better = greedy_attack(problem, values.plan)
-    bracket.offer(better.attack, better.upper)
     team = CompactTeam.of(problem.objective, values.plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.large_team import LargeTeamSearch  # compiles
 
         return LargeTeamSearch(problem, team, values, bracket, budget).run()
+    better = greedy_attack(problem, values.plan)
+    bracket.offer(better.attack, better.upper)
     if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
         return threshold_search(problem, values, bracket, budget)
     return forced_group_bound(problem, values, team, bracket, budget)

@@ -18,6 +18,8 @@ import numpy as np
 from ratt_opt.attackers.compact import MAX_EIGENVALUE
 from ratt_opt.attackers.low_sets import AffineBound, LowSets
 from ratt_opt.attackers.minorant import Minorant, SetFamily, affine_minorant
+from ratt_opt.attackers.swap_search import swap_search
+from ratt_opt.attackers.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -91,10 +93,15 @@ class SizeSearch:
         if size < 0 or size > len(robots):
             return [], threshold
         minorant, bound = None, node.bound
-        if 0 < size < len(robots) and self.team.kind != MAX_EIGENVALUE:
+        if self.team.kind == MAX_EIGENVALUE:
+            axis = weakest_axis(self.team, self.team.sums(node.inside), self.team.information[robots], size)
+            bound = max(bound, axis.bound)
+            threshold = self._try(node, robots[axis.chosen], threshold)
+        elif 0 < size < len(robots):
             minorant = affine_minorant(self._family(node.inside, robots, size), HEAVY_ROBOTS)
             bound = max(bound, minorant.constant + float(np.partition(minorant.scores, size - 1)[:size].sum()))
-            threshold = self._round(node, robots, minorant, threshold)
+            order = np.lexsort((minorant.scores, -minorant.fraction))
+            threshold = self._try(node, robots[order[:size]], threshold)
         if bound >= threshold:
             return [], threshold
         low = self._enumeration(node, robots, size, minorant)
@@ -111,11 +118,13 @@ class SizeSearch:
         team = self.team
         return SetFamily(team.kind, team.weights, team.prior, team.sums(inside), team.information[robots], size)
 
-    def _round(self, node: SizeNode, robots: IntArray, minorant: Minorant, threshold: float) -> float:
-        """Offer the set that the linear program's fractions suggest."""
-        order = np.lexsort((minorant.scores, -minorant.fraction))
-        candidate = node.inside | frozenset(robots[order[: self.size - len(node.inside)]].tolist())
-        return self.offer(candidate) if self.team.value(candidate) < threshold else threshold
+    def _try(self, node: SizeNode, others: IntArray, threshold: float) -> float:
+        """Offer the set that the bound suggests, improved by exchanges."""
+        candidate = node.inside | frozenset(others.tolist())
+        for one in (candidate, swap_search(self.team, candidate)):
+            if self.team.value(one) < threshold:
+                threshold = self.offer(one)
+        return threshold
 
     def _enumeration(self, node: SizeNode, robots: IntArray, size: int, minorant: Minorant | None) -> LowSets:
         """The node's sets, those robots first whose side the minorant is surest of."""

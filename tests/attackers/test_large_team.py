@@ -14,6 +14,7 @@ from ratt_opt.attackers.large_team import LargeTeamSearch
 from ratt_opt.attackers.low_sets import LowSets
 from ratt_opt.attackers.minorant import SetFamily, affine_minorant
 from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.weakest_axis import weakest_axis
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
 
 
@@ -139,3 +140,16 @@ def test_everyone_blinded():
     problem = ro.Problem(OBJECTIVES["trace"](*range_bearing(rng, 14, 2, 1)), np.arange(14), None, 14, 3)
     result = ro.worst_case_attack(problem, np.arange(14))
     assert (result.lower, result.upper, result.stop) == (0.0, 0.0, ro.Stop.CLOSED)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_weakest_axis_is_the_weakest_set(seed):
+    rng = np.random.default_rng(seed)
+    n_robots, size = 8, int(rng.integers(0, 9))
+    data = range_bearing(rng, n_robots, 3, 1) if seed % 2 else information_data(rng, n_robots, 3)
+    team = CompactTeam.of(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
+    axis = weakest_axis(team, team.prior, team.information, size)
+    weakest = min(team.value(chosen) for chosen in combinations(range(n_robots), size))
+    assert axis.bound <= weakest + 1e-12
+    assert axis.bound == pytest.approx(weakest, rel=1e-8, abs=1e-8)
+    assert team.value(axis.chosen.tolist()) == pytest.approx(weakest, rel=1e-8, abs=1e-8)
