@@ -10,41 +10,128 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.bounded_rational import bounded_rational_attack
-    from ratt_opt.attackers.breaking_budgets import BreakingBudget, breaking_budgets
-    from ratt_opt.attackers.criticality import Criticality, criticality_ranking
-    from ratt_opt.attackers.exact import worst_case_attack
-    from ratt_opt.attackers.greedy import greedy_attack
-    from ratt_opt.attackers.random_attack import random_attack
-    from ratt_opt.attackers.result import AttackResult
-    from ratt_opt.bounds.relaxation import RelaxationBound, relaxation_bound
-    from ratt_opt.errors import FileFormatError, InputError, ProofError
-    from ratt_opt.graph.caa import CaaResult, caa
-    from ratt_opt.graph.largest_group import LargestGroup, smallest_largest_group
-    from ratt_opt.problem import Attack, Plan, Problem
-    from ratt_opt.scenario.files import load_input, load_scenario, save_scenario, scenario_schema
-    from ratt_opt.scenario.generator import random_scenario
-    from ratt_opt.scenario.model import Robot, Scenario, Target
-    from ratt_opt.scenario.model_free import InformationInput
-    from ratt_opt.scenario.mrclam import from_mrclam
-    from ratt_opt.scenario.sensor import Sensor
-    from ratt_opt.setfunctions.base import SetFunction
-    from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
-    from ratt_opt.setfunctions.table import TableFunction
-    from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
-    from ratt_opt.solvers.exhaustive import exhaustive_optimum
-    from ratt_opt.solvers.maxmin import solve_maxmin
-    from ratt_opt.solvers.ratt import ratt
-    from ratt_opt.solvers.result import MaxMinResult
-    from ratt_opt.stopping import Stop
+    from ratt_opt.attackers.bounded_rational import bounded_rational_attack as bounded_rational_attack
+    from ratt_opt.attackers.breaking_budgets import (
+        BreakingBudget as BreakingBudget,
+    )
+    from ratt_opt.attackers.breaking_budgets import (
+        breaking_budgets as breaking_budgets,
+    )
+    from ratt_opt.attackers.criticality import Criticality as Criticality
+    from ratt_opt.attackers.criticality import criticality_ranking as criticality_ranking
+    from ratt_opt.attackers.exact import worst_case_attack as worst_case_attack
+    from ratt_opt.attackers.greedy import greedy_attack as greedy_attack
+    from ratt_opt.attackers.random_attack import random_attack as random_attack
+    from ratt_opt.attackers.result import AttackResult as AttackResult
+    from ratt_opt.attackers.survey import attack_survey as attack_survey
+    from ratt_opt.bounds.guarantees import (
+        Guarantee as Guarantee,
+    )
+    from ratt_opt.bounds.guarantees import (
+        all_bait_group_bound as all_bait_group_bound,
+    )
+    from ratt_opt.bounds.guarantees import (
+        all_guarantees as all_guarantees,
+    )
+    from ratt_opt.bounds.guarantees import (
+        pattern_free_bound as pattern_free_bound,
+    )
+    from ratt_opt.bounds.guarantees import (
+        remark1_bound as remark1_bound,
+    )
+    from ratt_opt.bounds.guarantees import (
+        sensing_only_bound as sensing_only_bound,
+    )
+    from ratt_opt.bounds.guarantees import (
+        theorem1_bound as theorem1_bound,
+    )
+    from ratt_opt.bounds.relaxation import RelaxationBound as RelaxationBound
+    from ratt_opt.bounds.relaxation import relaxation_bound as relaxation_bound
+    from ratt_opt.errors import FileFormatError as FileFormatError
+    from ratt_opt.errors import InputError as InputError
+    from ratt_opt.errors import ProofError as ProofError
+    from ratt_opt.graph.caa import CaaResult as CaaResult
+    from ratt_opt.graph.caa import caa as caa
+    from ratt_opt.graph.largest_group import (
+        LargestGroup as LargestGroup,
+    )
+    from ratt_opt.graph.largest_group import (
+        smallest_largest_group as smallest_largest_group,
+    )
+    from ratt_opt.main_job import BoundReport as BoundReport
+    from ratt_opt.main_job import PlanAssessment as PlanAssessment
+    from ratt_opt.main_job import bound as bound
+    from ratt_opt.problem import Attack as Attack
+    from ratt_opt.problem import Plan as Plan
+    from ratt_opt.problem import Problem as Problem
+    from ratt_opt.scenario.files import (
+        load_input as load_input,
+    )
+    from ratt_opt.scenario.files import (
+        load_scenario as load_scenario,
+    )
+    from ratt_opt.scenario.files import (
+        save_scenario as save_scenario,
+    )
+    from ratt_opt.scenario.files import (
+        scenario_schema as scenario_schema,
+    )
+    from ratt_opt.scenario.generator import random_scenario as random_scenario
+    from ratt_opt.scenario.model import Robot as Robot
+    from ratt_opt.scenario.model import Scenario as Scenario
+    from ratt_opt.scenario.model import Target as Target
+    from ratt_opt.scenario.model_free import InformationInput as InformationInput
+    from ratt_opt.scenario.mrclam import from_mrclam as from_mrclam
+    from ratt_opt.scenario.plan_file import load_plan as load_plan
+    from ratt_opt.scenario.sensor import Sensor as Sensor
+    from ratt_opt.setfunctions.base import SetFunction as SetFunction
+    from ratt_opt.setfunctions.curvature import (
+        Curvature as Curvature,
+    )
+    from ratt_opt.setfunctions.curvature import (
+        curvature as curvature,
+    )
+    from ratt_opt.setfunctions.curvature import (
+        total_curvature as total_curvature,
+    )
+    from ratt_opt.setfunctions.information import (
+        LogDetObjective as LogDetObjective,
+    )
+    from ratt_opt.setfunctions.information import (
+        MaxEigenvalueObjective as MaxEigenvalueObjective,
+    )
+    from ratt_opt.setfunctions.information import (
+        TraceObjective as TraceObjective,
+    )
+    from ratt_opt.setfunctions.table import TableFunction as TableFunction
+    from ratt_opt.solvers.baselines import (
+        greedy as greedy,
+    )
+    from ratt_opt.solvers.baselines import (
+        myopic as myopic,
+    )
+    from ratt_opt.solvers.baselines import (
+        nonrobust_optimum as nonrobust_optimum,
+    )
+    from ratt_opt.solvers.baselines import (
+        random_plan as random_plan,
+    )
+    from ratt_opt.solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
+    from ratt_opt.solvers.maxmin import solve_maxmin as solve_maxmin
+    from ratt_opt.solvers.ratt import ratt as ratt
+    from ratt_opt.solvers.result import MaxMinResult as MaxMinResult
+    from ratt_opt.stopping import Stop as Stop
 
 _HOME = {
     "Attack": "problem",
     "AttackResult": "attackers.result",
+    "BoundReport": "main_job",
     "BreakingBudget": "attackers.breaking_budgets",
     "CaaResult": "graph.caa",
     "Criticality": "attackers.criticality",
+    "Curvature": "setfunctions.curvature",
     "FileFormatError": "errors",
+    "Guarantee": "bounds.guarantees",
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
     "LargestGroup": "graph.largest_group",
@@ -52,6 +139,7 @@ _HOME = {
     "MaxEigenvalueObjective": "setfunctions.information",
     "MaxMinResult": "solvers.result",
     "Plan": "problem",
+    "PlanAssessment": "main_job",
     "Problem": "problem",
     "ProofError": "errors",
     "RelaxationBound": "bounds.relaxation",
@@ -63,27 +151,38 @@ _HOME = {
     "TableFunction": "setfunctions.table",
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
+    "all_bait_group_bound": "bounds.guarantees",
+    "all_guarantees": "bounds.guarantees",
+    "attack_survey": "attackers.survey",
+    "bound": "main_job",
     "bounded_rational_attack": "attackers.bounded_rational",
     "breaking_budgets": "attackers.breaking_budgets",
     "caa": "graph.caa",
     "criticality_ranking": "attackers.criticality",
+    "curvature": "setfunctions.curvature",
     "exhaustive_optimum": "solvers.exhaustive",
     "from_mrclam": "scenario.mrclam",
     "greedy": "solvers.baselines",
     "greedy_attack": "attackers.greedy",
     "load_input": "scenario.files",
+    "load_plan": "scenario.plan_file",
     "load_scenario": "scenario.files",
     "myopic": "solvers.baselines",
     "nonrobust_optimum": "solvers.baselines",
+    "pattern_free_bound": "bounds.guarantees",
     "random_attack": "attackers.random_attack",
     "random_plan": "solvers.baselines",
     "random_scenario": "scenario.generator",
     "ratt": "solvers.ratt",
     "relaxation_bound": "bounds.relaxation",
+    "remark1_bound": "bounds.guarantees",
     "save_scenario": "scenario.files",
     "scenario_schema": "scenario.files",
+    "sensing_only_bound": "bounds.guarantees",
     "smallest_largest_group": "graph.largest_group",
     "solve_maxmin": "solvers.maxmin",
+    "theorem1_bound": "bounds.guarantees",
+    "total_curvature": "setfunctions.curvature",
     "worst_case_attack": "attackers.exact",
 }
 

@@ -118,7 +118,12 @@ class Problem:
         ------
         InputError : wrong shape, not integers, or an element of another robot.
         """
-        array = np.asarray(elements)
+        try:
+            array = np.asarray(elements)
+        except ValueError:
+            array = np.empty(0, dtype=np.int64)
+        if array.dtype.kind not in "iu":
+            array = np.asarray(elements, dtype=object)  # keeps each entry as it was given, for the error text
         if array.shape != (self.n_robots,):
             raise InputError("elements", f"must hold one element per robot, shape ({self.n_robots},)", array.tolist())
         for i, element in enumerate(array):

@@ -76,6 +76,9 @@ def tangent_cut(
     members = tuple(sorted(group))
     if target is None:
         target = worst_targets(objective, point, -np.inf, 1)[0]
+    if not members:  # the value of no measurement is known exactly
+        nothing = np.zeros(objective.n)
+        return GroupCut(group=(), constant=objective([]), scores=nothing, point=point, target=target)
     slope, offset = _fenchel(objective, point, target)
     inside = np.isin(problem.robot, members)
     scores = np.zeros(objective.n)

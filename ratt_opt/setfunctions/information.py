@@ -128,6 +128,11 @@ class InformationObjective(SetFunction):
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """Weighted criterion per target, lower is better: (..., M, d, d) -> (..., M)."""
 
+    @property
+    def prior_criterion(self) -> float | None:
+        """The criterion before any measurement, where it is a size (trace, max-eigenvalue) and not a logarithm."""
+        return None
+
     @abstractmethod
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """A supergradient of the value with respect to ``Lambda``: (..., M, d, d), positive semidefinite.
@@ -199,6 +204,11 @@ class TraceObjective(InformationObjective):
 
     __slots__ = ()
 
+    @property
+    def prior_criterion(self) -> float:
+        """``sum_j w_j tr(prior_j)``."""
+        return float(self._baseline.sum())
+
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted traces of the posterior covariances."""
         if self.dimension == 2:
@@ -233,6 +243,11 @@ class MaxEigenvalueObjective(InformationObjective):
     """``max_j w_j lambda_max(prior_j) - max_j w_j lambda_max(Lambda_j(S)^{-1})``: worst axis (E-criterion) [m^2]."""
 
     __slots__ = ()
+
+    @property
+    def prior_criterion(self) -> float:
+        """``max_j w_j lambda_max(prior_j)``."""
+        return float(self._baseline.max())
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted largest eigenvalues of the posterior covariances."""

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.problem import Problem
 
-__all__ = ["solve_maxmin"]
+__all__ = ["check_limits", "solve_maxmin"]
 
 LISTED_ROBOTS = 12
 LISTED_OUTCOMES = 3000
@@ -61,7 +61,7 @@ def solve_maxmin(
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
-    _check_limits(gap, time_limit, max_nodes)
+    check_limits(gap, time_limit, max_nodes)
     objective = problem.objective
     if not isinstance(objective, InformationObjective):
         return exhaustive_optimum(problem)
@@ -83,17 +83,24 @@ def _result(problem: Problem, incumbent: Incumbent, search: BranchAndBound | Non
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))
     proved = search is not None and np.isfinite(search.upper)
-    upper = search.upper if search is not None and proved else everything
     lower = max(incumbent.lower, problem.objective([]))
+    upper = max(search.upper if search is not None and proved else everything, lower)
     return MaxMinResult(
         elements=readonly(incumbent.elements),
         lower=lower,
-        upper=max(upper, lower),
+        upper=upper,
         stop=stop,
         evaluations=incumbent.evaluations,
         nodes=0 if search is None else search.nodes,
+        posterior_gap=_posterior_gap(problem, lower, upper),
         proof=search.proof() if search is not None and proved else None,
     )
+
+
+def _posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
+    objective = problem.objective
+    before = objective.prior_criterion if isinstance(objective, InformationObjective) else None
+    return None if before is None or before <= lower else (upper - lower) / (before - lower)
 
 
 def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
@@ -106,7 +113,13 @@ def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
             pool.add(Attack(*realise(problem.threat, outcome)))
 
 
-def _check_limits(gap: float, time_limit: float | None, max_nodes: int | None) -> None:
+def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = None) -> None:
+    """Check the limits of a search.
+
+    Raises
+    ------
+    InputError : the gap is negative or not a number, or a limit is not positive.
+    """
     if not (math.isfinite(gap) and gap >= 0):
         raise InputError("gap", "must be a number >= 0", gap)
     if time_limit is not None and not time_limit > 0:

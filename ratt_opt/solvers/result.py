@@ -26,5 +26,8 @@ class MaxMinResult:
     stop: Stop
     evaluations: int
     nodes: int = 0
+    posterior_gap: float | None = None
+    """``upper - lower`` as a share of the posterior criterion (trace, max-eigenvalue) that ``lower`` leaves: a
+    diffuse prior hides real differences in the relative gap. ``None`` for other objectives."""
     proof: UpperProof | None = None
     """What ``upper`` rests on; ``None`` where it was enumerated."""

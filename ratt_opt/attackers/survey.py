@@ -1,0 +1,35 @@
+"""All attackers against one plan."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.greedy import greedy_attack
+from ratt_opt.attackers.random_attack import random_attack
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.problem import Problem
+
+__all__ = ["attack_survey"]
+
+
+def attack_survey(
+    problem: Problem, elements: ArrayLike, *, time_limit: float | None = None, seed: int = 0
+) -> dict[str, AttackResult]:
+    """Attack one plan exactly and with every heuristic: name -> result.
+
+    Raises
+    ------
+    InputError : the plan is not one element per robot.
+    """
+    return {
+        "exact": worst_case_attack(problem, elements, time_limit=time_limit),
+        "bounded rational": bounded_rational_attack(problem, elements),
+        "greedy": greedy_attack(problem, elements),
+        "random": random_attack(problem, elements, seed=seed),
+    }

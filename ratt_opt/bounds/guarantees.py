@@ -1,0 +1,210 @@
+"""Guarantees on RATT's worst-case value as a share of the optimum, known from the curvature alone.
+
+Each is a number in [0, 1] with its hypotheses; a curvature may be a number or a bracket, whose upper (conservative)
+end is then used. The curvature must be taken over a domain that holds every set the proof meets: the feasible sets
+(at most one element per robot) suffice for all of them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from ratt_opt.problem import Problem
+
+__all__ = [
+    "Guarantee",
+    "all_bait_group_bound",
+    "all_guarantees",
+    "pattern_free_bound",
+    "remark1_bound",
+    "sensing_only_bound",
+    "theorem1_bound",
+]
+
+SUBMODULAR = "normalised, non-decreasing, submodular"
+NON_DECREASING = "normalised, non-decreasing"
+
+
+@runtime_checkable
+class Bracket(Protocol):
+    """Anything with a proved upper end."""
+
+    @property
+    def upper(self) -> float:
+        """Proved upper end."""
+
+
+class Guarantee(float):
+    """A share of the optimum that is guaranteed, with what it needs and where it comes from."""
+
+    hypotheses: tuple[str, ...]
+    source: str
+
+    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str) -> Self:
+        """Make the number carry its hypotheses."""
+        self = super().__new__(cls, value)
+        self.hypotheses = hypotheses
+        self.source = source
+        return self
+
+
+Curvatures = float | Bracket | None
+
+
+def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, all_bait: bool = False) -> Guarantee:
+    """The paper's bound for RATT under sensing and link attacks.
+
+    ``min[(1-c)^3, (1-c)^2 / alpha_cs]`` from the total curvature ``c``; ``min[(1-k)/(1+k), (1-k)/alpha_cs]`` from
+    the curvature ``k`` of a submodular objective. With ``alpha_cs = 0`` the second terms, which divide by it, concern
+    groups that do not exist and are absent. With ``all_bait`` (``alpha >= N``) the appendix proves ``(1-c)^2``
+    and ``1-k``. Give exactly one of ``k`` and ``c``.
+
+    Raises
+    ------
+    InputError : neither or both curvatures, one outside [0, 1], or a negative ``alpha_cs``.
+
+    Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof is by patterns and leaves some out.
+    """
+    alpha_cs = check_integer("alpha_cs", alpha_cs, low=0)
+    kind, value = _one_curvature(k, c)
+    keep = 1 - value
+    if kind == "k":
+        bound = keep if all_bait else min(keep / (1 + value), keep / max(alpha_cs, 1))
+    else:
+        bound = keep**2 if all_bait else min(keep**3, keep**2 / max(alpha_cs, 1))
+    return Guarantee(bound, _needs(kind, "RATT's plan"), "ratt.tex, Theorem 1")
+
+
+def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
+    """The paper's bound for the myopic plan (all bait): ``1-k``, respectively ``(1-c)^2``.
+
+    Raises
+    ------
+    InputError : neither or both curvatures, or one outside [0, 1].
+
+    Source: ratt.tex, Remark 1.
+    """
+    kind, value = _one_curvature(k, c)
+    return Guarantee(
+        1 - value if kind == "k" else (1 - value) ** 2, _needs(kind, "the myopic plan"), "ratt.tex, Remark 1"
+    )
+
+
+def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
+    """Bound of the prior work without link attacks: ``(1-k)/(1+k)``, respectively ``(1-c)^3``.
+
+    Raises
+    ------
+    InputError : neither or both curvatures, or one outside [0, 1].
+
+    Source: Tzoumas, Jadbabaie, Pappas 2018, Theorem 1, as ratt.tex quotes it after its Theorem 2.
+    """
+    kind, value = _one_curvature(k, c)
+    bound = (1 - value) / (1 + value) if kind == "k" else (1 - value) ** 3
+    needs = (*_needs(kind, "RATT's plan"), "no link attacks (alpha_c = 0)")
+    return Guarantee(bound, needs, "Tzoumas et al. 2018, Theorem 1")
+
+
+def pattern_free_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
+    """``1-k``, respectively ``(1-c)^2``, whatever the budgets, the graph and the attack: at least Theorem 1's bounds.
+
+    Proof. Let ``u`` be a plan in which each robot is bait (individually best element) or was chosen greedily in
+    some order, ``o`` any plan, ``S`` any set of robots, ``G_i`` the elements chosen greedily before robot ``i``'s.
+
+    Submodular, curvature ``k``. For greedy robots of ``S`` in greedy order, submodularity, the greedy choice (robot
+    ``i`` could have taken ``o_i``) and the curvature give
+    ``phi(u_Sg) >= sum_i marg(u_i | G_i) >= sum_i marg(o_i | G_i) >= (1-k) sum_i phi(o_i)``. Each bait ``b`` adds at
+    least ``(1-k) phi(u_b) >= (1-k) phi(o_b)`` to any set. Hence ``phi(u_S) >= (1-k) sum_S phi(o_i) >= (1-k) phi(o_S)``,
+    the last by submodularity.
+
+    Non-decreasing, total curvature ``c``. Let ``m_x`` be the largest marginal of ``x``; every marginal of ``x`` lies
+    in ``[(1-c) m_x, m_x]``. Greedy (by its marginals given ``G_i``) or bait (by its value),
+    ``m_(u_i) >= (1-c) m_(o_i)``, so ``phi(u_S) >= (1-c) sum_S m_(u_i) >= (1-c)^2 sum_S m_(o_i) >= (1-c)^2 phi(o_S)``.
+
+    As this holds for every ``S`` it holds for every group of every outcome, hence for the best group and
+    after the worst attack. All sets met hold at most one element per robot.
+
+    Raises
+    ------
+    InputError : neither or both curvatures, or one outside [0, 1].
+
+    Source: this library. The bound ``1-k`` is attained (N = 4, alpha_s = 0, alpha_c = 3, k = 0.3).
+    """
+    kind, value = _one_curvature(k, c)
+    bound = 1 - value if kind == "k" else (1 - value) ** 2
+    return Guarantee(
+        bound, _needs(kind, "each robot is bait or chosen greedily"), "pattern-free bound (proof in its docstring)"
+    )
+
+
+def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
+    """Bound for a surviving group of ``g = size`` bait robots.
+
+    ``(1 + (g-1)(1-k)) / g``, respectively ``(1 + (g-1)(1-c)) / (1 + (g-1)/(1-c))``.
+
+    Proof. Number the group so that ``phi(u_1)`` is its largest value; it is worth at least every ``phi(o_i)`` of the
+    group. Submodular: ``phi(u_S) >= phi(u_1) + (1-k) sum_rest phi(u_i)`` with ``phi(u_i) >= phi(o_i)``, and
+    ``phi(o_S) <= sum phi(o_i)``; the ratio is smallest when all ``phi(o_i)`` are equal. Non-decreasing:
+    ``phi(u_S) >= phi(u_1) + (1-c) sum_rest phi(u_i)`` and, taking the largest ``phi(o_i)`` first,
+    ``phi(o_S) <= phi(o_1) + sum_rest phi(o_i) / (1-c)``, with the same extreme.
+
+    Raises
+    ------
+    InputError : neither or both curvatures, one outside [0, 1], or ``size < 1``.
+
+    Source: this library.
+    """
+    g = check_integer("size", size, low=1)
+    kind, value = _one_curvature(k, c)
+    keep = 1 - value
+    if kind == "k":
+        bound = (1 + (g - 1) * keep) / g
+    else:
+        bound = (1 + (g - 1) * keep) / (1 + (g - 1) / keep) if keep > 0 else float(g == 1)
+    return Guarantee(bound, _needs(kind, f"a group of {g} bait robots survives"), "all-bait group bound (this library)")
+
+
+def all_guarantees(
+    problem: Problem, alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None
+) -> dict[str, Guarantee]:
+    """The guarantees that apply to RATT's plan for one problem, strongest first.
+
+    Parameters
+    ----------
+    alpha_cs : sensing attacks that RATT took the link attacks to be worth
+    k : curvature, for a submodular objective; c : total curvature; over feasible sets, numbers or brackets
+    """
+    all_bait = problem.alpha_s + alpha_cs >= problem.n_robots
+    found: dict[str, Guarantee] = {}
+    for name, given in (("k", {"k": k}), ("c", {"c": c})):
+        if given[name] is None:
+            continue
+        found[f"pattern-free ({name})"] = pattern_free_bound(**given)
+        found[f"Theorem 1 ({name})"] = theorem1_bound(alpha_cs, all_bait=all_bait, **given)
+        if problem.alpha_c == 0 and not all_bait:
+            found[f"sensing only ({name})"] = sensing_only_bound(**given)
+        if all_bait:
+            found[f"Remark 1 ({name})"] = remark1_bound(**given)
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def _one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
+    if (k is None) == (c is None):
+        raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
+    name, given = ("k", k) if k is not None else ("c", c)
+    value = float(given.upper if isinstance(given, Bracket) else given)  # type: ignore[arg-type]
+    if not 0 <= value <= 1:
+        raise InputError(name, "must be in [0, 1]", value)
+    return name, value
+
+
+def _needs(kind: str, plan: str) -> tuple[str, ...]:
+    return (
+        SUBMODULAR if kind == "k" else NON_DECREASING,
+        f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
+        plan,
+    )

@@ -1,0 +1,255 @@
+"""The main job as one call: plan, attack, bound, guarantee."""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+import numpy as np
+
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.bounds.guarantees import all_guarantees
+from ratt_opt.errors import InputError
+from ratt_opt.problem import Plan, Problem
+from ratt_opt.scenario.threat_fields import OBJECTIVES
+from ratt_opt.setfunctions.base import LARGEST_TABLE
+from ratt_opt.setfunctions.curvature import curvature, total_curvature
+from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
+from ratt_opt.solvers.maxmin import check_limits, solve_maxmin
+from ratt_opt.solvers.ratt import equivalent_sensing_attacks, ratt
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.bounds.guarantees import Guarantee
+    from ratt_opt.setfunctions.curvature import Curvature
+    from ratt_opt.solvers.result import MaxMinResult
+
+__all__ = ["BoundReport", "PlanAssessment", "bound"]
+
+NONROBUST_PLANS = 300_000
+"""The non-robust optimum is a baseline where it has at most this many plans to look at."""
+SECONDS_BETWEEN_LINES = 1.0
+RANDOM_SEED = 0
+"""Seed of the random baseline, so that a report is reproducible."""
+
+
+@runtime_checkable
+class HasProblem(Protocol):
+    """Anything that becomes a problem: a scenario, or the contents of a model-free file."""
+
+    def problem(self, objective: str = "trace") -> Problem:
+        """Return the max-min problem for one objective."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanAssessment:
+    """One planner's plan and its worst case.
+
+    ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
+    own elements; ``bait`` : RATT's bait robots, empty for other planners.
+    """
+
+    name: str
+    elements: IntArray
+    controls: tuple[int, ...]
+    bait: tuple[int, ...]
+    worst_case: AttackResult
+    evaluations: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoundReport:
+    """What to do now, the worst that can follow, and how far that is from the best possible.
+
+    Claims, all in floating point unless a certificate says more: each plan's worst case lies in
+    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
+    ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
+    ``curvature`` is given for log-det (submodular), ``total_curvature`` for the other criteria.
+    ``seconds`` : wall time of each step.
+    """
+
+    problem: Problem
+    objective: str
+    n_targets: int | None
+    alpha_cs: int
+    ratt: PlanAssessment
+    baselines: tuple[PlanAssessment, ...]
+    optimum: MaxMinResult
+    best: PlanAssessment
+    curvature: Curvature | None
+    total_curvature: Curvature | None
+    guarantees: Mapping[str, Guarantee]
+    seconds: Mapping[str, float]
+
+    @property
+    def n_max(self) -> int:
+        """Size of the largest group that link attacks are taken to leave: ``N - alpha_cs``."""
+        return self.problem.n_robots - self.alpha_cs
+
+    @property
+    def plans(self) -> tuple[PlanAssessment, ...]:
+        """RATT's, the best one found, and the baselines'."""
+        return (self.ratt, self.best, *self.baselines)
+
+    @property
+    def recommended(self) -> PlanAssessment:
+        """The plan with the best proved worst case; RATT's among equals."""
+        return max(self.plans, key=lambda plan: plan.worst_case.lower)
+
+    @property
+    def upper(self) -> float:
+        """Proved upper bound on what any plan can keep."""
+        return max(self.optimum.upper, *(plan.worst_case.lower for plan in self.plans))
+
+    def share(self, plan: PlanAssessment) -> float:
+        """What a plan keeps at least, as a share of the best possible; 1 when both are 0."""
+        return plan.worst_case.lower / self.upper if self.upper > 0 else 1.0
+
+    @property
+    def certified_ratio(self) -> float:
+        """RATT's proved worst-case value over the optimum's upper bound; 1 when both are 0."""
+        return self.share(self.ratt)
+
+
+def bound(
+    scenario_or_problem: HasProblem | Problem,
+    *,
+    objective: str | None = None,
+    gap: float = 1e-9,
+    time_limit: float | None = 60.0,
+    progress: Callable[[str], None] | None = None,
+) -> BoundReport:
+    """Plan, find the worst attack, bracket the optimum and list the guarantees of one scenario.
+
+    Parameters
+    ----------
+    scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
+    objective : ``"trace"`` (the default), ``"logdet"`` or ``"maxeig"``; not with a problem, which has its own
+    gap : relative gap at which the search for the optimum stops
+    time_limit : seconds for that search, and for each attack; ``None`` for no limit
+    progress : called with one line of text whenever there is something to tell
+
+    Raises
+    ------
+    InputError : an argument breaks its rule.
+    """
+    check_limits(gap, time_limit)
+    problem, name = _problem_of(scenario_or_problem, objective)
+    tell = progress or _silent
+    clock = _Clock(tell)
+    with clock("RATT and the baselines"):
+        robust = assess(problem, "ratt", ratt(problem), time_limit)
+        baselines = tuple(assess(problem, label, plan, time_limit) for label, plan in _baselines(problem))
+    with clock("the best possible plan"):
+        optimum = solve_maxmin(problem, gap=gap, time_limit=time_limit, progress=_search_lines(tell))
+        best = _assess_optimum(problem, optimum, time_limit)
+    with clock("curvature and guarantees"):
+        k, c = _curvatures(problem)
+        alpha_cs = equivalent_sensing_attacks(problem)
+        guarantees = all_guarantees(problem, alpha_cs, k=k, c=c)
+    return BoundReport(
+        problem=problem,
+        objective=name,
+        n_targets=_targets(problem),
+        alpha_cs=alpha_cs,
+        ratt=robust,
+        baselines=baselines,
+        optimum=optimum,
+        best=best,
+        curvature=k,
+        total_curvature=c,
+        guarantees=guarantees,
+        seconds=clock.seconds,
+    )
+
+
+def assess(problem: Problem, name: str, plan: Plan, time_limit: float | None = None) -> PlanAssessment:
+    """Attack one plan in the worst way and return both."""
+    return PlanAssessment(
+        name=name,
+        elements=plan.elements,
+        controls=controls_of(problem, plan.elements),
+        bait=plan.bait,
+        worst_case=worst_case_attack(problem, plan.elements, time_limit=time_limit),
+        evaluations=plan.evaluations,
+    )
+
+
+def controls_of(problem: Problem, elements: IntArray) -> tuple[int, ...]:
+    """Positions of the chosen elements among each robot's own."""
+    return tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True))
+
+
+def _problem_of(given: HasProblem | Problem, objective: str | None) -> tuple[Problem, str]:
+    if isinstance(given, Problem):
+        if objective is not None:
+            raise InputError("objective", "must be absent where a problem is given (it has its own)", objective)
+        names = {kind: name for name, kind in OBJECTIVES.items()}
+        return given, names.get(type(given.objective), type(given.objective).__name__)  # type: ignore[arg-type]
+    if not isinstance(given, HasProblem):
+        raise InputError("scenario_or_problem", "must be a scenario or a Problem", type(given).__name__)
+    name = objective or "trace"
+    return given.problem(name), name
+
+
+def _baselines(problem: Problem) -> Iterator[tuple[str, Plan]]:
+    yield "greedy", greedy(problem)
+    yield "myopic", myopic(problem)
+    yield "random", random_plan(problem, seed=RANDOM_SEED)
+    if np.prod([float(len(choice)) for choice in problem.choices]) <= NONROBUST_PLANS:
+        yield "nonrobust", nonrobust_optimum(problem)
+
+
+def _assess_optimum(problem: Problem, optimum: MaxMinResult, time_limit: float | None) -> PlanAssessment:
+    return assess(problem, "maxmin", Plan(elements=optimum.elements, evaluations=optimum.evaluations), time_limit)
+
+
+def _targets(problem: Problem) -> int | None:
+    return problem.objective.n_targets if isinstance(problem.objective, InformationObjective) else None
+
+
+def _search_lines(tell: Callable[[str], None]) -> Callable[[int, float, float], None]:
+    last = [-np.inf]
+
+    def line(nodes: int, lower: float, upper: float) -> None:
+        if time.monotonic() - last[0] >= SECONDS_BETWEEN_LINES:
+            last[0] = time.monotonic()
+            tell(f"  {nodes} nodes: between {lower:.8g} and {upper:.8g}")
+
+    return line
+
+
+def _silent(_: str) -> None:
+    pass
+
+
+class _Clock:
+    """Tells when a step begins and keeps how long it took."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self.seconds: dict[str, float] = {}
+        self._tell = tell
+
+    @contextmanager
+    def __call__(self, step: str) -> Iterator[None]:
+        self._tell(step)
+        began = time.monotonic()
+        yield
+        self.seconds[step] = time.monotonic() - began
+
+
+def _curvatures(problem: Problem) -> tuple[Curvature | None, Curvature | None]:
+    """Curvature (log-det, which is submodular) and total curvature over feasible sets, where they can be bracketed."""
+    f, owners = problem.objective, problem.robot
+    submodular = isinstance(f, LogDetObjective)
+    if not isinstance(f, InformationObjective) and f.n > LARGEST_TABLE:
+        return None, None
+    if submodular:
+        return curvature(f, owners), None
+    return None, total_curvature(f, owners)

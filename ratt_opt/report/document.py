@@ -1,0 +1,91 @@
+"""The bound report as a strict JSON document (``report.json``)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.main_job import BoundReport, PlanAssessment
+    from ratt_opt.setfunctions.curvature import Curvature
+
+__all__ = ["FORMAT", "VERSION", "attack_document", "report_document"]
+
+FORMAT = "ratt-opt report"
+VERSION = 1
+"""Raised when a field changes its meaning or disappears; new fields alone do not raise it."""
+
+
+def report_document(report: BoundReport) -> dict[str, Any]:
+    """Return the report as JSON-ready values: full precision, unknown numbers as ``None``."""
+    problem = report.problem
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "version": VERSION,
+        "n_robots": problem.n_robots,
+        "n_targets": report.n_targets,
+        "objective": report.objective,
+        "alpha_s": problem.alpha_s,
+        "alpha_c": problem.alpha_c,
+        "n_max": report.n_max,
+        "alpha_cs": report.alpha_cs,
+        "ratt": _assessment(report.ratt),
+        "recommended": {"planner": report.recommended.name, **_assessment(report.recommended)},
+        "optimum": {
+            "lower": _number(report.optimum.lower),
+            "upper": _number(report.upper),
+            "posterior_gap": report.optimum.posterior_gap,
+            "stop": report.optimum.stop.value,
+            **_assessment(report.best),
+        },
+        "certified_ratio": _number(report.certified_ratio),
+        "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
+        "baselines": {plan.name: {"worst_case": _worst_case(plan.worst_case)} for plan in report.baselines},
+        "seconds": {name: _number(value) for name, value in report.seconds.items()},
+    }
+    for name in ("curvature", "total_curvature"):
+        bracket = getattr(report, name)
+        document[name] = None if bracket is None else _curvature(bracket)
+    return document
+
+
+def attack_document(objective: str, elements: IntArray, results: Mapping[str, AttackResult]) -> dict[str, Any]:
+    """Return the attacks on one plan as JSON-ready values: attacker -> worst case."""
+    return {
+        "format": "ratt-opt attack",
+        "version": VERSION,
+        "objective": objective,
+        "elements": elements.tolist(),
+        "attacks": {name: _worst_case(result) for name, result in results.items()},
+    }
+
+
+def _assessment(plan: PlanAssessment) -> dict[str, Any]:
+    return {
+        "elements": plan.elements.tolist(),
+        "controls": list(plan.controls),
+        "bait": list(plan.bait),
+        "worst_case": _worst_case(plan.worst_case),
+    }
+
+
+def _worst_case(result: AttackResult) -> dict[str, Any]:
+    return {
+        "lower": _number(result.lower),
+        "upper": _number(result.upper),
+        "sensing": sorted(result.attack.sensing),
+        "links": [list(link) for link in sorted(result.attack.links)],
+        "stop": result.stop.value,
+    }
+
+
+def _curvature(bracket: Curvature) -> dict[str, Any]:
+    return {"lower": _number(bracket.lower), "upper": _number(bracket.upper), "domain": bracket.domain}
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,53 @@
+"""The figure of a bound report: the map with the worst attack beside the bars of all planners."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ratt_opt._files import write_atomically
+from ratt_opt.report.bars import draw_bars
+from ratt_opt.report.map import draw_map
+from ratt_opt.report.tables import floored
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+    from ratt_opt.main_job import BoundReport
+    from ratt_opt.report.map import Picture
+
+__all__ = ["plan_figure", "save_figure"]
+
+
+def plan_figure(report: BoundReport, picture: Picture | None) -> Figure:
+    """Return the figure; without a ``picture`` (no positions are known) only the bars are drawn."""
+    from matplotlib.figure import Figure
+
+    plan = report.recommended
+    attack = plan.worst_case.attack
+    if picture is None:
+        figure = Figure(figsize=(9, 4.4), layout="constrained")
+        draw_bars(figure.subplots(), report)
+    else:
+        figure = Figure(figsize=(14, 8), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1.35, 1))
+        draw_map(left, picture)
+        draw_bars(right, report)
+    figure.suptitle(
+        f"{plan.name} plan. Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
+        f"{len(attack.links)} of {len(report.problem.communication.links)} links cut.\n"
+        f"It keeps {plan.worst_case.lower:.6g}, at least {floored(report.share(plan))} of what any plan can keep.",
+        fontsize=11.5,
+    )
+    return figure
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write ``path`` in the format of its suffix (png or svg), whole or not at all, without dates."""
+    import matplotlib as mpl
+
+    formats: dict[str, dict[str, Any]] = {".svg": {"metadata": {"Date": None}}, ".png": {"dpi": 150}}
+    options = formats[path.suffix]
+    with mpl.rc_context({"svg.hashsalt": "ratt-opt"}):
+        write_atomically(path, lambda file: figure.savefig(file, **options))

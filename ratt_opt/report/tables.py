@@ -1,0 +1,130 @@
+"""The bound report and attack results as tables a person reads."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.main_job import BoundReport
+    from ratt_opt.problem import Attack
+    from ratt_opt.setfunctions.curvature import Curvature
+
+__all__ = ["attack_table", "bracket_text", "floored", "report_tables"]
+
+LONGEST_LINK_LIST = 12
+"""More cut links than this are counted, not listed, in the table (the JSON lists all)."""
+
+
+def report_tables(report: BoundReport, labels: Sequence[str] | None = None) -> Iterable[RenderableType]:
+    """Yield the tables of a bound report: planners, plan, bracket, guarantees.
+
+    Parameters
+    ----------
+    labels : (E,) what each element is ("3 m/s, 1 rad/s"); element indices where unknown
+    """
+    yield _planners(report)
+    yield _plan(report, labels)
+    yield _bracket(report)
+    yield _guarantees(report)
+
+
+def attack_table(results: Mapping[str, AttackResult]) -> Table:
+    """One row an attacker: the value its attack leaves, and the attack."""
+    table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
+    for name, result in results.items():
+        proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
+        table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
+    return table
+
+
+def bracket_text(lower: float, upper: float) -> str:
+    """The bracket as text: one number where both ends agree to ten digits."""
+    if lower == upper or f"{lower:.10g}" == f"{upper:.10g}":
+        return f"{upper:.10g}"
+    return f"[{lower:.8g}, {upper:.8g}]"
+
+
+def floored(share: float) -> str:
+    """A share to six decimals, rounded down: what is printed is never more than what was proved."""
+    return f"{math.floor(share * 1e6) / 1e6:.6f}"
+
+
+def _planners(report: BoundReport) -> Table:
+    table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
+    for plan in report.plans:
+        share = f"at least {floored(report.share(plan))}"
+        name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
+        table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
+    table.caption = "* recommended: the best proved worst case"
+    return table
+
+
+def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
+    plan = report.recommended
+    table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
+    groups = report.problem.communication.groups(plan.worst_case.attack.links)
+    home = {i: k for k, group in enumerate(groups) for i in group}
+    for i, element in enumerate(plan.elements.tolist()):
+        state = "blinded" if i in plan.worst_case.attack.sensing else "sees"
+        group = f", group {home[i]} of {len(groups)}" if len(groups) > 1 else ""
+        table.add_row(str(i), str(element), labels[element] if labels else "", state + group)
+    table.caption = f"cut links: {_links(plan.worst_case.attack)}"
+    return table
+
+
+def _bracket(report: BoundReport) -> Table:
+    table = _table("how good that is", "quantity", "value")
+    optimum, problem = report.optimum, report.problem
+    table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
+    if optimum.posterior_gap is not None:
+        table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
+    table.add_row("search stopped because", optimum.stop.value)
+    table.add_row("certified ratio of RATT", f"at least {floored(report.certified_ratio)}")
+    table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
+    table.add_row("smallest largest group, n_max", str(report.n_max))
+    table.add_row("equivalent sensing attacks, alpha_cs", str(report.alpha_cs))
+    for name, bracket in (("curvature k", report.curvature), ("total curvature c", report.total_curvature)):
+        if bracket is not None:
+            table.add_row(f"{name} over {bracket.domain} sets", _curvature(bracket))
+    return table
+
+
+def _guarantees(report: BoundReport) -> Table:
+    table = _table("what was guaranteed before planning", "guarantee", "value", "needs")
+    best = max((float(g) for g in report.guarantees.values()), default=0.0)
+    for name, guarantee in report.guarantees.items():
+        strongest = float(guarantee) == best and best > 0
+        table.add_row(f"{name} *" if strongest else name, f"{float(guarantee):.6g}", "; ".join(guarantee.hypotheses))
+    table.caption = "* strongest that applies" if best > 0 else "curvature 1: no guarantee says anything here"
+    return table
+
+
+def _curvature(bracket: Curvature) -> str:
+    return bracket_text(bracket.lower, bracket.upper)
+
+
+def _robots(attack: Attack) -> str:
+    return " ".join(map(str, sorted(attack.sensing))) or "none"
+
+
+def _links(attack: Attack) -> str:
+    links = sorted(attack.links)
+    shown = " ".join(f"{i}-{j}" for i, j in links[:LONGEST_LINK_LIST]) or "none"
+    return f"{shown} ... ({len(links)} in all)" if len(links) > LONGEST_LINK_LIST else shown
+
+
+def _table(title: str, *columns: str) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left", title_style="bold")
+    for column in columns:
+        table.add_column(column)
+    return table

@@ -1,0 +1,92 @@
+"""Smallest and largest marginals of every element over an enumerated domain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.setfunctions.information import InformationObjective
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.setfunctions.base import SetFunction
+    from ratt_opt.setfunctions.contexts import Domain
+
+__all__ = ["Marginals", "domain_values", "enumerate_marginals"]
+
+Context = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Marginals:
+    """Per element, brackets ``[lower, upper]`` of its smallest and of its largest marginal, and contexts.
+
+    ``smallest_context`` attains ``smallest_upper`` and ``largest_context`` attains ``largest_lower``.
+    """
+
+    smallest_lower: FloatArray
+    smallest_upper: FloatArray
+    largest_lower: FloatArray
+    largest_upper: FloatArray
+    smallest_context: tuple[Context, ...]
+    largest_context: tuple[Context, ...]
+
+
+def enumerate_marginals(domain: Domain) -> Marginals:
+    """Exact smallest and largest marginals, O(n) passes over the domain."""
+    groups = [np.flatnonzero(domain.owners == i) for i in range(int(domain.owners.max(initial=-1)) + 1)]
+    values = domain_values(domain.restricted, groups)
+    n = domain.restricted.n
+    ends = np.empty((2, n))
+    contexts: tuple[list[Context], list[Context]] = ([()] * n, [()] * n)
+    for axis, own in enumerate(groups):
+        slices = np.moveaxis(values, axis, 0)
+        rest = [g for k, g in enumerate(groups) if k != axis]
+        for position, x in enumerate(own.tolist(), start=1):
+            marginal = slices[position] - slices[0]
+            for side, where in enumerate((int(marginal.argmin()), int(marginal.argmax()))):
+                index = np.unravel_index(where, marginal.shape)
+                ends[side, x] = marginal[index]
+                contexts[side][x] = tuple(int(g[k - 1]) for g, k in zip(rest, index, strict=True) if k > 0)
+    return Marginals(ends[0], ends[0], ends[1], ends[1], tuple(contexts[0]), tuple(contexts[1]))
+
+
+def domain_values(f: SetFunction, groups: list[IntArray]) -> FloatArray:
+    """Values of all sets with at most one element of each group: one axis a group, index 0 for none of it."""
+    shape = tuple(len(group) + 1 for group in groups)
+    if isinstance(f, InformationObjective):
+        return _information_values(f, groups).reshape(shape)
+    size = int(np.prod(shape))
+    values = np.empty(size)
+    for start in range(0, size, 2**14):
+        index = np.arange(start, min(start + 2**14, size))
+        membership = np.zeros((len(index), f.n), dtype=np.bool_)
+        for group, picks in zip(groups, np.unravel_index(index, shape), strict=True):
+            rows = np.flatnonzero(picks)
+            membership[rows, group[picks[rows] - 1]] = True
+        values[index] = f.evaluate(membership)
+    return values.reshape(shape)
+
+
+def _information_values(f: InformationObjective, groups: list[IntArray]) -> FloatArray:
+    """Flat values in C order; the last groups' sums are shared by all choices of the first ones."""
+    shape = [len(group) + 1 for group in groups]
+    split = len(groups)
+    block = 1
+    while split > 0 and block * shape[split - 1] <= 2**14:
+        split -= 1
+        block *= shape[split]
+    low = _sums(f, groups[split:], f.prior_information)
+    high = _sums(f, groups[:split], np.zeros_like(f.prior_information))
+    return np.concatenate([f.value(low + offset) for offset in high])
+
+
+def _sums(f: InformationObjective, groups: list[IntArray], start: FloatArray) -> FloatArray:
+    """(product of (len + 1), M, d, d) sums of one element or none of each group, in C order, plus ``start``."""
+    sums = start[None]
+    for group in groups:
+        options = np.concatenate([np.zeros((1, *start.shape)), f.information[group]])
+        sums = (sums[:, None] + options[None]).reshape(-1, *start.shape)
+    return sums

@@ -1,0 +1,189 @@
+"""The command line as a stranger uses it: files, tables, JSON, refusals in one line with exit code 2."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from ratt_opt import random_scenario, save_scenario, worst_case_attack
+from ratt_opt.cli import run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+REPORT_FIELDS = {
+    "format", "version", "n_robots", "n_targets", "objective", "alpha_s", "alpha_c", "n_max", "alpha_cs", "ratt",
+    "optimum", "certified_ratio", "curvature", "total_curvature", "guarantees", "baselines",
+}  # fmt: skip
+
+
+@pytest.fixture
+def scenario_file(tmp_path: Path) -> Path:
+    path = tmp_path / "scenario.json"
+    save_scenario(random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=5), path)
+    return path
+
+
+def _strict(text: str) -> Any:
+    def refuse(name: str) -> None:
+        raise AssertionError(f"{name} is not strict JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def _refused(arguments: list[str], capsys: pytest.CaptureFixture[str], text: str) -> None:
+    assert run(arguments) == 2
+    shown = capsys.readouterr().err
+    assert text in shown
+    assert shown.startswith("error: ")
+    assert shown.count("\n") == 1
+
+
+def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["demo", "--out", str(tmp_path / "demo")]) == 0
+    assert sorted(os.listdir(tmp_path / "demo")) == ["plan.png", "plan.svg", "report.json", "scenario.json"]
+    report = _strict((tmp_path / "demo" / "report.json").read_text())
+    assert report.keys() >= REPORT_FIELDS
+    assert (report["n_robots"], report["n_targets"], report["alpha_s"], report["alpha_c"]) == (4, 4, 1, 3)
+    assert report["optimum"]["lower"] <= report["optimum"]["upper"]
+    assert report["ratt"]["worst_case"]["lower"] / report["optimum"]["upper"] == report["certified_ratio"] <= 1
+    assert report["total_curvature"]["domain"] == "feasible"
+    assert {"greedy", "myopic", "random", "nonrobust"} <= report["baselines"].keys()
+    printed = capsys.readouterr().out
+    assert "certified ratio of RATT" in printed
+    assert (tmp_path / "demo" / "plan.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "demo" / "plan.svg").read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])
+def test_bound_reports_what_the_library_computes(
+    scenario_file: Path, tmp_path: Path, objective: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert run(["bound", str(scenario_file), "--out", str(out), "--objective", objective, "--json"]) == 0
+    report = _strict(capsys.readouterr().out)
+    assert report == _strict((out / "report.json").read_text())
+    problem = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=5).problem(objective)
+    for plan in (report["ratt"], report["optimum"]):
+        assert worst_case_attack(problem, plan["elements"]).lower == pytest.approx(
+            plan["worst_case"]["lower"], rel=1e-12
+        )
+        assert plan["controls"] == [e - 12 * i for i, e in enumerate(plan["elements"])]
+    assert report["curvature" if objective == "logdet" else "total_curvature"]["lower"] > 0
+    assert all(0 <= value <= report["certified_ratio"] + 1e-12 for value in report["guarantees"].values())
+
+
+def test_blinding_everyone_is_worth_nothing_and_ratio_one(tmp_path: Path) -> None:
+    path = tmp_path / "s.json"
+    save_scenario(random_scenario(2, 2, alpha_s=2, alpha_c=0, seed=0), path)
+    assert run(["bound", str(path), "--out", str(tmp_path / "o")]) == 0
+    report = _strict((tmp_path / "o" / "report.json").read_text())
+    assert report["optimum"]["upper"] == report["ratt"]["worst_case"]["lower"] == 0
+    assert report["certified_ratio"] == 1.0
+
+
+def test_a_model_free_file_is_bounded(tmp_path: Path) -> None:
+    document = {
+        "format": "ratt-opt information", "version": 1, "alpha_s": 1, "alpha_c": 0, "robot": [0, 0, 1],
+        "prior": [[[2.0]]], "information": [[[[1.0]]], [[[2.0]]], [[[0.5]]]],
+    }  # fmt: skip
+    path = tmp_path / "i.json"
+    path.write_text(json.dumps(document))
+    assert run(["bound", str(path), "--out", str(tmp_path / "o")]) == 0
+    report = _strict((tmp_path / "o" / "report.json").read_text())
+    assert report["optimum"]["upper"] == pytest.approx(2 - 1 / (0.5 + 0.5))
+
+
+def test_attack_evaluates_the_users_plan(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = tmp_path / "plan.json"
+    plan.write_text('{"controls": [0, 4, 11]}')
+    assert run(["attack", str(scenario_file), "--plan", str(plan), "--json"]) == 0
+    document = _strict(capsys.readouterr().out)
+    assert document["elements"] == [0, 16, 35]
+    exact = document["attacks"]["exact"]
+    assert exact["lower"] == exact["upper"]
+    assert all(exact["lower"] <= result["upper"] for result in document["attacks"].values())
+    assert run(["attack", str(scenario_file), "--plan", str(plan)]) == 0
+    assert "bounded rational" in capsys.readouterr().out
+
+
+def test_new_is_reproducible(tmp_path: Path) -> None:
+    common = ["--robots", "4", "--targets", "3", "--sensing-attacks", "1", "--link-attacks", "2", "--seed", "7"]
+    for name in ("a.json", "b.json"):
+        assert run(["new", *common, "--out", str(tmp_path / name)]) == 0
+    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+
+
+def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["schema"]) == 0
+    assert _strict(capsys.readouterr().out)["title"] == "Scenario"
+
+
+def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ("demo", "new", "bound", "attack", "schema"):
+        assert run([command, "--help"]) == 0
+        assert "--help" in capsys.readouterr().out
+    assert run(["--version"]) == 0
+    assert capsys.readouterr().out.strip() == "0.1.0"
+
+
+NEW = ["new", "--sensing-attacks", "1", "--link-attacks", "1", "--out", "OUT/s.json"]
+BAD = [
+    (["bound", "OUT/none.json", "--out", "OUT/o"], "none.json must be a file that can be read"),
+    (["bound", "FILE", "--out", "FILE"], "out must be a folder that can be written"),
+    (["bound", "FILE", "--out", "OUT/o", "--objective", "area"], "area"),
+    (["bound", "FILE", "--out", "OUT/o", "--time-limit", "0"], "time_limit must be positive"),
+    (["bound", "FILE", "--out", "OUT/o", "--gap", "-1"], "gap must be a number >= 0; got -1.0"),
+    (["bound", "FILE", "--out", "OUT/o", "--time-limit", "soon"], "soon"),
+    (["bound", "FILE", "--colour", "red"], "--colour"),
+    (["bound"], "Missing argument 'file'"),
+    (["plan"], "plan"),
+    ([*NEW, "--robots", "2", "--targets", "2"], "--seed must be given for a random scenario"),
+    ([*NEW, "--robots", "2", "--targets", "0", "--seed", "1"], "n_targets must be an integer >= 1; got 0"),
+    ([*NEW, "--robots", "1", "--targets", "1", "--seed", "1"], "alpha_c must be an integer in [0, 0]; got 1"),
+    ([*NEW, "--robots", "2", "--mrclam", "OUT", "--time", "0"], "--robots must come with no --mrclam"),
+    ([*NEW, "--mrclam", "OUT"], "--time must be given with --mrclam"),
+    ([*NEW, "--mrclam", "OUT", "--time", "0"], "Landmark_Groundtruth.dat"),
+    (
+        [*NEW, "--time", "3", "--robots", "2", "--targets", "2", "--seed", "1"],
+        "--time must come with --mrclam; got 3.0",
+    ),
+]
+
+
+@pytest.mark.parametrize(("arguments", "text"), BAD, ids=range(len(BAD)))
+def test_bad_command_lines(
+    arguments: list[str], text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = sorted(os.listdir(tmp_path))
+    filled = [a.replace("OUT", str(tmp_path)).replace("FILE", str(scenario_file)) for a in arguments]
+    _refused(filled, capsys, text)
+    assert [name for name in sorted(os.listdir(tmp_path)) if name != "o"] == before
+    assert not (tmp_path / "o").exists() or os.listdir(tmp_path / "o") == []
+
+
+@pytest.mark.parametrize(
+    ("plan", "text"),
+    [
+        ("{}", 'must be an object with "elements" or "controls"'),
+        ("[0, 1, 2]", "must be an object"),
+        ('{"elements": [0, 12]}', "elements must be a list of 3 integers, one per robot"),
+        ('{"elements": [0, 12, 13]}', "elements[2] must be an element of robot 2; got 13 of robot 1"),
+        ('{"elements": [0, 12, 99]}', "elements[2] must be an integer in [0, 35]; got 99"),
+        ('{"elements": [0, 12, "x"]}', "elements[2] must be an integer"),
+        ('{"controls": [0, 1, 12]}', "controls[2] must be an integer in [0, 11]; got 12"),
+        ('{"controls": [0, 1, [2]]}', "controls must be a list of 3 integers"),
+        ("{", "line 1"),
+    ],
+)
+def test_bad_plans(
+    plan: str, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "plan.json"
+    path.write_text(plan)
+    _refused(["attack", str(scenario_file), "--plan", str(path)], capsys, text)
