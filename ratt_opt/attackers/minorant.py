@@ -1,14 +1,13 @@
 """An affine minorant of the value of sets of robots of one size, from a linear program.
 
-Target ``j``'s criterion is concave in its information matrix. For sets ``R`` of ``r`` of the free robots,
-``Lambda_j(R)`` lies in every half-space ``<g, Lambda> >= (sum of the r smallest <g, I_e>)``, so in the polytope
-``Q_j`` of some of them. Hence an affine function of ``Lambda`` that is below the value ``phi_j`` at the vertices of
-``Q_j`` is below it for every ``R``. Directions ``g = v v'`` keep ``Q_j`` among the positive definite matrices.
-The concavity of ``phi_j`` comes mostly from the few robots next to the target: these "heavy" ones are
-enumerated, with a polytope of the light ones for each pattern, and get scores of their own.
+Target ``j``'s criterion is concave in its information matrix, and ``Lambda_j(R)`` lies in an outer polytope
+(``outer_points.py``). An affine function of ``Lambda`` that is below the value ``phi_j`` at its vertices is below
+it for every ``R``. The concavity of ``phi_j`` comes mostly from the few robots next to the target: these "heavy"
+ones are enumerated and get scores of their own.
 
 The best minorants at the weakest fractional set come from one linear program: its multipliers are the
-minorant's slopes. Its constant is recomputed here from the vertices, so nothing depends on the solver.
+minorant's slopes. Its columns (the vertices) are generated as they are needed. The minorant's constant is
+recomputed here from all vertices, so nothing depends on the solver, nor on solving to the end.
 """
 
 from __future__ import annotations
@@ -18,207 +17,158 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.compact import LOG_DET, TRACE
-from ratt_opt.attackers.compiled import cut_polytopes
-from ratt_opt.attackers.linear_program import solve_equality_form
+from ratt_opt.attackers.compact import TRACE
+from ratt_opt.attackers.linear_program import EqualityProgram
+from ratt_opt.attackers.outer_points import OuterPoints, SetFamily, outer_points, target_values
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["Minorant", "SetFamily", "affine_minorant"]
+__all__ = ["Minorant", "affine_minorant"]
 
-SPHERE_DIRECTIONS = 10
-RANK_ONE_DIRECTIONS = 12
-CAPACITY = 128
-"""Vertices kept per polytope: 28 half-spaces have at most 52, the rest is for repeated points."""
+FIRST_COLUMNS, NEW_COLUMNS = 5, 2
+"""Vertices per polytope in the first linear program and added in each further round."""
 
-SAFETY = 1e-9
-"""Relative amount by which every half-space is widened against rounding; distinct per row, so no two meet."""
+ROUNDS = 12
+NEARLY_SOLVED = 0.02
+"""Rounds end when the program's value exceeds the bound by this share of what the goal exceeds it."""
 
-
-@dataclass(frozen=True, slots=True)
-class SetFamily:
-    """All ``R`` of ``size`` of F free robots, beside those already chosen.
-
-    ``kind`` : TRACE or LOG_DET; ``weights`` : (M,); ``prior`` : (M, 3) criterion's zero; ``start`` : (M, 3)
-    prior plus the chosen robots' information; ``information`` : (F, M, 3)
-    """
-
-    kind: int
-    weights: FloatArray
-    prior: FloatArray
-    start: FloatArray
-    information: FloatArray
-    size: int
+PENALTY = 4.0
+"""Cost of violating a row, in the largest value of a target: keeps the restricted programs feasible."""
 
 
 @dataclass(frozen=True, slots=True)
 class Minorant:
     """``value(R) >= constant + sum of scores over R`` for every set of the family.
 
-    ``scores`` : (F,); ``fraction`` : (F,) where the linear program puts the weakest set; ``tension`` : (F,) each
-    robot's share of what concavity hides there (branching guide, not a claim).
+    ``scores`` : (F,); ``slopes`` : (M, 3) in the information; ``fraction`` : (F,) where the linear program puts
+    the weakest set; ``tension`` : (F,) each robot's share of what concavity hides there (guides, not claims).
     """
 
     constant: float
     scores: FloatArray
+    slopes: FloatArray
     fraction: FloatArray
     tension: FloatArray
 
-
-def affine_minorant(family: SetFamily, n_heavy: int) -> Minorant:
-    """Best found affine minorant; valid whatever the solver answers."""
-    gains = _values(family, family.start[None] + family.information)
-    n_heavy = min(n_heavy, family.size, len(gains) - family.size)
-    heavy = np.argsort(-gains, axis=0, kind="stable")[:n_heavy].T
-    light = np.ones(gains.shape, dtype=np.bool_)
-    np.put_along_axis(light, heavy.T, False, axis=0)
-    patterns = np.arange(2**n_heavy)[:, None] >> np.arange(n_heavy) & 1
-    points = _outer_points(family, heavy, light, patterns)
-    return _solve(family, points)
+    def bound(self, size: int) -> float:
+        """No set of ``size`` robots is worth less."""
+        return self.constant + float(np.partition(self.scores, size - 1)[:size].sum())
 
 
-def _values(family: SetFamily, matrices: FloatArray) -> FloatArray:
-    """Value of each target's information (..., M, 3) -> (..., M); minus infinity where it is not positive definite."""
-    a, b, c = matrices[..., 0], matrices[..., 1], matrices[..., 2]
-    determinant = a * c - b * b
-    safe = (determinant > 1e-12 * (a + c) ** 2) & (a + c > 0)
-    determinant = np.where(safe, determinant, 1.0)
-    prior = family.prior
-    zero = prior[:, 0] * prior[:, 2] - prior[:, 1] ** 2
-    if family.kind == TRACE:
-        value = (prior[:, 0] + prior[:, 2]) / zero - (a + c) / determinant
-    else:
-        assert family.kind == LOG_DET
-        value = np.log(determinant / zero)
-    return np.where(safe, family.weights * value, -np.inf)
+def affine_minorant(family: SetFamily, n_heavy: int, goal: float, slopes: FloatArray | None = None) -> Minorant:
+    """Best found affine minorant; valid whatever the solver answers.
 
-
-@dataclass(frozen=True, slots=True)
-class _Points:
-    """Vertices of all outer polytopes; ``sound[j]`` says that target ``j``'s are all positive definite.
-
-    ``target``, ``pattern`` : (V,); ``sums`` : (V, 3) information of the set; ``values`` : (V,);
-    ``heavy`` : (M, h) robots enumerated for each target; ``patterns`` : (P, h) which of them are in the set
+    Parameters
+    ----------
+    family : 0 < size < F
+    goal : no better bound is needed
+    slopes : (M, 3) to start from; by default the gradient at the mean set
     """
-
-    target: IntArray
-    pattern: IntArray
-    sums: FloatArray
-    values: FloatArray
-    sound: BoolArray
-    heavy: IntArray
-    patterns: IntArray
-
-
-def _outer_points(family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray) -> _Points:
-    n_free, n_targets, _ = family.information.shape
-    factor = _whitening(family, light)
-    white = np.linalg.solve(factor, family.information.transpose(1, 2, 0))  # (M, 3, F)
-    normals = _directions(factor)
-    heights = np.where(light.T[:, None, :], normals @ white, np.inf)
-    heights.sort(axis=-1)
-    sums = np.concatenate([np.zeros((*heights.shape[:2], 1)), np.cumsum(heights, axis=-1)], axis=-1)
-    counts = family.size - patterns.sum(axis=1)
-    feasible = (counts >= 0) & (counts <= n_free - heavy.shape[1])
-    kept, counts = patterns[feasible], counts[feasible]
-    picked = np.take_along_axis(white, heavy[:, None, :], axis=2)  # (M, 3, h)
-    base = picked @ kept.T  # (M, 3, P)
-    support = sums[:, :, counts] + normals @ base  # (M, D, P)
-    widen = SAFETY * (1 + np.arange(normals.shape[1]) / normals.shape[1])
-    support -= widen[None, :, None] * (1 + np.abs(support))
-    n_patterns = len(kept)
-    vertices, numbers = cut_polytopes(
-        np.repeat(normals, n_patterns, axis=0),
-        np.ascontiguousarray(support.transpose(0, 2, 1)).reshape(n_targets * n_patterns, -1),
-        CAPACITY,
-    )
-    owner, slot = np.nonzero(np.arange(CAPACITY) < numbers[:, None])
-    target = owner // n_patterns
-    points = np.einsum("vst,vt->vs", factor[target], vertices[owner, slot])
-    values = _point_values(family, target, points)
-    sound = (numbers.reshape(n_targets, n_patterns) > 0).all(axis=1)
-    sound[target[np.isneginf(values)]] = False
-    used = sound[target]
-    which = np.flatnonzero(feasible)[owner % n_patterns]
-    return _Points(target[used], which[used], points[used], values[used], sound, heavy, patterns)
+    points = outer_points(family, n_heavy)
+    fraction = np.full(len(family.information), family.size / len(family.information))
+    if slopes is None:
+        slopes = _gradient(family, fraction)
+    best = _recompute(family, points, slopes, np.zeros(points.heavy.shape), fraction)
+    if best.bound(family.size) >= goal:
+        return best
+    return _generate(family, points, best, goal)
 
 
-def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
-    """(M, 3, 3) lower-triangular factors of the spread of the light robots' information about each target."""
-    share = light / light.sum(axis=0)
-    centred = family.information - np.einsum("fm,fmt->mt", share, family.information)
-    spread = np.einsum("fm,fms,fmt->mst", share, centred, centred)
-    size = np.trace(spread, axis1=1, axis2=2) + 1e-12 * (family.start**2).sum(axis=1)
-    return np.asarray(np.linalg.cholesky(spread + 1e-8 * size[:, None, None] * np.eye(3)))
+def _gradient(family: SetFamily, fraction: FloatArray) -> FloatArray:
+    """(M, 3) derivative of each target's value in (a, b, c) at the mean set."""
+    a, b, c = np.moveaxis(family.start + np.einsum("f,fmt->mt", fraction, family.information), -1, 0)
+    determinant = a * c - b * b
+    p, q, r = c / determinant, -b / determinant, a / determinant
+    if family.kind == TRACE:
+        p, q, r = p * p + q * q, q * (p + r), q * q + r * r
+    return np.asarray(family.weights[:, None] * np.stack([p, 2 * q, r], axis=-1))
 
 
-def _directions(factor: FloatArray) -> FloatArray:
-    """(M, D, 3) half-space normals in whitened coordinates: a box, a sphere's points, rank-one directions."""
-    index = np.arange(SPHERE_DIRECTIONS) + 0.5
-    height, turn = 1 - 2 * index / SPHERE_DIRECTIONS, np.pi * (1 + 5**0.5) * index
-    flat = np.sqrt(1 - height**2)
-    sphere = np.stack([np.cos(turn) * flat, np.sin(turn) * flat, height], axis=-1)
-    angle = (np.arange(RANK_ONE_DIRECTIONS) + 0.5) * np.pi / RANK_ONE_DIRECTIONS
-    rank_one = np.stack([np.cos(angle) ** 2, np.sin(2 * angle), np.sin(angle) ** 2], axis=-1) @ factor
-    rank_one /= np.linalg.norm(rank_one, axis=-1, keepdims=True)
-    fixed = np.concatenate([np.eye(3), -np.eye(3), sphere])
-    return np.concatenate([np.broadcast_to(fixed, (len(factor), *fixed.shape)), rank_one], axis=1)
-
-
-def _point_values(family: SetFamily, target: IntArray, points: FloatArray) -> FloatArray:
-    one = SetFamily(
-        family.kind, family.weights[target], family.prior[target], family.start[target], family.information, family.size
-    )
-    return _values(one, one.start + points)
-
-
-def _solve(family: SetFamily, points: _Points) -> Minorant:
-    """Set up and solve the linear program, then recompute the minorant from its multipliers.
+def _generate(family: SetFamily, points: OuterPoints, best: Minorant, goal: float) -> Minorant:
+    """Solve the linear program by rounds of column generation and keep the best minorant met.
 
     minimise sum of values * share  over shares of the vertices and fractions x of the robots, where each
     target's shares sum to 1, reproduce ``sum_e x_e I_ej`` and, for heavy robots, their ``x_e``.
     """
-    n_free, n_targets, _ = family.information.shape
+    n_targets = len(family.weights)
     rows_each = 4 + points.heavy.shape[1]
     scale = np.maximum(np.abs(family.information).max(axis=(0, 2)), 1e-300)
+    program = _program(family, points, scale)
+    shares = np.concatenate(
+        [points.sums / scale[points.target, None], np.ones((len(points.target), 1)), points.patterns[points.pattern]],
+        axis=1,
+    )
+    used = np.zeros(len(points.target), dtype=np.bool_)
+    rest = _rest(points, best.slopes, np.zeros(points.heavy.shape))
+    fresh = _lowest(points, rest, FIRST_COLUMNS)
+    for _ in range(ROUNDS):
+        used[fresh] = True
+        program.add(shares[fresh], points.target[fresh] * rows_each, points.values[fresh])
+        fraction, duals, value = program.solve()
+        slopes = duals[:-1].reshape(n_targets, rows_each) * points.sound[:, None]
+        own = slopes[:, 4:]
+        found = _recompute(family, points, slopes[:, :3] / scale[:, None], own, fraction)
+        if found.bound(family.size) >= best.bound(family.size):
+            best = found
+        bound = best.bound(family.size)
+        rest = _rest(points, found.slopes, own)
+        fresh = _lowest(points, np.where(used, np.inf, rest - slopes[points.target, 3]), NEW_COLUMNS, below=-1e-9)
+        if bound >= goal or not len(fresh) or value - bound <= NEARLY_SOLVED * (goal - bound):
+            break
+    return best
+
+
+def _program(family: SetFamily, points: OuterPoints, scale: FloatArray) -> EqualityProgram:
+    n_free, n_targets, _ = family.information.shape
+    rows_each = 4 + points.heavy.shape[1]
     block = np.zeros((n_targets, rows_each, n_free))
     block[:, :3] = -(family.information / scale[:, None]).transpose(1, 2, 0)
     j, q = np.indices(points.heavy.shape)
     block[j, 4 + q, points.heavy] = -1.0
     block[~points.sound] = 0.0
     robots = np.vstack([block.reshape(-1, n_free), np.ones((1, n_free))])
-    shares = np.concatenate(
-        [points.sums / scale[points.target, None], np.ones((len(points.target), 1)), points.patterns[points.pattern]],
-        axis=1,
-    )
     right = np.zeros(n_targets * rows_each + 1)
     right[3:-1:rows_each] = points.sound
     right[-1] = family.size
-    first_row = points.target * rows_each
-    fraction, duals = solve_equality_form(robots, shares, first_row, points.values, right)
-    slopes = duals[:-1].reshape(n_targets, rows_each) * points.sound[:, None]
-    return _recompute(family, points, slopes[:, :3] / scale[:, None], slopes[:, 3 + 1 :], fraction)
+    highest = np.zeros(n_targets)
+    np.maximum.at(highest, points.target, points.values)
+    penalties = np.repeat(PENALTY * highest + 1e-6, rows_each).reshape(n_targets, rows_each)
+    penalties[:, 3] = np.inf
+    return EqualityProgram(robots, right, np.append(penalties.ravel(), np.inf))
+
+
+def _rest(points: OuterPoints, slopes: FloatArray, own: FloatArray) -> FloatArray:
+    """(V,) value of each vertex minus what slopes (M, 3) and the heavy robots' own scores (M, h) say."""
+    rest = points.values - (points.sums * slopes[points.target]).sum(axis=1)
+    return np.asarray(rest - (points.patterns[points.pattern] * own[points.target]).sum(axis=1))
+
+
+def _lowest(points: OuterPoints, rest: FloatArray, count: int, below: float = np.inf) -> IntArray:
+    """The ``count`` vertices of each polytope with the lowest ``rest``, as far as that is less than ``below``."""
+    polytope = points.target * len(points.patterns) + points.pattern
+    order = np.lexsort((rest, polytope))
+    starts = np.flatnonzero(np.diff(polytope[order], prepend=-1))
+    rank = np.arange(len(order)) - np.repeat(starts, np.diff(np.append(starts, len(order))))
+    return np.sort(order[(rank < count) & (rest[order] < below)])
 
 
 def _recompute(
-    family: SetFamily, points: _Points, matrix_slopes: FloatArray, own: FloatArray, fraction: FloatArray
+    family: SetFamily, points: OuterPoints, slopes: FloatArray, own: FloatArray, fraction: FloatArray
 ) -> Minorant:
     """The minorant with these slopes (M, 3) and heavy robots' own scores (M, h): its constant from the vertices."""
-    scores = np.einsum("fmt,mt->f", family.information, matrix_slopes)
+    slopes = slopes * points.sound[:, None]
+    scores = np.einsum("fmt,mt->f", family.information, slopes)
     np.add.at(scores, points.heavy.ravel(), own.ravel())
-    rest = points.values - (points.sums * matrix_slopes[points.target]).sum(axis=1)
-    rest -= (points.patterns[points.pattern] * own[points.target]).sum(axis=1)
-    constants = _values(family, family.start)  # a target without sound polytope is worth what is chosen already
+    constants = target_values(family, family.start)  # without a sound polytope: what is chosen already
     for_sound = np.full(len(constants), np.inf)
-    np.minimum.at(for_sound, points.target, rest)
+    np.minimum.at(for_sound, points.target, _rest(points, slopes, own))
     constants = np.where(points.sound, for_sound, constants)
     mean = family.start + np.einsum("f,fmt->mt", fraction, family.information)
-    envelope = constants + np.einsum("f,fmt,mt->m", fraction, family.information, matrix_slopes)
+    envelope = constants + np.einsum("f,fmt,mt->m", fraction, family.information, slopes)
     envelope += (own * fraction[points.heavy]).sum(axis=1)
-    hidden = np.maximum(_values(family, mean) - envelope, 0.0)
-    tension = _tension(family, mean, hidden)
-    return Minorant(float(constants.sum()), scores, fraction, tension)
+    hidden = np.maximum(target_values(family, mean) - envelope, 0.0)
+    return Minorant(float(constants.sum()), scores, slopes, fraction, _tension(family, mean, hidden))
 
 
 def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:

@@ -12,7 +12,8 @@ from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
 from ratt_opt.attackers.compact import LOG_DET, TRACE, CompactTeam
 from ratt_opt.attackers.large_team import LargeTeamSearch
 from ratt_opt.attackers.low_sets import LowSets
-from ratt_opt.attackers.minorant import SetFamily, affine_minorant
+from ratt_opt.attackers.minorant import affine_minorant
+from ratt_opt.attackers.outer_points import SetFamily
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.weakest_axis import weakest_axis
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
@@ -92,7 +93,7 @@ def test_minorants_lie_below_every_set(kind, seed):
     data[1][4] = 0.0
     team = CompactTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
     family = SetFamily(kind, team.weights, team.prior, team.prior, team.information, size)
-    minorant = affine_minorant(family, 2)
+    minorant = affine_minorant(family, 2, np.inf)
     slack = [
         team.value(chosen) - minorant.constant - minorant.scores[list(chosen)].sum()
         for chosen in combinations(range(n_robots), size)
