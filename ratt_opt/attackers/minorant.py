@@ -12,7 +12,7 @@ recomputed here from all vertices, so nothing depends on the solver, nor on solv
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +29,10 @@ __all__ = ["Minorant", "affine_minorant"]
 FIRST_COLUMNS, NEW_COLUMNS = 5, 2
 """Vertices per polytope in the first linear program and added in each further round."""
 
+CUTS = 12
+"""Half-spaces per target that a node hands to its children."""
+
+NEW_CUTS = 4
 ROUNDS = 12
 NEARLY_SOLVED = 0.02
 """Rounds end when the program's value exceeds the bound by this share of what the goal exceeds it."""
@@ -42,7 +46,8 @@ class Minorant:
     """``value(R) >= constant + sum of scores over R`` for every set of the family.
 
     ``scores`` : (F,); ``slopes`` : (M, 3) in the information; ``fraction`` : (F,) where the linear program puts
-    the weakest set; ``tension`` : (F,) each robot's share of what concavity hides there (guides, not claims).
+    the weakest set; ``tension`` : (F,) each robot's share of what concavity hides there; ``normals`` : (M, A, 3)
+    half-spaces that would cut off the vertices that bind here (guides, not claims).
     """
 
     constant: float
@@ -50,39 +55,42 @@ class Minorant:
     slopes: FloatArray
     fraction: FloatArray
     tension: FloatArray
+    normals: FloatArray
 
     def bound(self, size: int) -> float:
         """No set of ``size`` robots is worth less."""
         return self.constant + float(np.partition(self.scores, size - 1)[:size].sum())
 
 
-def affine_minorant(family: SetFamily, n_heavy: int, goal: float, slopes: FloatArray | None = None) -> Minorant:
+def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None) -> Minorant:
     """Best found affine minorant; valid whatever the solver answers.
 
     Parameters
     ----------
     family : 0 < size < F
     goal : no better bound is needed
-    slopes : (M, 3) to start from; by default the gradient at the mean set
+    parent : a minorant of a larger family, whose slopes and half-spaces are a good start
     """
-    points = outer_points(family, n_heavy)
+    idle = np.zeros((len(family.weights), CUTS, 3))
+    points = outer_points(family, n_heavy, idle if parent is None else parent.normals)
     fraction = np.full(len(family.information), family.size / len(family.information))
-    if slopes is None:
-        slopes = _gradient(family, fraction)
+    mean = family.start + np.einsum("f,fmt->mt", fraction, family.information)
+    slopes = _gradient(family, np.arange(len(mean)), mean) if parent is None else parent.slopes
     best = _recompute(family, points, slopes, np.zeros(points.heavy.shape), fraction)
+    best = replace(best, normals=idle if parent is None else parent.normals)
     if best.bound(family.size) >= goal:
         return best
     return _generate(family, points, best, goal)
 
 
-def _gradient(family: SetFamily, fraction: FloatArray) -> FloatArray:
-    """(M, 3) derivative of each target's value in (a, b, c) at the mean set."""
-    a, b, c = np.moveaxis(family.start + np.einsum("f,fmt->mt", fraction, family.information), -1, 0)
+def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:
+    """(V, 3) derivative of each target's value in (a, b, c) at information matrices (V, 3)."""
+    a, b, c = np.moveaxis(matrices, -1, 0)
     determinant = a * c - b * b
     p, q, r = c / determinant, -b / determinant, a / determinant
     if family.kind == TRACE:
         p, q, r = p * p + q * q, q * (p + r), q * q + r * r
-    return np.asarray(family.weights[:, None] * np.stack([p, 2 * q, r], axis=-1))
+    return np.asarray(family.weights[target, None] * np.stack([p, 2 * q, r], axis=-1))
 
 
 def _generate(family: SetFamily, points: OuterPoints, best: Minorant, goal: float) -> Minorant:
@@ -109,6 +117,7 @@ def _generate(family: SetFamily, points: OuterPoints, best: Minorant, goal: floa
         slopes = duals[:-1].reshape(n_targets, rows_each) * points.sound[:, None]
         own = slopes[:, 4:]
         found = _recompute(family, points, slopes[:, :3] / scale[:, None], own, fraction)
+        found = replace(found, normals=best.normals)
         if found.bound(family.size) >= best.bound(family.size):
             best = found
         bound = best.bound(family.size)
@@ -116,7 +125,26 @@ def _generate(family: SetFamily, points: OuterPoints, best: Minorant, goal: floa
         fresh = _lowest(points, np.where(used, np.inf, rest - slopes[points.target, 3]), NEW_COLUMNS, below=-1e-9)
         if bound >= goal or not len(fresh) or value - bound <= NEARLY_SOLVED * (goal - bound):
             break
-    return best
+    return replace(best, normals=_normals(family, points, found, rest))
+
+
+def _normals(family: SetFamily, points: OuterPoints, found: Minorant, rest: FloatArray) -> FloatArray:
+    """At the vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
+    binding = points.values - rest  # the minorant without its constant
+    constants = np.full(len(family.weights), np.inf)
+    np.minimum.at(constants, points.target, rest)
+    close = np.where(rest <= constants[points.target] + 1e-6, -binding, np.inf)
+    order = np.lexsort((close, points.target))
+    order = order[np.isfinite(close[order])]
+    target = points.target[order]
+    starts = np.flatnonzero(np.diff(target, prepend=-1))
+    rank = np.arange(len(order)) - np.repeat(starts, np.diff(np.append(starts, len(order))))
+    order, rank = order[rank < NEW_CUTS], rank[rank < NEW_CUTS]
+    target = points.target[order]
+    fresh = np.zeros((len(family.weights), NEW_CUTS, 3))
+    matrices = family.start[target] + points.sums[order]
+    fresh[target, rank] = _gradient(family, target, matrices) - found.slopes[target]
+    return np.concatenate([fresh, found.normals], axis=1)[:, :CUTS]
 
 
 def _program(family: SetFamily, points: OuterPoints, scale: FloatArray) -> EqualityProgram:
@@ -168,7 +196,8 @@ def _recompute(
     envelope = constants + np.einsum("f,fmt,mt->m", fraction, family.information, slopes)
     envelope += (own * fraction[points.heavy]).sum(axis=1)
     hidden = np.maximum(target_values(family, mean) - envelope, 0.0)
-    return Minorant(float(constants.sum()), scores, slopes, fraction, _tension(family, mean, hidden))
+    no_cuts = np.zeros((len(mean), 0, 3))
+    return Minorant(float(constants.sum()), scores, slopes, fraction, _tension(family, mean, hidden), no_cuts)
 
 
 def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:

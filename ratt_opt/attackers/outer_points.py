@@ -78,21 +78,25 @@ class OuterPoints:
     patterns: IntArray
 
 
-def outer_points(family: SetFamily, n_heavy: int) -> OuterPoints:
-    """Vertices of the outer polytopes of a family, with ``n_heavy`` robots per target enumerated."""
+def outer_points(family: SetFamily, n_heavy: int, normals: FloatArray) -> OuterPoints:
+    """Vertices of the outer polytopes of a family, with ``n_heavy`` robots per target enumerated.
+
+    ``normals`` : (M, A, 3) further half-space normals, as slopes in (a, b, c); zero rows are idle; A <= 36
+    """
     gains = target_values(family, family.start[None] + family.information)
     n_heavy = min(n_heavy, family.size, len(gains) - family.size)
     heavy = np.argsort(-gains, axis=0, kind="stable")[:n_heavy].T
     light = np.ones(gains.shape, dtype=np.bool_)
     np.put_along_axis(light, heavy.T, False, axis=0)
-    return _cut_out(family, heavy, light, np.arange(2**n_heavy)[:, None] >> np.arange(n_heavy) & 1)
+    patterns = np.arange(2**n_heavy)[:, None] >> np.arange(n_heavy) & 1
+    return _cut_out(family, heavy, light, patterns, normals)
 
 
-def _cut_out(family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray) -> OuterPoints:
+def _cut_out(family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray, further: FloatArray) -> OuterPoints:
     n_free, n_targets, _ = family.information.shape
     factor = _whitening(family, light)
     white = np.linalg.solve(factor, family.information.transpose(1, 2, 0))  # (M, 3, F)
-    normals = _directions(factor)
+    normals = _directions(factor, further)
     heights = np.where(light.T[:, None, :], normals @ white, np.inf)
     heights.sort(axis=-1)
     sums = np.concatenate([np.zeros((*heights.shape[:2], 1)), np.cumsum(heights, axis=-1)], axis=-1)
@@ -130,8 +134,8 @@ def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
     return np.asarray(np.linalg.cholesky(spread + 1e-8 * size[:, None, None] * np.eye(3)))
 
 
-def _directions(factor: FloatArray) -> FloatArray:
-    """(M, D, 3) half-space normals in whitened coordinates: a box, a sphere's points, rank-one directions."""
+def _directions(factor: FloatArray, further: FloatArray) -> FloatArray:
+    """(M, D, 3) half-space normals in whitened coordinates: a box, a sphere's points, rank-one directions, further ones."""
     index = np.arange(SPHERE_DIRECTIONS) + 0.5
     height, turn = 1 - 2 * index / SPHERE_DIRECTIONS, np.pi * (1 + 5**0.5) * index
     flat = np.sqrt(1 - height**2)
@@ -140,7 +144,9 @@ def _directions(factor: FloatArray) -> FloatArray:
     rank_one = np.stack([np.cos(angle) ** 2, np.sin(2 * angle), np.sin(angle) ** 2], axis=-1) @ factor
     rank_one /= np.linalg.norm(rank_one, axis=-1, keepdims=True)
     fixed = np.concatenate([np.eye(3), -np.eye(3), sphere])
-    return np.concatenate([np.broadcast_to(fixed, (len(factor), *fixed.shape)), rank_one], axis=1)
+    given = further @ factor
+    given /= np.maximum(np.linalg.norm(given, axis=-1, keepdims=True), 1e-300)
+    return np.concatenate([np.broadcast_to(fixed, (len(factor), *fixed.shape)), rank_one, given], axis=1)
 
 
 def _point_values(family: SetFamily, target: IntArray, points: FloatArray) -> FloatArray:

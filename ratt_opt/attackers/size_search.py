@@ -25,7 +25,7 @@ from ratt_opt.attackers.weakest_axis import weakest_axis
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import IntArray
     from ratt_opt.attackers.bracket import Budget
     from ratt_opt.attackers.compact import CompactTeam
 
@@ -50,7 +50,7 @@ class SizeNode:
     serial: int
     inside: frozenset[int] = field(compare=False)
     outside: frozenset[int] = field(compare=False)
-    slopes: FloatArray | None = field(compare=False, default=None)
+    parent: Minorant | None = field(compare=False, default=None)
 
 
 class SizeSearch:
@@ -100,7 +100,7 @@ class SizeSearch:
             bound = max(bound, axis.bound)
             threshold = self._try(node, robots[axis.chosen], threshold)
         elif 0 < size < len(robots):
-            minorant = affine_minorant(self._family(node.inside, robots, size), HEAVY_ROBOTS, threshold, node.slopes)
+            minorant = affine_minorant(self._family(node.inside, robots, size), HEAVY_ROBOTS, threshold, node.parent)
             bound = max(bound, minorant.bound(size))
             order = np.lexsort((minorant.scores, -minorant.fraction))
             threshold = self._try(node, robots[order[:size]], threshold)
@@ -157,9 +157,8 @@ class SizeSearch:
             x = minorant.fraction
             pick = int(np.argmax(minorant.tension * (0.05 + x * (1 - x))))
         robot = int(robots[pick])
-        slopes = None if minorant is None else minorant.slopes
         self._serial += 2
         return [
-            SizeNode(bound, self._serial - 1, node.inside | {robot}, node.outside, slopes),
-            SizeNode(bound, self._serial, node.inside, node.outside | {robot}, slopes),
+            SizeNode(bound, self._serial - 1, node.inside | {robot}, node.outside, minorant),
+            SizeNode(bound, self._serial, node.inside, node.outside | {robot}, minorant),
         ]
