@@ -92,7 +92,9 @@ def outer_points(family: SetFamily, n_heavy: int, normals: FloatArray) -> OuterP
     return _cut_out(family, heavy, light, patterns, normals)
 
 
-def _cut_out(family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray, further: FloatArray) -> OuterPoints:
+def _cut_out(
+    family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray, further: FloatArray
+) -> OuterPoints:
     n_free, n_targets, _ = family.information.shape
     factor = _whitening(family, light)
     white = np.linalg.solve(factor, family.information.transpose(1, 2, 0))  # (M, 3, F)
@@ -135,7 +137,7 @@ def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
 
 
 def _directions(factor: FloatArray, further: FloatArray) -> FloatArray:
-    """(M, D, 3) half-space normals in whitened coordinates: a box, a sphere's points, rank-one directions, further ones."""
+    """(M, D, 3) normals in whitened coordinates: a box, a sphere's points, rank-one directions, further ones."""
     index = np.arange(SPHERE_DIRECTIONS) + 0.5
     height, turn = 1 - 2 * index / SPHERE_DIRECTIONS, np.pi * (1 + 5**0.5) * index
     flat = np.sqrt(1 - height**2)

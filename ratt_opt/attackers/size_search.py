@@ -38,8 +38,8 @@ SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 20_000, 1_000_000
 UNINTERRUPTED = 2_000_000
 """Compiled nodes between two looks at the clock and at interrupts (about half a second)."""
 
-HEAVY_ROBOTS = 2
-"""Robots per target whose patterns the minorant enumerates."""
+HEAVY_ROBOTS = ((50, 2), (80, 3), (10**9, 4))
+"""(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -100,7 +100,9 @@ class SizeSearch:
             bound = max(bound, axis.bound)
             threshold = self._try(node, robots[axis.chosen], threshold)
         elif 0 < size < len(robots):
-            minorant = affine_minorant(self._family(node.inside, robots, size), HEAVY_ROBOTS, threshold, node.parent)
+            minorant = affine_minorant(
+                self._family(node.inside, robots, size), _heavy_robots(len(robots)), threshold, node.parent
+            )
             bound = max(bound, minorant.bound(size))
             order = np.lexsort((minorant.scores, -minorant.fraction))
             threshold = self._try(node, robots[order[:size]], threshold)
@@ -162,3 +164,7 @@ class SizeSearch:
             SizeNode(bound, self._serial - 1, node.inside | {robot}, node.outside, minorant),
             SizeNode(bound, self._serial, node.inside, node.outside | {robot}, minorant),
         ]
+
+
+def _heavy_robots(n_free: int) -> int:
+    return next(heavy for most, heavy in HEAVY_ROBOTS if n_free <= most)

@@ -26,7 +26,8 @@ def team_problem(seed, n_robots, name, *, protect=False):
     protected = frozenset(i for i in range(n_robots) if protect and rng.random() < 0.3)
     owners = np.repeat(np.arange(n_robots), 3)
     budgets = int(rng.integers(0, n_robots)), int(rng.integers(0, links + 1))
-    problem = ro.Problem(OBJECTIVES[name](*data), owners, None, *budgets, protected)
+    weights = rng.uniform(0.2, 3, len(data[0])) if seed % 4 == 0 else None
+    problem = ro.Problem(OBJECTIVES[name](*data, weights), owners, None, *budgets, protected)
     return problem, random_elements(rng, problem)
 
 
@@ -154,3 +155,42 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
     assert axis.bound <= weakest + 1e-12
     assert axis.bound == pytest.approx(weakest, rel=1e-8, abs=1e-8)
     assert team.value(axis.chosen.tolist()) == pytest.approx(weakest, rel=1e-8, abs=1e-8)
+
+
+@pytest.mark.parametrize("calls", range(1, 6))
+def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
+    """Wherever the interrupt lands: at the first bound, deep in the tree, or never."""
+    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 20)
+    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 20)
+    rng = np.random.default_rng(2)
+    problem = ro.Problem(OBJECTIVES["trace"](*range_bearing(rng, 13, 4, 1)), np.arange(13), None, 3, 20)
+    expected = ro.worst_case_attack(problem, np.arange(13))
+    assert expected.stop is ro.Stop.CLOSED
+    left = [calls]
+
+    def interrupted(*arguments):
+        left[0] -= 1
+        if left[0] == 0:
+            raise KeyboardInterrupt
+        return affine_minorant(*arguments)
+
+    monkeypatch.setattr(size_search, "affine_minorant", interrupted)
+    result = ro.worst_case_attack(problem, np.arange(13))
+    assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
+    assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
+    assert problem.team_value(np.arange(13), result.attack) == result.upper
+
+
+@pytest.mark.parametrize("protected", [frozenset(), frozenset({0, 5, 9})])
+def test_relabelling_a_large_team_changes_nothing(protected):
+    rng = np.random.default_rng(8)
+    data = range_bearing(rng, 15, 5, 1)
+    order = rng.permutation(15)
+    values = []
+    for new in (np.arange(15), order):
+        information = np.empty_like(data[1])
+        information[new] = data[1]
+        kept = frozenset(int(new[i]) for i in protected)
+        problem = ro.Problem(ro.LogDetObjective(data[0], information), np.arange(15), None, 4, 26, kept)
+        values.append(ro.worst_case_attack(problem, np.arange(15)).upper)
+    assert values[0] == pytest.approx(values[1], rel=1e-9)
