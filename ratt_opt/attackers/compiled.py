@@ -20,19 +20,24 @@ FINISHED, PAUSED, FOUND = 0, 1, 2
 @numba.njit(cache=True)
 def criterion(kind: int, weights: Any, matrices: Any) -> float:
     """Weighted criterion over all targets, lower is better: (M,), (M, 3) -> scalar."""
-    total = 0.0
+    total, product = 0.0, 1.0
     for j in range(matrices.shape[0]):
         a, b, c = matrices[j, 0], matrices[j, 1], matrices[j, 2]
         determinant = a * c - b * b
         if kind == 0:
             total += weights[j] * (a + c) / determinant
+        elif kind == 1 and weights[j] == weights[0]:
+            product *= determinant  # one logarithm for many targets
+            if product > 1e150 or product < 1e-150:
+                total -= weights[0] * np.log(product)
+                product = 1.0
         elif kind == 1:
             total -= weights[j] * np.log(determinant)
         else:
             half = (a - c) / 2
             worst = weights[j] * ((a + c) / 2 + np.sqrt(half * half + b * b)) / determinant
             total = max(total, worst)
-    return total
+    return total if kind != 1 else total - weights[0] * np.log(product)
 
 
 class SearchState:

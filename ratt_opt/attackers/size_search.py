@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["SizeNode", "SizeSearch"]
 
 FIRST_ENUMERATION = 2_000_000
-SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 20_000, 1_000_000
+SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 150_000, 400_000
 """Compiled nodes spent on one branch-and-bound node before it is split: more after successes, fewer after failures."""
 
 UNINTERRUPTED = 2_000_000
