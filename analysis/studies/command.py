@@ -1,0 +1,83 @@
+"""The command line that all studies share."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from analysis.studies.engine import SweepError, run
+from analysis.studies.executors import open_executor
+from analysis.studies.progress import Progress
+from analysis.studies.store import read_table
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from analysis.studies.study import Study
+
+    Draw = Callable[[list[dict[str, str]], Path], object]
+
+__all__ = ["Entry", "main"]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A study and what to make of its rows: ``draw(rows, folder)`` writes figures into ``folder``."""
+
+    study: Study
+    draw: Draw
+
+
+def main(
+    description: str, entries: Sequence[Entry], *, trials: int, after: Callable[[Path], object] | None = None
+) -> int:
+    """Run studies from the command line and return the exit code: 2 for bad input, 1 for a lost sweep, 130 interrupted.
+
+    ``after(out)`` runs when all results are there.
+    """
+    options = _parse(description, entries, trials)
+    chosen = [entry for entry in entries if not options.only or entry.study.name in options.only]
+    try:
+        with open_executor(options.cluster, options.workers) as executor:
+            for entry in chosen:
+                study = replace(entry.study, seed=options.seed)
+                folder = options.out / study.name
+                run(study, folder, executor, trials=options.trials, progress=Progress())
+                entry.draw(read_table(folder), folder)
+        if after is not None and len(chosen) == len(entries):
+            after(options.out)
+    except InputError as error:
+        return _say(error, 2)
+    except SweepError as error:
+        return _say(error, 1)
+    except KeyboardInterrupt:
+        return _say("interrupted; finished rows are kept, run the same command to resume", 130)
+    return 0
+
+
+def _parse(description: str, entries: Sequence[Entry], trials: int) -> argparse.Namespace:
+    names = [entry.study.name for entry in entries]
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--trials", type=_positive, default=trials, help="trials of every case (default %(default)s)")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the results; run again to resume")
+    parser.add_argument("--only", nargs="+", choices=names, help="run these studies only")
+    parser.add_argument("--workers", type=_positive, help="local processes (default: one per core)")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Dask scheduler to use instead")
+    parser.add_argument("--seed", type=int, default=entries[0].study.seed, help="root seed (default %(default)s)")
+    return parser.parse_args()
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"must be at least 1; got {value}")
+    return value
+
+
+def _say(message: object, code: int) -> int:
+    print(f"error: {message}", file=sys.stderr)
+    return code

@@ -1,0 +1,107 @@
+"""Where trials run: local processes, or a Dask cluster."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from analysis.studies.versions import VERSIONS
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from concurrent.futures import Executor
+
+    from distributed import Client
+
+__all__ = ["dask_cluster", "local_processes", "open_executor"]
+
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+PATIENCE = 10
+"""Seconds to wait for a scheduler to answer, and for its first worker."""
+
+
+@contextmanager
+def open_executor(cluster: str | None, workers: int | None) -> Iterator[Executor]:
+    """Open the Dask cluster at address ``cluster``, or ``workers`` local processes (one per core by default)."""
+    with local_processes(workers) if cluster is None else dask_cluster(cluster) as executor:
+        yield executor
+
+
+@contextmanager
+def local_processes(workers: int | None) -> Iterator[Executor]:
+    """Start local processes by spawn (fork deadlocks with threads), with one BLAS thread each.
+
+    Leaving the block by an exception stops them at once.
+    """
+    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))  # inherited by every process that is started
+    known = set(multiprocessing.active_children())
+    executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
+    try:
+        yield executor
+    except BaseException:
+        # Not cancelled first: the pool would then report its cancelled trials as broken, with a traceback.
+        for process in set(multiprocessing.active_children()) - known:
+            process.terminate()
+        raise
+    finally:
+        executor.shutdown()
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def _follow_parent() -> None:
+    """Leave Ctrl-C to the parent, and end with it even when it is killed without a word."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+@contextmanager
+def dask_cluster(address: str) -> Iterator[Executor]:
+    """Use the workers of a running Dask scheduler; a worker that dies has its trials run elsewhere.
+
+    Raises
+    ------
+    InputError : no scheduler answers there, it has no worker, or a worker's package is missing or another version.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InputError("cluster", "needs Dask: install the extra 'cluster'", "no module 'distributed'") from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError, TypeError):
+        rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
+        raise InputError("cluster", rule, address) from None
+    with client:
+        _check_workers(client, address)
+        yield client.get_executor(pure=False)  # type: ignore[no-untyped-call]
+
+
+def _check_workers(client: Client, address: str) -> None:
+    """Ask every worker for the versions its rows would carry."""
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        raise InputError("cluster", f"must have a worker within {PATIENCE} s", f"none at {address}") from None
+    # A standard-library function, so that a worker without the package can still be asked.
+    from pkgutil import resolve_name
+
+    answers = client.run(resolve_name, "analysis.studies.versions:VERSIONS", on_error="return")
+    for worker, answer in sorted(answers.items()):
+        if answer != VERSIONS:
+            shown = f"{type(answer).__name__}: {answer}" if isinstance(answer, Exception) else answer
+            raise InputError(f"worker {worker}", f"must import the same package ({VERSIONS})", shown)

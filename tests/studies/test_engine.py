@@ -1,0 +1,206 @@
+"""The engine: same rows whoever ran them, resumed where they stopped, refused where they do not belong."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis.studies.engine import SweepError, run
+from analysis.studies.executors import local_processes, open_executor
+from analysis.studies.progress import Progress
+from analysis.studies.store import open_journal, read_table
+from analysis.studies.study import Case, Seeds, run_trial
+from ratt_opt import InputError
+from tests.studies.toy import STUDY
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def _threads(folder: Path, trials: int = 3, study: object = STUDY) -> bytes:
+    with ThreadPoolExecutor(2) as executor:
+        return run(study, folder, executor, trials=trials, progress=Progress()).read_bytes()  # type: ignore[arg-type]
+
+
+def _command(folder: Path, *arguments: str, seconds: float = 0.0) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "tests.studies.run_toy", "--out", str(folder), *arguments]
+    environment = os.environ | {"TOY_SECONDS": str(seconds), "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(
+        command, cwd=ROOT, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+def test_seeds_are_the_spawned_ones() -> None:
+    for trial, child in enumerate(np.random.SeedSequence(5).spawn(3)):
+        word = int(child.spawn(1)[0].generate_state(1, np.uint64)[0] >> 1)
+        assert Seeds.of(5, trial).scenario == word
+    everything = {
+        seed
+        for t in range(50)
+        for seed in (
+            Seeds.of(5, t).scenario,
+            Seeds.of(5, t).planner,
+            Seeds.of(5, t).attacker,
+            Seeds.of(5, t).simulation,
+        )
+    }
+    assert len(everything) == 200
+
+
+def test_table_is_the_same_bytes_whichever_executor_ran(tmp_path: Path) -> None:
+    with local_processes(2) as executor:
+        processes = run(STUDY, tmp_path / "p", executor, trials=3, progress=Progress()).read_bytes()
+    assert processes == _threads(tmp_path / "t")
+    rows = read_table(tmp_path / "p")
+    assert [(row["case"], int(row["trial"])) for row in rows] == [(c.name, t) for c in STUDY.cases for t in range(3)]
+    expected = run_trial(STUDY, 1, 2)
+    assert {name: str(value) for name, value in expected.items()} == rows[5]
+    assert float(rows[5]["value"]) == expected["value"]
+
+
+def test_more_trials_extend_the_table_and_repeat_nothing(tmp_path: Path) -> None:
+    _threads(tmp_path, 2)
+    before = (tmp_path / "journal.csv").read_bytes()
+    assert _threads(tmp_path, 4) == _threads(tmp_path / "other", 4)
+    assert (tmp_path / "journal.csv").read_bytes().startswith(before)
+    assert _threads(tmp_path, 1) == _threads(tmp_path / "other", 4)
+
+
+@pytest.mark.parametrize("cut", [1, 7, 60])
+def test_a_torn_last_line_is_run_again(tmp_path: Path, cut: int) -> None:
+    whole = _threads(tmp_path)
+    journal = tmp_path / "journal.csv"
+    os.truncate(journal, journal.stat().st_size - cut)
+    assert _threads(tmp_path) == whole
+    os.truncate(journal, 5)  # even the header was torn
+    assert _threads(tmp_path) == whole
+
+
+def test_killed_ten_times_at_random_ends_with_the_same_rows(tmp_path: Path) -> None:
+    undisturbed = _threads(tmp_path / "calm", 12)
+    rng, progress = random.Random(3), []
+    journal = tmp_path / "wild" / "toy" / "journal.csv"
+    for _ in range(10):
+        process = _command(tmp_path / "wild", "--trials", "12", "--workers", "1", seconds=0.04)
+        # Wait for the first new rows, so that a slow start does not make the kill harmless.
+        before = journal.stat().st_size if journal.exists() else 0
+        until = time.monotonic() + 30
+        while (journal.stat().st_size if journal.exists() else 0) == before and time.monotonic() < until:
+            time.sleep(0.01)
+            if process.poll() is not None:
+                break
+        time.sleep(rng.uniform(0, 0.15))
+        process.kill()
+        process.communicate()
+        progress.append(journal.stat().st_size)
+    assert progress == sorted(progress)
+    assert progress[0] < progress[5]
+    last = _command(tmp_path / "wild", "--trials", "12", "--workers", "1")
+    assert last.communicate()[0].strip() == "48 toy"
+    assert (tmp_path / "wild" / "toy" / "table.csv").read_bytes() == undisturbed
+    assert len(journal.read_text().splitlines()) == 49
+
+
+def test_interrupt_says_how_to_resume(tmp_path: Path) -> None:
+    process = _command(tmp_path, "--trials", "50", "--workers", "1", seconds=0.05)
+    journal = tmp_path / "toy" / "journal.csv"
+    while not journal.exists() or not journal.stat().st_size:
+        time.sleep(0.02)
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "error: interrupted; finished rows are kept, run the same command to resume"
+    assert "Traceback" not in errors
+
+
+def test_other_results_are_refused_and_kept(tmp_path: Path) -> None:
+    _threads(tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    for other, text in (
+        (
+            replace(STUDY, name="other"),
+            "must be a new folder or hold results of study 'other' version 1; got study 'toy'",
+        ),
+        (replace(STUDY, version=2), "results of study 'toy' version 2; got study 'toy' version 1"),
+        (replace(STUDY, seed=1), "results of this definition and seed"),
+        (replace(STUDY, cases=STUDY.cases[:1]), "results of this definition and seed"),
+    ):
+        with pytest.raises(InputError, match=text) as caught:
+            _threads(tmp_path, study=other)
+        assert "\n" not in str(caught.value)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_results_of_other_versions_or_formats_are_refused(tmp_path: Path) -> None:
+    _threads(tmp_path)
+    manifest = json.loads((tmp_path / "study.json").read_text())
+    for change, text in (
+        ({"made_with": "ratt_opt 0.0.1"}, "results made with ratt_opt .*; got ratt_opt 0.0.1 in"),
+        ({"format": 9}, "results of format 1; got format 9"),
+        ({"study": None, "fingerprint": 3}, "got study None version 1"),
+    ):
+        (tmp_path / "study.json").write_text(json.dumps(manifest | change))
+        with pytest.raises(InputError, match=text):
+            _threads(tmp_path)
+    (tmp_path / "study.json").write_text("{")
+    with pytest.raises(InputError, match="must hold a readable study"):
+        _threads(tmp_path)
+    (tmp_path / "study.json").unlink()
+    with pytest.raises(InputError, match="must be an empty folder"):
+        _threads(tmp_path)
+
+
+@pytest.mark.parametrize("damage", ["a,b\n", "REPEAT"])
+def test_damaged_rows_are_refused_by_line(tmp_path: Path, damage: str) -> None:
+    _threads(tmp_path, 1)
+    journal = tmp_path / "journal.csv"
+    lines = journal.read_text().splitlines(keepends=True)
+    journal.write_text("".join(lines) + (lines[1] if damage == "REPEAT" else damage))
+    with pytest.raises(InputError, match=r"journal.csv line 6 must be one whole row, given once"):
+        _threads(tmp_path, 2)
+
+
+def test_a_folder_in_use_is_refused(tmp_path: Path) -> None:
+    with open_journal(STUDY, tmp_path), pytest.raises(InputError, match="must not be in use"):
+        _threads(tmp_path)
+
+
+def test_a_failing_trial_is_named_in_one_line_and_rows_are_kept(tmp_path: Path) -> None:
+    study = replace(STUDY, measure="tests.studies.toy:fail")
+    text = "study toy, case N=2 M=2 alpha_s=1 alpha_c=0, trial 0 failed .ValueError: no such number."
+    with pytest.raises(SweepError, match=text), ThreadPoolExecutor(1) as executor:
+        run(study, tmp_path, executor, trials=2, progress=Progress())
+    assert len((tmp_path / "journal.csv").read_text().splitlines()) >= 2
+
+
+def test_bad_arguments_are_one_line_and_exit_2(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    process = _command(tmp_path / "file" / "x")
+    assert process.communicate()[1].splitlines()[-1].startswith("error: out must be a folder that can be written")
+    assert process.returncode == 2
+
+
+def test_a_cluster_that_does_not_answer_is_one_line() -> None:
+    pytest.importorskip("distributed")
+    began = time.monotonic()
+    text = "cluster must be the address of a Dask scheduler"
+    with pytest.raises(InputError, match=text), open_executor("not an address", None):
+        pass
+    assert time.monotonic() - began < 30
+
+
+def test_cases_have_distinct_names() -> None:
+    case = Case(n_robots=2, n_targets=2, alpha_s=0, alpha_c=0)
+    names = {case.name, replace(case, objective="logdet").name, replace(case, options=(("range_std", 0.1),)).name}
+    assert len(names) == 3

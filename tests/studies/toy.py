@@ -1,0 +1,33 @@
+"""A study whose trials cost nothing, for tests of the engine; workers import it by name."""
+
+from __future__ import annotations
+
+import os
+import time
+
+import numpy as np
+
+from analysis.studies.study import Case, Cell, Seeds, Study
+
+__all__ = ["STUDY", "fail", "measure"]
+
+STUDY = Study(
+    name="toy",
+    cases=tuple(Case(n_robots=n, n_targets=2, alpha_s=a, alpha_c=0) for n in (2, 3) for a in (0, 1)),
+    measure="tests.studies.toy:measure",
+)
+
+
+def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """Return random numbers of the seeds, as slowly as the environment says."""
+    del study
+    time.sleep(float(os.environ.get("TOY_SECONDS", "0")))
+    rng = np.random.default_rng([seeds.simulation, case.n_robots])
+    return {"text": "a, b", "value": float(rng.standard_normal()), "count": int(rng.integers(10**12))}
+
+
+def fail(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """Fail in the second case."""
+    if case == study.cases[1]:
+        raise ValueError("no such\nnumber")
+    return measure(study, case, seeds)
