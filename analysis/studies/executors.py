@@ -82,13 +82,13 @@ def dask_cluster(address: str) -> Iterator[Executor]:
     except ImportError:
         raise InputError("cluster", "needs Dask: install the extra 'cluster'", "no module 'distributed'") from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError):
         rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
         raise InputError("cluster", rule, address) from None
     with client:
         _check_workers(client, address)
-        yield client.get_executor(pure=False)  # type: ignore[no-untyped-call]
+        yield client.get_executor(pure=False)
 
 
 def _check_workers(client: Client, address: str) -> None:

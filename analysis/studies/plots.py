@@ -1,0 +1,87 @@
+"""Drawing shared by the studies: colours of the planners, bars and bands with intervals, saving."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from analysis.studies.statistics import Estimate
+
+__all__ = ["COLOURS", "LABELS", "bands", "bars", "new_figure", "save"]
+
+COLOURS = {
+    "optimum": "#c1121f",
+    "ratt": "#1f4e9c",
+    "nonrobust_optimum": "#e8871e",
+    "greedy": "#2a9d4b",
+    "random": "#b5179e",
+    "myopic": "#6c757d",
+}
+"""As in the paper: OPT red, RATT blue, Greedy green, Random magenta."""
+LABELS = {
+    "optimum": "OPT",
+    "ratt": "RATT",
+    "nonrobust_optimum": "NR-OPT",
+    "greedy": "Greedy",
+    "random": "Random",
+    "myopic": "Myopic",
+}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure [inch] that belongs to no window system."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:
+    """Draw one group of bars per entry of ``groups``, one bar per planner of ``series``, with intervals."""
+    centres = np.arange(len(groups))
+    width = 0.8 / len(series)
+    for k, (planner, estimates) in enumerate(series.items()):
+        means = np.array([e.mean for e in estimates])
+        spread = np.array([[e.mean - e.low for e in estimates], [e.high - e.mean for e in estimates]])
+        axes.bar(
+            centres + (k - (len(series) - 1) / 2) * width,
+            means,
+            0.9 * width,
+            color=COLOURS[planner],
+            label=LABELS[planner],
+            yerr=np.where(np.isfinite(spread), spread, 0),
+            capsize=2,
+            error_kw={"elinewidth": 0.9, "ecolor": "#222222"},
+        )
+    axes.set_xticks(centres, groups)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(axis="y", alpha=0.3)
+    axes.set_axisbelow(True)
+
+
+def bands(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, colour: str, label: str) -> None:
+    """Draw a curve of means with its confidence band."""
+    axes.plot(x, [e.mean for e in estimates], color=colour, label=label, marker="o", markersize=3.5)
+    low, high = ([getattr(e, side) for e in estimates] for side in ("low", "high"))
+    if np.isfinite([*low, *high]).all():
+        axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(alpha=0.3)
+
+
+def save(figure: Figure, folder: Path, name: str) -> None:
+    """Write ``name.png`` and ``name.svg`` into ``folder``; the same rows give the same bytes."""
+    from matplotlib import rc_context
+
+    from ratt_opt._files import write_atomically
+
+    with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
+        write_atomically(folder / f"{name}.png", lambda file: figure.savefig(file, dpi=150))
+        write_atomically(folder / f"{name}.svg", lambda file: figure.savefig(file, metadata={"Date": None}))

@@ -1,0 +1,77 @@
+"""Means of paired trials with their uncertainty, and verdicts on claims."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["Estimate", "Verdict", "column", "estimate", "judge", "select"]
+
+LEVEL = 0.95
+"""Confidence of every interval."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A mean over ``n`` trials with its 95 % confidence interval (Student's t; infinite for one trial)."""
+
+    mean: float
+    low: float
+    high: float
+    n: int
+
+    def __str__(self) -> str:
+        return f"{self.mean:+.3g} [{self.low:+.3g}, {self.high:+.3g}]"
+
+
+class Verdict(Enum):
+    """What the intervals of all cases of a claim say together."""
+
+    CONFIRMED = "confirmed"
+    """Every case's interval is on the claimed side (an intersection-union test: no correction is needed)."""
+    NOT_CONFIRMED = "not confirmed"
+    """Some interval reaches the other side."""
+    CONTRADICTED = "contradicted"
+    """Some interval lies wholly on the other side."""
+
+
+def estimate(values: ArrayLike) -> Estimate:
+    """Mean of independent trials, with its interval; for a paired difference pass the differences."""
+    from scipy.stats import t
+
+    array = np.asarray(values, dtype=np.float64)
+    mean, n = float(array.mean()), len(array)
+    if n < 2:
+        return Estimate(mean, -np.inf, np.inf, n)
+    half = float(t.ppf((1 + LEVEL) / 2, n - 1)) * float(array.std(ddof=1)) / n**0.5
+    return Estimate(mean, mean - half, mean + half, n)
+
+
+def judge(estimates: Iterable[Estimate], *, below: float = 0.0) -> Verdict:
+    """Judge the claim that every estimated mean is below ``below``."""
+    kept = list(estimates)
+    if all(e.high < below for e in kept):
+        return Verdict.CONFIRMED
+    if any(e.low > below for e in kept):
+        return Verdict.CONTRADICTED
+    return Verdict.NOT_CONFIRMED
+
+
+def select(rows: Iterable[Mapping[str, str]], **factors: object) -> list[Mapping[str, str]]:
+    """Rows whose factors have the given values, in the order of the table (case, then trial)."""
+    return [row for row in rows if all(row[name] == str(value) for name, value in factors.items())]
+
+
+def column(rows: Sequence[Mapping[str, str]], name: str) -> FloatArray:
+    """(T,) one column as numbers."""
+    return np.array([float(row[name]) for row in rows])
