@@ -161,9 +161,19 @@ class Problem:
         InputError : the plan is not one element per robot, or the attack is not allowed.
         """
         plan = self.check_plan(elements)
+        return self.objective(plan[sorted(self.best_group(plan, attack))])
+
+    def best_group(self, elements: ArrayLike, attack: Attack) -> frozenset[int]:
+        """Non-blinded robots of the group whose value is the team's; among equals the group of the lowest robot.
+
+        Raises
+        ------
+        InputError : the plan is not one element per robot, or the attack is not allowed.
+        """
+        plan = self.check_plan(elements)
         self.check_attack(attack)
-        groups = self.communication.groups(attack.links)
-        return max(self.objective(plan[sorted(group - attack.sensing)]) for group in groups)
+        groups = [group - attack.sensing for group in self.communication.groups(attack.links)]
+        return max(groups, key=lambda group: self.objective(plan[sorted(group)]))
 
 
 def _check_owners(robot: ArrayLike, n_elements: int) -> IntArray:

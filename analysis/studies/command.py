@@ -46,7 +46,7 @@ def main(
             for entry in chosen:
                 study = replace(entry.study, seed=options.seed)
                 folder = options.out / study.name
-                run(study, folder, executor, trials=options.trials, progress=Progress())
+                run(study, folder, executor, trials=study.fixed_trials or options.trials, progress=Progress())
                 entry.draw(read_table(folder), folder)
         if after is not None and len(chosen) == len(entries):
             after(options.out)

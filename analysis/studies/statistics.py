@@ -30,8 +30,9 @@ class Estimate:
     high: float
     n: int
 
-    def __str__(self) -> str:
-        return f"{self.mean:+.3g} [{self.low:+.3g}, {self.high:+.3g}]"
+    def show(self, scale: float = 1.0) -> str:
+        """Return ``mean [low, high]``, times ``scale``, to three digits."""
+        return f"{scale * self.mean:+.3g} [{scale * self.low:+.3g}, {scale * self.high:+.3g}]"
 
 
 class Verdict(Enum):

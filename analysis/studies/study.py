@@ -23,7 +23,8 @@ Cell = str | int | float
 class Case:
     """One combination of the factors that a study varies.
 
-    ``options`` : further arguments of ``random_scenario``, as ``(name, value)`` pairs.
+    ``options`` : further arguments of ``random_scenario``, and fields of its sensor as ``sensor.field``, in
+    ``(name, value)`` pairs; all cases of a study name the same ones.
     ``graph`` : the communication graph, by its name in :mod:`analysis.studies.instance`.
     """
 
@@ -76,6 +77,7 @@ class Study:
     quantities : what is measured once for every case and trial
     measure : ``module:function`` that measures one trial; by default the comparison of planners under attackers
     seed : root of all seeds
+    fixed_trials : number of trials where nothing is random; otherwise the command line decides
     """
 
     name: str
@@ -87,6 +89,7 @@ class Study:
     quantities: tuple[str, ...] = ()
     measure: str = "analysis.studies.comparison:measure"
     seed: int = 2022
+    fixed_trials: int | None = None
 
     def definition(self) -> dict[str, Any]:
         """Return everything that decides the rows, as JSON types."""

@@ -1,0 +1,85 @@
+"""Price of robustness and break-even point: RATT planned for one attack, then attacked more and more.
+
+``python -m analysis.extended.budgets --trials 200 --out DIR``
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from analysis.studies.command import Entry, main
+from analysis.studies.instance import Instance
+from analysis.studies.plots import COLOURS, LABELS, bands, new_figure, save
+from analysis.studies.statistics import column, estimate, select
+from analysis.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.solvers.baselines import greedy
+from ratt_opt.solvers.ratt import ratt
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+LEVELS = 10
+"""Actual attacks blind 0, 1, ..., 9 robots and cut links in proportion to the budget planned for."""
+STUDY = Study(
+    name="budgets",
+    cases=tuple(Case(n_robots=10, n_targets=15, alpha_s=s, alpha_c=c) for s, c in ((3, 11), (5, 15), (6, 22))),
+    measure="analysis.extended.budgets:measure",
+)
+CLAIRVOYANT = "RATT that knows the attack"
+
+
+def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """Return ``planner/level/trace`` [m^2 per target] of three planners under the exact attack of every level."""
+    del study
+    planned = Instance.of(case, seeds)
+    fixed = {"ratt": ratt(planned.problem).elements, "greedy": greedy(planned.problem).elements}
+    row: dict[str, Cell] = {"scenario": planned.digest}
+    for level in range(LEVELS):
+        links = min(round(case.alpha_c * level / case.alpha_s), 45)
+        actual = Instance.of(replace(case, alpha_s=level, alpha_c=links), seeds)
+        plans = fixed | {"clairvoyant": ratt(actual.problem).elements}
+        for planner, plan in plans.items():
+            attack = worst_case_attack(actual.problem, plan).attack
+            row[f"{planner}/{level}/trace"] = actual.trace(plan, attack)
+    return row
+
+
+def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """One panel per budget planned for: RATT's trace over Greedy's, per cent, against the attack that comes."""
+    figure = new_figure(11, 3.9)
+    for axes, case in zip(figure.subplots(1, len(STUDY.cases), sharey=True), STUDY.cases, strict=True):
+        kept = select(rows, case=case.name)
+        curves = {}
+        for planner, colour, label in (
+            ("ratt", COLOURS["ratt"], LABELS["ratt"]),
+            ("clairvoyant", "#7fa8e0", CLAIRVOYANT),
+        ):
+            curves[planner] = [
+                estimate(100 * (column(kept, f"{planner}/{k}/trace") / column(kept, f"greedy/{k}/trace") - 1))
+                for k in range(LEVELS)
+            ]
+            bands(axes, range(LEVELS), curves[planner], colour=colour, label=label)
+        axes.axhline(0, color=COLOURS["greedy"], linewidth=1.2, label=LABELS["greedy"])
+        axes.axvline(case.alpha_s, color="black", linestyle=":", linewidth=1)
+        gain = [k for k, e in enumerate(curves["ratt"]) if e.mean < 0]
+        price = f"price without attack {curves['ratt'][0].mean:+.1f} %"
+        axes.set_title(
+            f"planned for $\\alpha_s$={case.alpha_s}, $\\alpha_c$={case.alpha_c}\n{price}\n"
+            + (f"breaks even at {gain[0]} blinded" if gain else "never breaks even"),
+            fontsize="medium",
+        )
+        axes.set_xlabel("robots blinded (links cut in proportion)")
+    figure.axes[0].set_ylabel("trace relative to Greedy [%]\n(lower is better)")
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    save(figure, folder, "budgets")
+
+
+ENTRY = Entry(STUDY, draw)
+
+if __name__ == "__main__":
+    sys.exit(main("Price of robustness and break-even point.", [ENTRY], trials=200))

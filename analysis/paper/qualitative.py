@@ -1,0 +1,96 @@
+"""Figs. ql_1sen_atk, ql_1comm_atk, ql_1sen2comm_atk: RATT and NR-OPT, without and with the worst attack.
+
+``python -m analysis.paper.qualitative --trials 10 --out DIR``
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, Any
+
+from analysis.paper.qualitative_figure import common_limits, draw_scene, legend
+from analysis.studies.command import Entry, main
+from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
+from analysis.studies.plots import LABELS, new_figure, save
+from analysis.studies.statistics import select
+from analysis.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.problem import Attack
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from ratt_opt._validation import IntArray
+
+STUDY = Study(
+    name="qualitative",
+    cases=(
+        Case(n_robots=2, n_targets=2, alpha_s=1, alpha_c=0),
+        Case(n_robots=2, n_targets=2, alpha_s=0, alpha_c=1),
+        Case(n_robots=3, n_targets=3, alpha_s=1, alpha_c=2),
+    ),
+    planners=("ratt", "nonrobust_optimum"),
+    attackers=("none", "exact"),
+    metrics=("value", "trace", "mse"),
+    measure="analysis.paper.qualitative:measure",
+)
+FIGURES = ("one_sensing_attack", "one_link_attack", "one_sensing_two_link_attacks")
+
+
+def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """Return the metrics, and everything that is drawn, as JSON in one cell per picture."""
+    instance = Instance.of(case, seeds)
+    row: dict[str, Cell] = {"scenario": instance.digest}
+    for planner in study.planners:
+        plan = PLANNERS[planner](instance)
+        for attacker in study.attackers:
+            result = ATTACKERS[attacker](instance, plan)
+            attack = Attack() if result is None else result.attack
+            tracking = instance.track(plan, attack, draws=1)
+            name = f"{planner}/{attacker}"
+            row[f"{name}/value"] = instance.problem.team_value(plan, attack)
+            row |= {f"{name}/trace": tracking.trace, f"{name}/mse": tracking.mse}
+            row[f"{name}/picture"] = json.dumps(_picture(instance, plan, attack))
+    return row
+
+
+def _picture(instance: Instance, plan: IntArray, attack: Attack) -> dict[str, Any]:
+    tracking = instance.track(plan, attack, draws=1)
+    return {
+        "now": instance.scenario.poses.tolist(),
+        "next": instance.scenario.predicted_poses[plan].tolist(),
+        "links": sorted(instance.problem.communication.links),
+        "blinded": sorted(attack.sensing),
+        "cut": sorted(attack.links),
+        "seeing": sorted(instance.problem.best_group(plan, attack)),
+        "truth": tracking.truth[0].tolist(),
+        "estimate": tracking.estimates[0].tolist(),
+        "covariance": tracking.covariances[0].tolist(),
+    }
+
+
+def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """One figure per scenario of the paper: the first trial in which the worst attack leaves the planners unequal."""
+    for case, name in zip(STUDY.cases, FIGURES, strict=True):
+        kept = select(rows, case=case.name)
+        shown = next((row for row in kept if row["ratt/exact/value"] != row["nonrobust_optimum/exact/value"]), kept[0])
+        cells = [f"{planner}/{attacker}" for attacker in STUDY.attackers for planner in STUDY.planners]
+        pictures = [json.loads(shown[f"{cell}/picture"]) for cell in cells]
+        figure = new_figure(11, 11.4)
+        for axes, cell, picture in zip(figure.subplots(2, 2).flat, cells, pictures, strict=True):
+            draw_scene(axes, picture)
+            axes.set(**common_limits(pictures))
+            planner, attacker = cell.split("/")
+            numbers = (
+                f"trace {float(shown[f'{cell}/trace']):.3g} m², squared error {float(shown[f'{cell}/mse']):.3g} m²"
+            )
+            axes.set_title(f"{LABELS[planner]}, {'no attack' if attacker == 'none' else 'worst attack'}\n{numbers}")
+        figure.legend(handles=legend(), loc="outside lower center", ncols=4, frameon=False)
+        save(figure, folder, name)
+
+
+ENTRY = Entry(STUDY, draw)
+
+if __name__ == "__main__":
+    sys.exit(main("Qualitative comparisons of Section VI.", [ENTRY], trials=10))

@@ -1,0 +1,39 @@
+"""Fig. small_comp: five planners under the worst attack, four robots and four targets.
+
+``python -m analysis.paper.small_scale --trials 10 --out DIR``
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from analysis.paper.comparison_figure import draw_comparison
+from analysis.studies.command import Entry, main
+from analysis.studies.study import Case, Study
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+STUDY = Study(
+    name="small_scale",
+    cases=tuple(
+        Case(n_robots=4, n_targets=4, alpha_s=alpha_s, alpha_c=alpha_c) for alpha_s in (1, 2) for alpha_c in (3, 4)
+    ),
+    planners=("optimum", "ratt", "nonrobust_optimum", "greedy", "random"),
+    attackers=("exact",),
+    metrics=("value", "trace", "mse"),
+)
+
+
+def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """One panel per budget pair; trace above, mean squared error below, as in the paper."""
+    panels = [[case] for case in STUDY.cases]
+    draw_comparison(rows, folder, name="small_scale", panels=panels, planners=STUDY.planners, attacker="exact")
+
+
+ENTRY = Entry(STUDY, draw)
+
+if __name__ == "__main__":
+    sys.exit(main("Small-scale comparison of Section VI.", [ENTRY], trials=10))

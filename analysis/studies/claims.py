@@ -1,0 +1,84 @@
+"""Claims as data, each judged by paired differences with their intervals, and the tables that report them."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from analysis.studies.statistics import Estimate, Verdict, column, estimate, judge, select
+from analysis.studies.store import read_table
+from ratt_opt._files import write_atomically
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+__all__ = ["Claim", "write_claims"]
+
+HEAD = ["| figure | command `python -m` | claim | our result | verdict |", "| --- | --- | --- | --- | --- |"]
+COLUMNS = ("figure", "claim", "case", "mean", "low", "high", "trials", "verdict of the claim")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """The mean of column ``left`` is below that of ``right`` in every case, trial by trial.
+
+    With ``share``, the claim is instead that ``left / right - 1`` is below ``share``.
+    ``command`` : module that makes the results, ``package.study``.
+    """
+
+    figure: str
+    command: str
+    statement: str
+    left: str
+    right: str
+    share: float | None = None
+    unit: str = "m²"
+
+    @property
+    def study(self) -> str:
+        """Folder of the results."""
+        return self.command.rpartition(".")[2]
+
+    def estimates(self, rows: Sequence[Mapping[str, str]]) -> dict[str, Estimate]:
+        """Return the mean paired difference (or excess share) of every case."""
+        found = {}
+        for case in dict.fromkeys(row["case"] for row in rows):
+            kept = select(rows, case=case)
+            left, right = column(kept, self.left), column(kept, self.right)
+            found[case] = estimate(left - right if self.share is None else left / right - 1)
+        return found
+
+
+def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = ()) -> None:
+    """Write and print ``claims.md``, and write ``claims.csv`` with every interval behind it.
+
+    ``first`` : Markdown rows that come before those of ``claims``.
+    """
+    lines, table = [*HEAD, *first], [COLUMNS]
+    for claim in claims:
+        estimates = claim.estimates(read_table(out / claim.study))
+        verdict = judge(estimates.values(), below=claim.share or 0.0)
+        lines.append(_line(claim, estimates, verdict))
+        for case, e in estimates.items():
+            numbers = (repr(e.mean), repr(e.low), repr(e.high), str(e.n))
+            table.append((claim.figure, claim.statement, case, *numbers, verdict.value))
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(table)
+    text = "\n".join(lines) + "\n"
+    write_atomically(out / "claims.csv", lambda file: file.write_bytes(stream.getvalue().encode()))
+    write_atomically(out / "claims.md", lambda file: file.write_text(text, encoding="utf-8"))
+    print(text, end="")
+
+
+def _line(claim: Claim, estimates: Mapping[str, Estimate], verdict: Verdict) -> str:
+    ordered = sorted(estimates.values(), key=lambda e: e.mean)
+    limit = claim.share or 0.0
+    holds = sum(e.high < limit for e in ordered)
+    scale = 1.0 if claim.share is None else 100.0
+    shown = " to ".join(dict.fromkeys(e.show(scale) for e in (ordered[0], ordered[-1])))
+    what, unit = ("difference", claim.unit) if claim.share is None else ("excess", "%")
+    result = f"{what} per case {shown} {unit}; holds in {holds} of {len(ordered)} cases, {ordered[0].n} trials each"
+    return f"| {claim.figure} | `{claim.command}` | {claim.statement} | {result} | {verdict.value} |"

@@ -1,0 +1,122 @@
+"""One scenario of a trial, and what its planners and attackers share."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import networkx as nx
+import numpy as np
+
+from ratt_opt.attackers.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.greedy import greedy_attack
+from ratt_opt.attackers.random_attack import random_attack
+from ratt_opt.problem import Problem
+from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.scenario.sensor import Sensor
+from ratt_opt.scenario.simulation import simulate_tracking
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
+from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.ratt import ratt
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from analysis.studies.study import Case, Seeds
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.problem import Attack
+    from ratt_opt.scenario.model import Scenario
+    from ratt_opt.scenario.simulation import Tracking
+    from ratt_opt.solvers.result import MaxMinResult
+
+__all__ = ["ATTACKERS", "GRAPHS", "PLANNERS", "Instance"]
+
+SENSOR = "sensor."
+"""Prefix of the options that are fields of the sensor, not arguments of ``random_scenario``."""
+
+
+@dataclass(slots=True)
+class Instance:
+    """A scenario, its problem and seeds. The optimum is computed when first asked for."""
+
+    scenario: Scenario
+    objective: InformationObjective
+    problem: Problem
+    seeds: Seeds
+    _optimum: MaxMinResult | None = None
+
+    @classmethod
+    def of(cls, case: Case, seeds: Seeds) -> Instance:
+        """Draw the scenario of one trial."""
+        options: dict[str, Any] = {name: value for name, value in case.options if not name.startswith(SENSOR)}
+        noise: dict[str, Any] = {name.removeprefix(SENSOR): v for name, v in case.options if name.startswith(SENSOR)}
+        scenario = random_scenario(
+            case.n_robots,
+            case.n_targets,
+            alpha_s=0,  # the budgets belong to the problem: its graph may have fewer links than the scenario's
+            alpha_c=0,
+            seed=seeds.scenario,
+            sensor=Sensor(**noise),
+            **options,
+        )
+        objective = scenario.problem(case.objective).objective
+        assert isinstance(objective, InformationObjective)
+        graph = None if case.graph == "complete" else GRAPHS[case.graph](case.n_robots)
+        problem = Problem(objective, scenario.robot, graph, case.alpha_s, case.alpha_c)
+        return cls(scenario, objective, problem, seeds)
+
+    @property
+    def optimum(self) -> MaxMinResult:
+        """The bracket of the optimum and the plan that attains its lower end."""
+        if self._optimum is None:
+            self._optimum = exhaustive_optimum(self.problem)
+        return self._optimum
+
+    @property
+    def digest(self) -> str:
+        """Hash of everything the planners see: equal for equal scenarios, budgets and objectives."""
+        problem = self.problem
+        parts = [array.tobytes() for array in (problem.robot, self.objective.prior, self.objective.information)]
+        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {type(self.objective)}"
+        return hashlib.sha256(b"".join([*parts, threat.encode()])).hexdigest()[:16]
+
+    def trace(self, plan: IntArray, attack: Attack) -> float:
+        """Trace of the posterior covariance per target [m^2], of the best group left by the attack."""
+        group = sorted(self.problem.best_group(plan, attack))
+        covariance = np.linalg.inv(self.objective.posterior_information(plan[group]))
+        return float(np.trace(covariance, axis1=-2, axis2=-1).mean())
+
+    def track(self, plan: IntArray, attack: Attack, *, draws: int) -> Tracking:
+        """Simulate what the best group left by the attack measures and estimates."""
+        group = self.problem.best_group(plan, attack)
+        return simulate_tracking(self.scenario, plan, group, seed=self.seeds.simulation, draws=draws)
+
+
+PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
+    "optimum": lambda instance: instance.optimum.elements,
+    "ratt": lambda instance: ratt(instance.problem).elements,
+    "nonrobust_optimum": lambda instance: nonrobust_optimum(instance.problem).elements,
+    "greedy": lambda instance: greedy(instance.problem).elements,
+    "myopic": lambda instance: myopic(instance.problem).elements,
+    "random": lambda instance: random_plan(instance.problem, seed=instance.seeds.planner).elements,
+}
+
+ATTACKERS: dict[str, Callable[[Instance, IntArray], AttackResult | None]] = {
+    "none": lambda _instance, _plan: None,
+    "exact": lambda instance, plan: worst_case_attack(instance.problem, plan),
+    "bounded_rational": lambda instance, plan: bounded_rational_attack(instance.problem, plan),
+    "greedy": lambda instance, plan: greedy_attack(instance.problem, plan),
+    "random": lambda instance, plan: random_attack(instance.problem, plan, seed=instance.seeds.attacker),
+}
+
+GRAPHS: dict[str, Callable[[int], nx.Graph]] = {
+    "ring": nx.cycle_graph,
+    "line": nx.path_graph,
+    "star": lambda n: nx.star_graph(n - 1),
+    "grid": lambda n: nx.convert_node_labels_to_integers(nx.grid_2d_graph(2, n // 2), ordering="sorted"),
+    "ladder": lambda n: nx.circular_ladder_graph(n // 2),
+}

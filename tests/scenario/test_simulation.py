@@ -1,0 +1,53 @@
+"""Simulated tracking: the filter's covariance is the plan's, and its errors are as large as it says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ratt_opt import InputError, random_scenario, ratt
+from ratt_opt.scenario.simulation import simulate_tracking
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_joseph_covariance_is_the_information_form(seed: int) -> None:
+    scenario = random_scenario(5, 4, alpha_s=1, alpha_c=2, seed=seed)
+    problem = scenario.problem()
+    plan = ratt(problem).elements
+    for group in ([], [2], [0, 3, 4]):
+        tracking = simulate_tracking(scenario, plan, group, seed=1, draws=3)
+        expected = np.linalg.inv(problem.objective.posterior_information(plan[group]))
+        np.testing.assert_allclose(tracking.covariances, np.broadcast_to(expected, (3, 4, 2, 2)), rtol=1e-9)
+        value = problem.objective.prior.trace(axis1=1, axis2=2).sum() - 4 * tracking.trace
+        assert value == pytest.approx(problem.objective(plan[group]), rel=1e-9, abs=1e-9)
+
+
+def test_without_measurements_the_error_is_the_prior() -> None:
+    scenario = random_scenario(2, 3, alpha_s=0, alpha_c=0, seed=4)
+    tracking = simulate_tracking(scenario, ratt(scenario.problem()).elements, [], seed=0, draws=20_000)
+    assert np.array_equal(tracking.estimates[0], tracking.estimates[1])
+    errors = tracking.truth - tracking.estimates
+    sampled = np.einsum("dmi,dmj->mij", errors, errors) / len(errors)
+    np.testing.assert_allclose(sampled, tracking.covariances[0], atol=0.05 * tracking.trace)
+    assert tracking.mse == pytest.approx(tracking.trace, rel=0.03)
+
+
+def test_the_same_luck_for_every_group_and_plan() -> None:
+    scenario = random_scenario(3, 2, alpha_s=0, alpha_c=0, seed=4)
+    plan = ratt(scenario.problem()).elements
+    first, second = (simulate_tracking(scenario, plan, g, seed=5, draws=4) for g in ([0], [1, 2]))
+    assert np.array_equal(first.truth, second.truth)
+    again = simulate_tracking(scenario, plan, [0], seed=5, draws=4)
+    assert np.array_equal(first.estimates, again.estimates)
+    assert not np.array_equal(first.truth, simulate_tracking(scenario, plan, [0], seed=6, draws=4).truth)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"), [({"seed": -1}, "seed"), ({"draws": 0}, "draws"), ({"robots": [3]}, "robot")]
+)
+def test_bad_arguments_are_refused(change: dict[str, object], name: str) -> None:
+    scenario = random_scenario(3, 2, alpha_s=0, alpha_c=0, seed=4)
+    plan = ratt(scenario.problem()).elements
+    arguments: dict[str, object] = {"robots": [0], "seed": 0, "draws": 1} | change
+    with pytest.raises(InputError, match=name):
+        simulate_tracking(scenario, plan, **arguments)  # type: ignore[arg-type]
