@@ -56,7 +56,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         curves = {}
         for planner, colour, label in (
             ("ratt", COLOURS["ratt"], LABELS["ratt"]),
-            ("clairvoyant", "#7fa8e0", CLAIRVOYANT),
+            ("clairvoyant", "#e8871e", CLAIRVOYANT),
         ):
             curves[planner] = [
                 estimate(100 * (column(kept, f"{planner}/{k}/trace") / column(kept, f"greedy/{k}/trace") - 1))
@@ -64,7 +64,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
             ]
             bands(axes, range(LEVELS), curves[planner], colour=colour, label=label)
         axes.axhline(0, color=COLOURS["greedy"], linewidth=1.2, label=LABELS["greedy"])
-        axes.axvline(case.alpha_s, color="black", linestyle=":", linewidth=1)
+        axes.axvline(case.alpha_s, color="black", linestyle=":", linewidth=1, label="attack planned for")
         gain = [k for k, e in enumerate(curves["ratt"]) if e.mean < 0]
         price = f"price without attack {curves['ratt'][0].mean:+.1f} %"
         axes.set_title(
@@ -75,7 +75,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         axes.set_xlabel("robots blinded (links cut in proportion)")
     figure.axes[0].set_ylabel("trace relative to Greedy [%]\n(lower is better)")
     handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
     save(figure, folder, "budgets")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from analysis.studies.plots import bars, new_figure, save
-from analysis.studies.statistics import column, estimate, select
+from analysis.studies.statistics import Estimate, column, estimate, select
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_comparison"]
 
-METRICS = {"trace": "trace of covariance\nper target [m²]", "mse": "mean squared error\nper target [m²]"}
+METRICS = {"trace": "trace of covariance", "mse": "mean squared error"}
 
 
 def draw_comparison(
@@ -27,26 +27,42 @@ def draw_comparison(
     planners: Sequence[str],
     attacker: str,
 ) -> None:
-    """Draw mean and 95 % interval of every planner: one column of axes per panel, one row per metric."""
-    figure = new_figure(3.2 * len(panels) + 0.6, 5.4)
-    axes = figure.subplots(2, len(panels), squeeze=False, sharey="row")
-    trials = len(select(rows, case=panels[0][0].name))
-    for across, cases in enumerate(panels):
-        groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]
-        for down, (metric, label) in enumerate(METRICS.items()):
-            series = {
-                planner: [
-                    estimate(column(select(rows, case=case.name), f"{planner}/{attacker}/{metric}")) for case in cases
-                ]
-                for planner in planners
-            }
-            bars(axes[down, across], groups, series)
-            if across == 0:
-                axes[down, across].set_ylabel(label)
-        axes[0, across].set_title(f"N={cases[0].n_robots}, M={cases[0].n_targets}")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(planners), frameon=False)
-    figure.supxlabel(
-        f"{attacker.replace('_', '-')} attack; mean of {trials} trials with 95 % interval", fontsize="small"
-    )
-    save(figure, folder, name)
+    """Draw ``name``, the means as in the paper, and ``name_paired``, what each planner has in excess of RATT.
+
+    One column of axes per panel, one row per metric; bars are means with 95 % intervals. The second figure
+    shows what the first hides: scenarios differ far more than planners do on the same scenario.
+    """
+    columns = {planner: f"{planner}/{attacker}" for planner in planners}
+    note = f"{attacker.replace('_', '-')} attack; mean of {len(select(rows, case=panels[0][0].name))} trials"
+
+    def draw(suffix: str, label: str, shown: Mapping[str, str], *, paired: bool) -> None:
+        figure = new_figure(3.2 * len(panels) + 0.6, 5.4)
+        axes = figure.subplots(2, len(panels), squeeze=False, sharey="row")
+        for across, cases in enumerate(panels):
+            groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]
+            kept = [select(rows, case=case.name) for case in cases]
+            for down, (metric, text) in enumerate(METRICS.items()):
+                bars(axes[down, across], groups, _estimates(kept, shown, metric, paired=paired))
+                axes[down, 0].set_ylabel(f"{text}\n{label}")
+            axes[0, across].set_title(f"N={cases[0].n_robots}, M={cases[0].n_targets}")
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=len(planners), frameon=False)
+        figure.supxlabel(f"{note} with 95 % interval", fontsize="small")
+        save(figure, folder, name + suffix)
+
+    draw("", "per target [m²]", columns, paired=False)
+    draw("_paired", "minus RATT's [m²]", {p: c for p, c in columns.items() if p != "ratt"}, paired=True)
+
+
+def _estimates(
+    kept: Sequence[Sequence[Mapping[str, str]]], columns: Mapping[str, str], metric: str, *, paired: bool
+) -> dict[str, list[Estimate]]:
+    """Mean of a metric per planner and case; with ``paired`` of its difference to RATT, trial by trial."""
+    estimates = {}
+    for planner, name in columns.items():
+        values = [column(rows, f"{name}/{metric}") for rows in kept]
+        if paired:
+            base = [column(rows, f"ratt/{name.split('/')[1]}/{metric}") for rows in kept]
+            values = [value - own for value, own in zip(values, base, strict=True)]
+        estimates[planner] = [estimate(value) for value in values]
+    return estimates

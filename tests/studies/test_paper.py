@@ -38,10 +38,12 @@ def test_every_figure_and_table_is_there(out: Path) -> None:
     assert names == [
         "caa/caa.png",
         "large_scale/large_scale.png",
+        "large_scale/large_scale_paired.png",
         "qualitative/one_link_attack.png",
         "qualitative/one_sensing_attack.png",
         "qualitative/one_sensing_two_link_attacks.png",
         "small_scale/small_scale.png",
+        "small_scale/small_scale_paired.png",
     ]
     lines = (out / "claims.md").read_text().splitlines()
     assert len(lines) == 3 + len(CLAIMS)
