@@ -83,5 +83,5 @@ def save(figure: Figure, folder: Path, name: str) -> None:
     from ratt_opt._files import write_atomically
 
     with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
-        write_atomically(folder / f"{name}.png", lambda file: figure.savefig(file, dpi=150))
+        write_atomically(folder / f"{name}.png", lambda file: figure.savefig(file, dpi=120))
         write_atomically(folder / f"{name}.svg", lambda file: figure.savefig(file, metadata={"Date": None}))

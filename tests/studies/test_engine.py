@@ -184,6 +184,24 @@ def test_a_failing_trial_is_named_in_one_line_and_rows_are_kept(tmp_path: Path) 
     assert len((tmp_path / "journal.csv").read_text().splitlines()) >= 2
 
 
+def test_a_worker_process_that_dies_is_one_line(tmp_path: Path) -> None:
+    study = replace(STUDY, measure="tests.studies.toy:die")
+    text = "a worker process died; finished rows are kept, run the same command to resume"
+    with pytest.raises(SweepError, match=text), local_processes(1) as executor:
+        run(study, tmp_path, executor, trials=2, progress=Progress())
+
+
+def test_a_killed_run_leaves_no_worker_behind(tmp_path: Path) -> None:
+    process = _command(tmp_path, "--trials", "50", "--workers", "2", seconds=0.05)
+    journal = tmp_path / "toy" / "journal.csv"
+    until = time.monotonic() + 30
+    while (not journal.exists() or not journal.stat().st_size) and time.monotonic() < until:
+        time.sleep(0.02)
+    # Workers share the pipe of the parent's output: it closes when the last of them is gone.
+    process.kill()
+    process.communicate(timeout=10)
+
+
 def test_bad_arguments_are_one_line_and_exit_2(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     process = _command(tmp_path / "file" / "x")

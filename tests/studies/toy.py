@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.studies.study import Case, Cell, Seeds, Study
 
-__all__ = ["STUDY", "fail", "measure"]
+__all__ = ["STUDY", "die", "fail", "measure"]
 
 STUDY = Study(
     name="toy",
@@ -30,4 +30,11 @@ def fail(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     """Fail in the second case."""
     if case == study.cases[1]:
         raise ValueError("no such\nnumber")
+    return measure(study, case, seeds)
+
+
+def die(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """End the worker process in the second case, as running out of memory would."""
+    if case == study.cases[1]:
+        os._exit(1)
     return measure(study, case, seeds)
