@@ -67,15 +67,24 @@ def _parse(description: str, entries: Sequence[Entry], trials: int) -> argparse.
     parser.add_argument("--only", nargs="+", choices=names, help="run these studies only")
     parser.add_argument("--workers", type=_positive, help="local processes (default: one per core)")
     parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Dask scheduler to use instead")
-    parser.add_argument("--seed", type=int, default=entries[0].study.seed, help="root seed (default %(default)s)")
+    parser.add_argument(
+        "--seed", type=_not_negative, default=entries[0].study.seed, help="root seed (default %(default)s)"
+    )
     return parser.parse_args()
 
 
 def _positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"must be at least 1; got {value}")
-    return value
+    return _whole(text, low=1)
+
+
+def _not_negative(text: str) -> int:
+    return _whole(text, low=0)
+
+
+def _whole(text: str, *, low: int) -> int:
+    if not text.isdecimal() or int(text) < low:
+        raise argparse.ArgumentTypeError(f"must be an integer >= {low}; got {text}")
+    return int(text)
 
 
 def _say(message: object, code: int) -> int:

@@ -209,6 +209,17 @@ def test_bad_arguments_are_one_line_and_exit_2(tmp_path: Path) -> None:
     assert process.returncode == 2
 
 
+@pytest.mark.parametrize(
+    ("name", "value"), [("--trials", "0"), ("--trials", "2.5"), ("--seed", "-1"), ("--workers", "x")]
+)
+def test_bad_numbers_name_the_argument(tmp_path: Path, name: str, value: str) -> None:
+    process = _command(tmp_path, f"{name}={value}")
+    errors = process.communicate()[1]
+    assert process.returncode == 2
+    assert f"argument {name}: must be an integer >= " in errors.splitlines()[-1]
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_cluster_that_does_not_answer_is_one_line() -> None:
     pytest.importorskip("distributed")
     began = time.monotonic()
