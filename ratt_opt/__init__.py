@@ -84,6 +84,12 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.mrclam import from_mrclam as from_mrclam
     from ratt_opt.scenario.plan_file import load_plan as load_plan
     from ratt_opt.scenario.sensor import Sensor as Sensor
+    from ratt_opt.scenario.simulation import (
+        Tracking as Tracking,
+    )
+    from ratt_opt.scenario.simulation import (
+        simulate_tracking as simulate_tracking,
+    )
     from ratt_opt.setfunctions.base import SetFunction as SetFunction
     from ratt_opt.setfunctions.curvature import (
         Curvature as Curvature,
@@ -151,6 +157,7 @@ _HOME = {
     "TableFunction": "setfunctions.table",
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
+    "Tracking": "scenario.simulation",
     "all_bait_group_bound": "bounds.guarantees",
     "all_guarantees": "bounds.guarantees",
     "attack_survey": "attackers.survey",
@@ -179,6 +186,7 @@ _HOME = {
     "save_scenario": "scenario.files",
     "scenario_schema": "scenario.files",
     "sensing_only_bound": "bounds.guarantees",
+    "simulate_tracking": "scenario.simulation",
     "smallest_largest_group": "graph.largest_group",
     "solve_maxmin": "solvers.maxmin",
     "theorem1_bound": "bounds.guarantees",
