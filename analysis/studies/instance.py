@@ -20,6 +20,7 @@ from ratt_opt.scenario.simulation import simulate_tracking
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.maxmin import solve_maxmin
 from ratt_opt.solvers.ratt import ratt
 
 if TYPE_CHECKING:
@@ -37,6 +38,10 @@ __all__ = ["ATTACKERS", "GRAPHS", "PLANNERS", "Instance"]
 
 SENSOR = "sensor."
 """Prefix of the options that are fields of the sensor, not arguments of ``random_scenario``."""
+LARGEST_EXHAUSTIVE = 5
+"""Robots up to which the optimum is found by evaluating every plan; beyond it is bracketed by ``solve_maxmin``."""
+EFFORT: dict[str, Any] = {"gap": 5e-4, "max_nodes": 30}
+"""Where the bracket of a large optimum stops; counted in nodes, not seconds, so that rows are reproducible."""
 
 
 @dataclass(slots=True)
@@ -73,7 +78,8 @@ class Instance:
     def optimum(self) -> MaxMinResult:
         """The bracket of the optimum and the plan that attains its lower end."""
         if self._optimum is None:
-            self._optimum = exhaustive_optimum(self.problem)
+            small = self.problem.n_robots <= LARGEST_EXHAUSTIVE
+            self._optimum = exhaustive_optimum(self.problem) if small else solve_maxmin(self.problem, **EFFORT)
         return self._optimum
 
     @property

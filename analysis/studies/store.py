@@ -45,7 +45,8 @@ class Journal:
 
     def append(self, row: Mapping[str, Cell]) -> None:
         """Write one finished trial and force it to disk."""
-        cells = {name: repr(value) if isinstance(value, float) else str(value) for name, value in row.items()}
+        # NumPy's floats are floats too, but their repr is not a number.
+        cells = {name: repr(float(value)) if isinstance(value, float) else str(value) for name, value in row.items()}
         assert not any("\n" in cell or "\r" in cell for cell in cells.values())
         if not self._columns:
             self._columns = tuple(cells)

@@ -64,8 +64,9 @@ def test_table_is_the_same_bytes_whichever_executor_ran(tmp_path: Path) -> None:
     rows = read_table(tmp_path / "p")
     assert [(row["case"], int(row["trial"])) for row in rows] == [(c.name, t) for c in STUDY.cases for t in range(3)]
     expected = run_trial(STUDY, 1, 2)
-    assert {name: str(value) for name, value in expected.items()} == rows[5]
+    assert {name: str(value) for name, value in expected.items()} == rows[5]  # str of a float64 is its shortest repr
     assert float(rows[5]["value"]) == expected["value"]
+    assert float(rows[5]["scalar"]) == expected["scalar"]
 
 
 def test_more_trials_extend_the_table_and_repeat_nothing(tmp_path: Path) -> None:

@@ -23,7 +23,8 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     del study
     time.sleep(float(os.environ.get("TOY_SECONDS", "0")))
     rng = np.random.default_rng([seeds.simulation, case.n_robots])
-    return {"text": "a, b", "value": float(rng.standard_normal()), "count": int(rng.integers(10**12))}
+    numbers = rng.standard_normal(2)
+    return {"text": "a, b", "value": float(numbers[0]), "scalar": numbers[1], "count": int(rng.integers(10**12))}
 
 
 def fail(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:

@@ -1,0 +1,59 @@
+"""The large-scale comparison of the paper against the exact attacker and the certified optimum.
+
+``python -m analysis.extended.exact_attack --trials 200 --out DIR``
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from analysis.paper.large_scale import SIZES
+from analysis.paper.large_scale import STUDY as PAPER
+from analysis.studies.command import Entry, main
+from analysis.studies.plots import bars, new_figure, save
+from analysis.studies.statistics import column, estimate, select
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+STUDY = replace(
+    PAPER,
+    name="exact_attack",
+    planners=("optimum", "ratt", "greedy", "random"),
+    attackers=("exact", "bounded_rational"),
+    metrics=("value", "proved", "trace"),
+    quantities=("optimum",),
+)
+
+
+def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """Above: trace under the exact attack. Below: how far RATT and Greedy are above the certified plan, per cent."""
+    figure = new_figure(11, 6.2)
+    axes = figure.subplots(2, len(SIZES), sharey="row")
+    for across, (n, m) in enumerate(SIZES):
+        cases = [case for case in STUDY.cases if case.n_robots == n]
+        kept = [select(rows, case=case.name) for case in cases]
+        groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]
+        traces = {p: [column(k, f"{p}/exact/trace") for k in kept] for p in STUDY.planners}
+        bars(axes[0, across], groups, {p: [estimate(values) for values in traces[p]] for p in STUDY.planners})
+        excess = {
+            p: [estimate(100 * (t / best - 1)) for t, best in zip(traces[p], traces["optimum"], strict=True)]
+            for p in ("ratt", "greedy")
+        }
+        bars(axes[1, across], groups, excess)
+        axes[0, across].set_title(f"N={n}, M={m}")
+    axes[0, 0].set_ylabel("trace per target [m²]\nunder the exact attack")
+    axes[1, 0].set_ylabel("excess over the\ncertified plan [%]")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)
+    figure.supxlabel(f"mean of {len(kept[0])} paired trials with 95 % interval", fontsize="small")
+    save(figure, folder, STUDY.name)
+
+
+ENTRY = Entry(STUDY, draw)
+
+if __name__ == "__main__":
+    sys.exit(main("Large teams against the exact attacker and the certified optimum.", [ENTRY], trials=200))

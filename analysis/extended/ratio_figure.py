@@ -1,0 +1,47 @@
+"""Bars of the share of the certified optimum that planners keep under the exact attack."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from analysis.studies.plots import bars, new_figure, save
+from analysis.studies.statistics import column, estimate, select
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from analysis.studies.study import Case
+
+__all__ = ["draw_ratios"]
+
+
+def draw_ratios(
+    rows: Sequence[Mapping[str, str]],
+    folder: Path,
+    *,
+    name: str,
+    panels: Mapping[str, Mapping[str, Case]],
+    planners: Sequence[str],
+) -> None:
+    """Draw one panel per entry of ``panels`` with one group of bars per case, labelled by the inner key.
+
+    A bar is the mean of proved worst case over upper bound of the optimum: what is certified trial by trial.
+    """
+    figure = new_figure(1.6 + 3.2 * len(panels), 3.9)
+    axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
+    for panel, (title, cases) in zip(axes, panels.items(), strict=True):
+        kept = [select(rows, case=case.name) for case in cases.values()]
+        ratios = {
+            planner: [estimate(100 * column(k, f"{planner}/exact/proved") / column(k, "optimum/upper")) for k in kept]
+            for planner in planners
+        }
+        bars(panel, list(cases), ratios)
+        panel.set_title(title)
+    lowest = min(bar.get_height() for panel in axes for bar in panel.patches)
+    axes[0].set_ylim(max(0.0, 5 * (lowest // 5) - 5), 100.5)
+    axes[0].set_ylabel("certified share of the optimum [%]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(planners), frameon=False)
+    figure.supxlabel(f"exact attack; mean of {len(kept[0])} paired trials with 95 % interval", fontsize="small")
+    save(figure, folder, name)
