@@ -26,15 +26,18 @@ def draw_ratios(
 ) -> None:
     """Draw one panel per entry of ``panels`` with one group of bars per case, labelled by the inner key.
 
-    A bar is the mean of proved worst case over upper bound of the optimum: what is certified trial by trial.
+    A bar is the mean of proved worst case over upper bound of the optimum: what is certified trial by trial. The
+    optimum's own bar is its lower bound over its upper bound: what is missing to 100 % is not decided.
     """
-    figure = new_figure(1.6 + 3.2 * len(panels), 3.9)
+    groups = max(map(len, panels.values()))
+    figure = new_figure(1.6 + max(3.2, 0.85 * groups) * len(panels), 3.9)
     axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
     for panel, (title, cases) in zip(axes, panels.items(), strict=True):
         kept = [select(rows, case=case.name) for case in cases.values()]
+        proved = {"optimum": "optimum/lower", **{planner: f"{planner}/exact/proved" for planner in planners}}
         ratios = {
-            planner: [estimate(100 * column(k, f"{planner}/exact/proved") / column(k, "optimum/upper")) for k in kept]
-            for planner in planners
+            planner: [estimate(100 * column(k, name) / column(k, "optimum/upper")) for k in kept]
+            for planner, name in proved.items()
         }
         bars(panel, list(cases), ratios)
         panel.set_title(title)
@@ -42,6 +45,6 @@ def draw_ratios(
     axes[0].set_ylim(max(0.0, 5 * (lowest // 5) - 5), 100.5)
     axes[0].set_ylabel("certified share of the optimum [%]")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(planners), frameon=False)
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(planners) + 1, frameon=False)
     figure.supxlabel(f"exact attack; mean of {len(kept[0])} paired trials with 95 % interval", fontsize="small")
     save(figure, folder, name)
