@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from analysis.paper.qualitative_figure import common_limits, draw_scene, legend
 from analysis.studies.command import Entry, main
+from analysis.studies.comparison import DRAWS
 from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
 from analysis.studies.plots import LABELS, new_figure, save
 from analysis.studies.statistics import select
@@ -47,10 +48,10 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
         for attacker in study.attackers:
             result = ATTACKERS[attacker](instance, plan)
             attack = Attack() if result is None else result.attack
-            tracking = instance.track(plan, attack, draws=1)
             name = f"{planner}/{attacker}"
             row[f"{name}/value"] = instance.problem.team_value(plan, attack)
-            row |= {f"{name}/trace": tracking.trace, f"{name}/mse": tracking.mse}
+            row[f"{name}/trace"] = instance.trace(plan, attack)
+            row[f"{name}/mse"] = instance.track(plan, attack, draws=DRAWS).mse
             row[f"{name}/picture"] = json.dumps(_picture(instance, plan, attack))
     return row
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-__all__ = ["common_limits", "draw_scene", "legend"]
+__all__ = ["common_limits", "draw_scene", "legend", "squared_error"]
 
 TARGET_COLOURS = ("#c1121f", "#1f4e9c", "#b5179e")
 ROBOT_COLOURS = ("#c1121f", "#1f4e9c", "#b5179e")
@@ -61,6 +61,11 @@ def common_limits(pictures: Sequence[dict[str, Any]]) -> dict[str, tuple[float, 
     low, high = (f(np.concatenate([*points, *ellipses]), axis=0) for f in (np.min, np.max))
     middle, half = (low + high) / 2, float((high - low).max()) / 2 + 4
     return {name: (m - half, m + half) for name, m in zip(("xlim", "ylim"), middle.tolist(), strict=True)}
+
+
+def squared_error(picture: dict[str, Any]) -> float:
+    """Return the mean squared distance of estimate and truth in one picture [m^2]."""
+    return float(((np.array(picture["truth"]) - np.array(picture["estimate"])) ** 2).sum(axis=1).mean())
 
 
 def legend() -> list[Line2D]:
