@@ -9,7 +9,7 @@ import json
 import sys
 from typing import TYPE_CHECKING, Any
 
-from analysis.paper.qualitative_figure import common_limits, draw_scene, legend
+from analysis.paper.qualitative_figure import common_limits, draw_scene, legend, squared_error
 from analysis.studies.command import Entry, main
 from analysis.studies.comparison import DRAWS
 from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
@@ -83,9 +83,8 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
             draw_scene(axes, picture)
             axes.set(**common_limits(pictures))
             planner, attacker = cell.split("/")
-            numbers = (
-                f"trace {float(shown[f'{cell}/trace']):.3g} m², squared error {float(shown[f'{cell}/mse']):.3g} m²"
-            )
+            trace, error = float(shown[f"{cell}/trace"]), squared_error(picture)
+            numbers = f"trace {trace:.3g} m², squared error {error:.3g} m² per target"
             axes.set_title(f"{LABELS[planner]}, {'no attack' if attacker == 'none' else 'worst attack'}\n{numbers}")
         figure.legend(handles=legend(), loc="outside lower center", ncols=4, frameon=False)
         save(figure, folder, name)
