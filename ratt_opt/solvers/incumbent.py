@@ -77,14 +77,22 @@ class Incumbent:
         return [attacker(relaxed, plan).attack for attacker in (greedy_attack, bounded_rational_attack)]
 
     def improve(self, plan: IntArray | None = None) -> None:
-        """Local search from a plan (the incumbent by default): best single-robot change, while that helps."""
+        """Local search from a plan (the incumbent by default): best single-robot change, while that helps.
+
+        Steps are judged by the known outcomes and a cheap attack on each; only where no step is left the
+        plan is attacked exactly, and the search goes on against what that attack adds.
+        """
         current = self.elements if plan is None else plan
         for _ in range(LOCAL_SEARCH_ROUNDS):
             candidate = self._best_swap(current)
-            if candidate is None:
+            if candidate is not None:
+                self.pool.add(bounded_rational_attack(self.problem, candidate).attack)
+                current = candidate
+                continue
+            known = len(self.pool.attacks)
+            self.offer(current)
+            if len(self.pool.attacks) == known:
                 return
-            self.offer(candidate)
-            current = candidate
 
     def _best_swap(self, plan: IntArray) -> IntArray | None:
         """The single-robot change with the largest value on the known outcomes, if it beats the plan's."""
