@@ -84,12 +84,8 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.mrclam import from_mrclam as from_mrclam
     from ratt_opt.scenario.plan_file import load_plan as load_plan
     from ratt_opt.scenario.sensor import Sensor as Sensor
-    from ratt_opt.scenario.simulation import (
-        Tracking as Tracking,
-    )
-    from ratt_opt.scenario.simulation import (
-        simulate_tracking as simulate_tracking,
-    )
+    from ratt_opt.scenario.simulation import Tracking as Tracking
+    from ratt_opt.scenario.simulation import simulate_tracking as simulate_tracking
     from ratt_opt.setfunctions.base import SetFunction as SetFunction
     from ratt_opt.setfunctions.curvature import (
         Curvature as Curvature,
@@ -109,6 +105,26 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import (
         TraceObjective as TraceObjective,
     )
+    from ratt_opt.setfunctions.properties import (
+        find_modularity_violation as find_modularity_violation,
+    )
+    from ratt_opt.setfunctions.properties import (
+        find_monotonicity_violation as find_monotonicity_violation,
+    )
+    from ratt_opt.setfunctions.properties import (
+        find_negativity as find_negativity,
+    )
+    from ratt_opt.setfunctions.properties import (
+        find_normalisation_violation as find_normalisation_violation,
+    )
+    from ratt_opt.setfunctions.properties import (
+        find_subadditivity_violation as find_subadditivity_violation,
+    )
+    from ratt_opt.setfunctions.properties import (
+        find_submodularity_violation as find_submodularity_violation,
+    )
+    from ratt_opt.setfunctions.sampling import NotFound as NotFound
+    from ratt_opt.setfunctions.sampling import Violation as Violation
     from ratt_opt.setfunctions.table import TableFunction as TableFunction
     from ratt_opt.solvers.baselines import (
         greedy as greedy,
@@ -144,6 +160,7 @@ _HOME = {
     "LogDetObjective": "setfunctions.information",
     "MaxEigenvalueObjective": "setfunctions.information",
     "MaxMinResult": "solvers.result",
+    "NotFound": "setfunctions.sampling",
     "Plan": "problem",
     "PlanAssessment": "main_job",
     "Problem": "problem",
@@ -158,6 +175,7 @@ _HOME = {
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
     "Tracking": "scenario.simulation",
+    "Violation": "setfunctions.sampling",
     "all_bait_group_bound": "bounds.guarantees",
     "all_guarantees": "bounds.guarantees",
     "attack_survey": "attackers.survey",
@@ -168,6 +186,12 @@ _HOME = {
     "criticality_ranking": "attackers.criticality",
     "curvature": "setfunctions.curvature",
     "exhaustive_optimum": "solvers.exhaustive",
+    "find_modularity_violation": "setfunctions.properties",
+    "find_monotonicity_violation": "setfunctions.properties",
+    "find_negativity": "setfunctions.properties",
+    "find_normalisation_violation": "setfunctions.properties",
+    "find_subadditivity_violation": "setfunctions.properties",
+    "find_submodularity_violation": "setfunctions.properties",
     "from_mrclam": "scenario.mrclam",
     "greedy": "solvers.baselines",
     "greedy_attack": "attackers.greedy",

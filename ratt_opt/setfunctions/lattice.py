@@ -1,0 +1,83 @@
+"""Compiled passes over a table of all subsets; imported only where a table is checked (compiling is cached).
+
+Every pass reads the table in its own order and makes no copy of it. The plain versions are in the tests.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+
+__all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_differences"]
+
+# Values are finite (checked on entry), so comparisons may assume it; no operation is reordered.
+_FINITE = {"nnan", "ninf", "nsz"}
+
+
+@numba.njit(cache=True, fastmath=_FINITE)
+def marginal_ends(values: Any, n: int) -> Any:
+    """(2, n) smallest and largest ``f(S + i) - f(S)`` over all ``S`` without ``i``."""
+    ends = np.empty((2, n))
+    for i in range(n):
+        step = 1 << i
+        low, high = np.inf, -np.inf
+        for start in range(0, len(values), 2 * step):
+            for s in range(start, start + step):
+                marginal = values[s + step] - values[s]
+                low = min(low, marginal)
+                high = max(high, marginal)
+        ends[0, i], ends[1, i] = low, high
+    return ends
+
+
+@numba.njit(cache=True, fastmath=_FINITE)
+def second_differences(values: Any, n: int) -> Any:
+    """(2, n, n) smallest and largest ``f(S+i) + f(S+j) - f(S+i+j) - f(S)`` over ``S``, for ``i < j``; 0 elsewhere."""
+    ends = np.zeros((2, n, n))
+    for j in range(1, n):
+        for i in range(j):
+            ends[0, i, j], ends[1, i, j] = np.inf, -np.inf
+    for j in range(1, n):
+        top = 1 << j
+        # All pairs (i, j) of one block of the table before the next block: the block stays in cache.
+        for start in range(0, len(values), 2 * top):
+            for i in range(j):
+                step = 1 << i
+                low, high = ends[0, i, j], ends[1, i, j]
+                for base in range(start, start + top, 2 * step):
+                    for s in range(base, base + step):
+                        slack = (values[s + step] - values[s]) - (values[s + top + step] - values[s + top])
+                        low = min(low, slack)
+                        high = max(high, slack)
+                ends[0, i, j], ends[1, i, j] = low, high
+    return ends
+
+
+@numba.njit(cache=True)
+def disjoint_slack(values: Any) -> Any:
+    """Smallest ``f(A) + f(B) - f(A + B)`` over disjoint ``A``, ``B`` (3**n pairs), with its ``A`` and ``B``."""
+    worst, first, second = np.inf, 0, 0
+    for union in range(len(values)):
+        part = union
+        while True:
+            slack = values[part] + values[union ^ part] - values[union]
+            if slack < worst:
+                worst, first, second = slack, part, union ^ part
+            if 2 * part <= union:  # the other half are the same pairs, swapped
+                break
+            part = (part - 1) & union
+    return worst, first, second
+
+
+@numba.njit(cache=True)
+def overlapping_slack(values: Any) -> Any:
+    """Smallest ``f(A) + f(B) - f(A | B)`` over all pairs (4**n), with its ``A`` and ``B``."""
+    worst, first, second = np.inf, 0, 0
+    for a in range(len(values)):
+        for b in range(a, len(values)):
+            slack = values[a] + values[b] - values[a | b]
+            if slack < worst:
+                worst, first, second = slack, a, b
+    return worst, first, second

@@ -1,0 +1,192 @@
+"""What a set function is: each check returns a witness against the property, or says that there is none.
+
+``None`` is a statement: every set was looked at (or theory decides). Where the ground set is too large for a table,
+the answer is a witness or :class:`NotFound`, which is false, counts its trials and claims nothing more.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.setfunctions.base import SetFunction
+
+__all__ = [
+    "NotFound",
+    "Violation",
+    "find_modularity_violation",
+    "find_monotonicity_violation",
+    "find_negativity",
+    "find_normalisation_violation",
+    "find_subadditivity_violation",
+    "find_submodularity_violation",
+]
+
+LARGEST_EXACT = 24
+"""Largest ground set whose table is checked exhaustively (128 MiB of float64)."""
+LARGEST_DISJOINT = 18
+"""Largest ground set whose 3**n disjoint pairs are looked at (under a second)."""
+LARGEST_OVERLAPPING = 12
+"""Largest ground set whose 4**n pairs are looked at."""
+TOLERANCE = 1e-9
+"""Default tolerance: a violation must exceed it times the largest absolute value of the function."""
+
+
+def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> Violation | None:
+    """Return the empty set as a witness if its value is not 0 (``tolerance`` is absolute: there is no scale to it)."""
+    value = f([])
+    if abs(value) <= tolerance:
+        return None
+    return Violation(rule="normalised", a=(), b=(), slack=-abs(value), tolerance=tolerance)
+
+
+def find_negativity(
+    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+) -> Violation | NotFound | None:
+    """Return the set with the most negative value, if one is negative.
+
+    Parameters are those of :func:`find_monotonicity_violation`.
+    """
+    if f.n > LARGEST_EXACT:
+        return sample(f, "non-negative", tolerance, trials=trials, seed=seed)
+    values = f.table()
+    return _witness(f, "non-negative", (int(values.argmin()), 0), values, tolerance)
+
+
+def find_monotonicity_violation(
+    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+) -> Violation | NotFound | None:
+    """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
+
+    Parameters
+    ----------
+    tolerance : how negative counts, relative to the largest absolute value of the function
+    trials, seed : of the sampled search, where the ground set has more than 24 elements
+
+    Returns
+    -------
+    The witness; ``None`` where there is none, by a look at every set (up to 24 elements) or by theory
+    (information criteria: added information is positive semidefinite, up to the rounding their input rule admits);
+    otherwise :class:`NotFound`, which is false and proves nothing.
+
+    Source: ratt.tex, Section III.
+    """
+    rule = "non-decreasing"
+    if f.n > LARGEST_EXACT:
+        if isinstance(f, InformationObjective):
+            return None
+        return sample(f, rule, tolerance, trials=trials, seed=seed)
+    from ratt_opt.setfunctions.lattice import marginal_ends
+
+    values = f.table()
+    if f.n == 0:
+        return None
+    x = int(marginal_ends(values, f.n)[0].argmin())
+    sets = values.reshape(-1, 2, 1 << x)
+    base = _mask_without(int((sets[:, 1] - sets[:, 0]).argmin()), x)
+    return _witness(f, rule, (base, 1 << x), values, tolerance)
+
+
+def find_submodularity_violation(
+    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+) -> Violation | NotFound | None:
+    """Find sets ``a = S + x`` and ``b = S + y`` that break ``f(a) + f(b) >= f(a | b) + f(a & b)`` most.
+
+    Parameters and result are those of :func:`find_monotonicity_violation`; theory decides for log-det.
+
+    Source: the definition by second differences, equivalent to all pairs of sets.
+    """
+    if f.n > LARGEST_EXACT and isinstance(f, LogDetObjective):
+        return None
+    return _second_order(f, "submodular", tolerance, trials, seed)
+
+
+def find_modularity_violation(
+    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+) -> Violation | NotFound | None:
+    """Find sets ``a = S + x`` and ``b = S + y`` with the largest ``|f(a) + f(b) - f(a | b) - f(a & b)|``.
+
+    Parameters and result are those of :func:`find_monotonicity_violation`.
+    """
+    return _second_order(f, "modular", tolerance, trials, seed)
+
+
+def find_subadditivity_violation(
+    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+) -> Violation | NotFound | None:
+    """Find sets that break ``f(a) + f(b) >= f(a | b)`` most.
+
+    A non-negative submodular function has none. A non-decreasing one has one only if a disjoint pair is one
+    (``f(b - a) <= f(b)``): 3**n pairs, up to 18 elements. Other functions: all 4**n pairs, up to 12 elements, as no
+    faster exact way is known. Beyond: sampled. Parameters and result are those of
+    :func:`find_monotonicity_violation`.
+    """
+    rule = "subadditive"
+    if f.n <= LARGEST_EXACT:
+        values = f.table()
+        limit = 0.0  # theory needs the premises exactly
+        if values.min() >= 0 and _second_order(f, "submodular", limit, trials, seed) is None:
+            return None
+        monotone = f.n <= LARGEST_DISJOINT and find_monotonicity_violation(f, tolerance=limit) is None
+        if monotone or f.n <= LARGEST_OVERLAPPING:
+            from ratt_opt.setfunctions.lattice import disjoint_slack, overlapping_slack
+
+            _, a, b = (disjoint_slack if monotone else overlapping_slack)(values)
+            return _witness(f, rule, (int(a), int(b)), values, tolerance)
+    return sample(f, rule, tolerance, trials=trials, seed=seed)
+
+
+def _second_order(f: SetFunction, rule: str, tolerance: float, trials: int, seed: int) -> Violation | NotFound | None:
+    if f.n > LARGEST_EXACT:
+        return sample(f, rule, tolerance, trials=trials, seed=seed)
+    if f.n < 2:
+        return None
+    from ratt_opt.setfunctions.lattice import second_differences
+
+    values = f.table()
+    low, high = second_differences(values, f.n)
+    slack = np.minimum(low, -high) if rule == "modular" else low
+    i, j = (int(k) for k in np.unravel_index(int(slack.argmin()), slack.shape))
+    if i == j:  # every slack of a pair is positive
+        return None
+    return _witness(f, rule, _worst_pair(values, i, j, rule), values, tolerance)
+
+
+def _worst_pair(values: FloatArray, i: int, j: int, rule: str) -> tuple[int, int]:
+    """Masks ``S + i`` and ``S + j`` with the smallest slack over ``S``."""
+    v = values.reshape(-1, 2, 1 << (j - i - 1), 2, 1 << i)
+    slack = (v[:, 0, :, 1] - v[:, 0, :, 0]) - (v[:, 1, :, 1] - v[:, 1, :, 0])
+    where = int((-np.abs(slack) if rule == "modular" else slack).argmin())
+    base = _mask_without(_mask_without(where, i), j)
+    return base | 1 << i, base | 1 << j
+
+
+def _mask_without(position: int, bit: int) -> int:
+    """The ``position``-th mask among those without one bit."""
+    low = position & ((1 << bit) - 1)
+    return (position ^ low) << 1 | low
+
+
+def _witness(
+    f: SetFunction, rule: str, masks: tuple[int, int], values: FloatArray, tolerance: float
+) -> Violation | None:
+    """Return the pair of sets as a violation, its slack recomputed from the table."""
+    a, b = masks
+    slack = {
+        "non-negative": lambda: values[a],
+        "non-decreasing": lambda: values[a | b] - values[a],
+        "subadditive": lambda: values[a] + values[b] - values[a | b],
+        "submodular": lambda: values[a] + values[b] - values[a | b] - values[a & b],
+        "modular": lambda: -abs(values[a] + values[b] - values[a | b] - values[a & b]),
+    }[rule]()
+    limit = tolerance * max(float(values.max()), -float(values.min()))
+    if slack >= -limit:
+        return None
+    members = [tuple(e for e in range(f.n) if mask >> e & 1) for mask in masks]
+    return Violation(rule=rule, a=members[0], b=members[1], slack=float(slack), tolerance=limit)

@@ -1,0 +1,150 @@
+"""Checks of properties against their definitions over all pairs of sets."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ratt_opt.setfunctions.information import LogDetObjective, TraceObjective
+from ratt_opt.setfunctions.properties import (
+    NotFound,
+    find_modularity_violation,
+    find_monotonicity_violation,
+    find_negativity,
+    find_normalisation_violation,
+    find_subadditivity_violation,
+    find_submodularity_violation,
+)
+from ratt_opt.setfunctions.table import TableFunction
+from tests.setfunctions.oracle import pair_slack, worst_slack
+from tests.strategies import information_data, monotone_table
+
+CHECKS = {
+    "non-negative": find_negativity,
+    "non-decreasing": find_monotonicity_violation,
+    "submodular": find_submodularity_violation,
+    "modular": find_modularity_violation,
+    "subadditive": find_subadditivity_violation,
+}
+
+
+def random_table(rng):
+    """Any table: integers with ties, non-monotone and non-normalised; monotone; or modular plus noise now and then."""
+    n = int(rng.integers(0, 8))
+    kind = rng.integers(0, 5)
+    if kind == 0:
+        return rng.integers(-3, 4, 2**n).astype(float)
+    if kind == 1:
+        return rng.normal(size=2**n)
+    if kind == 2:
+        return monotone_table(rng, n)
+    masks = np.arange(2**n)
+    members = masks[:, None] >> np.arange(n) & 1
+    weights = rng.integers(0, 4, n)
+    if kind == 3:
+        return np.sqrt(members @ weights) if rng.random() < 0.7 else (members @ weights).astype(float)
+    cover = np.bitwise_or.reduce(members * rng.integers(0, 64, n), axis=1) if n else np.zeros(1, dtype=int)
+    return np.array([int(c).bit_count() for c in cover], dtype=float)
+
+
+@pytest.mark.parametrize("rule", sorted(CHECKS))
+def test_checks_agree_with_the_definition(rule):
+    rng = np.random.default_rng(1)
+    outcomes = set()
+    for _ in range(600):
+        values = random_table(rng)
+        f = TableFunction(values)
+        found = CHECKS[rule](f)
+        worst = worst_slack(values, rule)
+        outcomes.add(found is None)
+        scale = np.abs(values).max(initial=0.0)
+        assert (found is None) == (worst >= -1e-9 * scale)
+        if found is not None:
+            assert found.slack == pytest.approx(pair_slack(f, found), abs=1e-12 * scale)
+            assert found.slack < -found.tolerance
+            if rule not in {"submodular", "modular", "non-decreasing"}:
+                # The local forms need not find the globally worst pair, only some pair; the others do.
+                assert found.slack == pytest.approx(worst, abs=1e-12 * scale)
+    assert outcomes == {True, False}
+
+
+def test_local_checks_return_the_worst_neighbours():
+    rng = np.random.default_rng(2)
+    for _ in range(200):
+        n = int(rng.integers(2, 6))
+        values = rng.normal(size=2**n)
+        worst = min(
+            values[s | 1 << i] + values[s | 1 << j] - values[s | 1 << i | 1 << j] - values[s]
+            for s in range(2**n)
+            for i in range(n)
+            for j in range(i)
+            if not (s >> i & 1 or s >> j & 1)
+        )
+        found = find_submodularity_violation(TableFunction(values))
+        assert (worst >= 0) == (found is None)
+        if found:
+            assert found.slack == pytest.approx(worst)
+
+
+def test_normalisation():
+    assert find_normalisation_violation(TableFunction([0.0, 1.0])) is None
+    found = find_normalisation_violation(TableFunction([-0.5, 1.0]))
+    assert found.slack == -0.5
+    assert found.inequality == "f({}) = 0"
+
+
+def test_tolerance_is_relative_to_the_scale():
+    values = np.array([0.0, 1.0, 1.0, 1.0 - 1e-6])
+    for scale in (1e-12, 1.0, 1e12):
+        f = TableFunction(scale * values)
+        assert find_monotonicity_violation(f, tolerance=1e-5) is None
+        found = find_monotonicity_violation(f, tolerance=1e-7)
+        assert found.slack == pytest.approx(-1e-6 * scale)
+        assert found.tolerance == pytest.approx(1e-7 * scale)
+
+
+def test_trace_is_not_submodular_and_log_det_is():
+    """The example found by search: two skewed measurements of a stretched prior help each other under the trace."""
+    prior = [np.diag([10.0, 1.0])]
+    information = [[np.outer(u, u)] for u in ([0, 3], [1, 3])]
+    trace = TraceObjective(prior, information)
+    found = find_submodularity_violation(trace)
+    assert {found.a, found.b} == {(0,), (1,)}
+    assert found.slack == pytest.approx(trace([0]) + trace([1]) - trace([0, 1]))
+    assert found.slack < -2.9
+    assert find_submodularity_violation(LogDetObjective(prior, information)) is None
+
+
+def test_log_det_is_submodular_and_all_criteria_are_non_decreasing():
+    rng = np.random.default_rng(3)
+    for _ in range(30):
+        prior, information = information_data(rng, 6, 2)
+        assert find_submodularity_violation(LogDetObjective(prior, information)) is None
+        assert find_monotonicity_violation(TraceObjective(prior, information)) is None
+
+
+def test_large_ground_sets_are_sampled_and_say_so():
+    rng = np.random.default_rng(4)
+    prior, information = information_data(rng, 30, 2)
+    prior = prior + np.diag([50.0, 0.0])
+    trace = TraceObjective(prior, information)
+    found = find_submodularity_violation(trace, trials=4000)
+    assert found
+    assert pair_slack(trace, found) == pytest.approx(found.slack)
+    assert find_submodularity_violation(LogDetObjective(prior, information)) is None
+    nothing = find_negativity(trace, trials=500)
+    assert isinstance(nothing, NotFound)
+    assert not nothing
+    assert nothing.trials >= 500
+    assert nothing.smallest_slack >= 0
+    assert find_monotonicity_violation(trace) is None
+
+
+def test_one_bad_set_in_a_large_table_is_found():
+    n = 14
+    members = np.arange(2**n)[:, None] >> np.arange(n) & 1
+    values = np.sqrt(members.sum(axis=1))
+    values[0b10110100101101] -= 0.5
+    f = TableFunction(values)
+    assert find_monotonicity_violation(f).slack < -0.3
+    assert find_submodularity_violation(f).slack < -0.3
