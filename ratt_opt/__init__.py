@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.random_attack import random_attack as random_attack
     from ratt_opt.attackers.result import AttackResult as AttackResult
     from ratt_opt.attackers.survey import attack_survey as attack_survey
+    from ratt_opt.audit.ratio import WorstCaseRatio as WorstCaseRatio
+    from ratt_opt.audit.ratio import worst_case_ratio as worst_case_ratio
+    from ratt_opt.audit.ratio_witness import RatioWitness as RatioWitness
     from ratt_opt.bounds.guarantees import (
         Guarantee as Guarantee,
     )
@@ -165,6 +168,7 @@ _HOME = {
     "PlanAssessment": "main_job",
     "Problem": "problem",
     "ProofError": "errors",
+    "RatioWitness": "audit.ratio_witness",
     "RelaxationBound": "bounds.relaxation",
     "Robot": "scenario.model",
     "Scenario": "scenario.model",
@@ -176,6 +180,7 @@ _HOME = {
     "TraceObjective": "setfunctions.information",
     "Tracking": "scenario.simulation",
     "Violation": "setfunctions.sampling",
+    "WorstCaseRatio": "audit.ratio",
     "all_bait_group_bound": "bounds.guarantees",
     "all_guarantees": "bounds.guarantees",
     "attack_survey": "attackers.survey",
@@ -216,6 +221,7 @@ _HOME = {
     "theorem1_bound": "bounds.guarantees",
     "total_curvature": "setfunctions.curvature",
     "worst_case_attack": "attackers.exact",
+    "worst_case_ratio": "audit.ratio",
 }
 
 __all__ = [  # noqa: PLE0604  (every name of _HOME, loaded by __getattr__)

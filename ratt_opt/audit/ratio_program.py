@@ -1,0 +1,171 @@
+"""A linear program in HiGHS whose answers are re-derived in rationals before anything is claimed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["ClaimedOptimum", "Program", "Row"]
+
+ROUNDING = 1e-9
+"""How far a proved bound may stay behind the claimed one before better rationals are tried."""
+
+DENOMINATORS = (60, 10_000, 1_000_000)
+"""Denominators tried when a float is read as a rational; whatever comes out is checked exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """``sum_j terms[j] x_j >= least``."""
+
+    terms: Mapping[int, Fraction]
+    least: Fraction = Fraction(0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClaimedOptimum:
+    """What HiGHS returned: ``x`` (columns,) and multipliers ``y`` (rows,); not trusted."""
+
+    x: FloatArray
+    y: FloatArray
+
+
+class Program:
+    """Minimise ``x_0`` over ``x >= 0`` and a growing list of rows, each switched on or off.
+
+    The only mutable object of the search: it keeps the solver's basis between the nodes.
+    """
+
+    def __init__(self, n_columns: int) -> None:
+        import highspy
+
+        self._highs: Any = highspy.Highs()  # type: ignore[no-untyped-call]
+        for name, value in (("output_flag", False), ("threads", 1), ("random_seed", 0)):
+            self._highs.setOptionValue(name, value)
+        self._infinity = highspy.kHighsInf
+        self._optimal = highspy.HighsModelStatus.kOptimal
+        for column in range(n_columns):
+            self._highs.addCol(float(column == 0), 0.0, self._infinity, 0, [], [])
+        self.rows: list[Row] = []
+        self.on: list[bool] = []
+
+    def add(self, rows: Iterable[Row]) -> list[int]:
+        """Append rows, switched on, and return their indices."""
+        rows = list(rows)
+        first = len(self.rows)
+        if rows:
+            counts = [len(row.terms) for row in rows]
+            starts = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int32)
+            index = np.array([j for row in rows for j in row.terms], dtype=np.int32)
+            value = np.array([float(v) for row in rows for v in row.terms.values()])
+            lower = np.array([float(row.least) for row in rows])
+            upper = np.full(len(rows), self._infinity)
+            self._highs.addRows(len(rows), lower, upper, len(index), starts, index, value)
+        self.rows += rows
+        self.on += [True] * len(rows)
+        return list(range(first, len(self.rows)))
+
+    def switch(self, index: int, *, on: bool) -> None:
+        """Make row ``index`` count or not."""
+        if self.on[index] != on:
+            lower = float(self.rows[index].least) if on else -self._infinity
+            self._highs.changeRowBounds(index, lower, self._infinity)
+            self.on[index] = on
+
+    def solve(self, time_limit: float) -> ClaimedOptimum | None:
+        """Run HiGHS for at most ``time_limit`` seconds; ``None`` unless it claims an optimum."""
+        self._highs.setOptionValue("time_limit", self._highs.getRunTime() + max(time_limit, 0.0))
+        self._highs.run()
+        if self._highs.getModelStatus() != self._optimal:
+            return None
+        solution = self._highs.getSolution()
+        return ClaimedOptimum(x=np.array(solution.col_value), y=np.array(solution.row_dual))
+
+    def proved_bound(self, claimed: ClaimedOptimum) -> Fraction:
+        """Return a lower bound on the minimum, proved by rational multipliers; 0 (``x_0 >= 0``) where none verifies."""
+        best = Fraction(0)
+        for denominator in DENOMINATORS:
+            used = {i: Fraction(float(claimed.y[i])).limit_denominator(denominator) for i in self._support(claimed)}
+            best = max(best, self._check_multipliers(used) or best)
+            if best > claimed.x[0] - ROUNDING:
+                return best
+        return max(best, self._check_multipliers(self._exact_multipliers(claimed)) or best)
+
+    def _support(self, claimed: ClaimedOptimum) -> list[int]:
+        return [int(i) for i in np.flatnonzero(claimed.y > 1e-9) if self.on[i]]
+
+    def _check_multipliers(self, multipliers: Mapping[int, Fraction]) -> Fraction | None:
+        """Weak duality: y >= 0 on rows that count, and A'y <= cost, give ``least' y <= minimum``."""
+        reduced: dict[int, Fraction] = {}
+        for i, multiplier in multipliers.items():
+            if multiplier < 0 or not self.on[i]:
+                return None
+            for j, value in self.rows[i].terms.items():
+                reduced[j] = reduced.get(j, Fraction(0)) + multiplier * value
+        if any(value > (1 if j == 0 else 0) for j, value in reduced.items()):
+            return None
+        return sum((y * self.rows[i].least for i, y in multipliers.items()), Fraction(0))
+
+    def _exact_multipliers(self, claimed: ClaimedOptimum) -> dict[int, Fraction]:
+        """Solve the complementary-slackness equations: columns in use have reduced cost 0."""
+        rows = self._support(claimed)
+        position = {i: k for k, i in enumerate(rows)}
+        equations: dict[int, dict[int, Fraction]] = {int(j): {} for j in np.flatnonzero(claimed.x > 1e-9)}
+        for i in rows:
+            for j, value in self.rows[i].terms.items():
+                if j in equations:
+                    equations[j][position[i]] = value
+        solved = solve_rational(
+            [equations[j] for j in equations], [Fraction(int(j == 0)) for j in equations], len(rows)
+        )
+        return dict(zip(rows, solved, strict=True))
+
+    def exact_point(self, claimed: ClaimedOptimum) -> list[Fraction]:
+        """Solve the rows with a positive multiplier as equations, together with near-tight ones; not checked here."""
+        columns = [int(j) for j in np.flatnonzero(claimed.x > 1e-9)]
+        position = {j: k for k, j in enumerate(columns)}
+        equations, right = [], []
+        for i, row in enumerate(self.rows):
+            slack = sum(float(v) * claimed.x[j] for j, v in row.terms.items()) - float(row.least)
+            if self.on[i] and abs(slack) < 1e-9:
+                equations.append({position[j]: v for j, v in row.terms.items() if j in position})
+                right.append(row.least)
+        point = [Fraction(0)] * len(claimed.x)
+        for j, value in zip(columns, solve_rational(equations, right, len(columns)), strict=True):
+            point[j] = value
+        return point
+
+
+LARGEST_SYSTEM = 2_000_000
+"""Most entries of a rational system that is reduced (a few seconds)."""
+
+
+def solve_rational(
+    equations: Sequence[Mapping[int, Fraction]], right: Sequence[Fraction], n_unknowns: int
+) -> list[Fraction]:
+    """Return one rational solution (free unknowns 0); all zero where there is none or the system is too large."""
+    import flint
+
+    width = n_unknowns + 1
+    answer = [Fraction(0)] * n_unknowns
+    if not equations or len(equations) * width > LARGEST_SYSTEM:
+        return answer
+    entries = [flint.fmpq(0)] * (len(equations) * width)
+    for i, (equation, value) in enumerate(zip(equations, right, strict=True)):
+        for j, coefficient in {**equation, n_unknowns: value}.items():
+            entries[i * width + j] = flint.fmpq(coefficient.numerator, coefficient.denominator)
+    reduced, rank = flint.fmpq_mat(len(equations), width, entries).rref()
+    for i in range(rank):
+        pivot = next(j for j in range(width) if reduced[i, j] != 0)
+        if pivot == n_unknowns:
+            return [Fraction(0)] * n_unknowns
+        answer[pivot] = Fraction(int(reduced[i, n_unknowns].p), int(reduced[i, n_unknowns].q))
+    return answer
