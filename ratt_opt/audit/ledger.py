@@ -1,0 +1,153 @@
+"""The ledger: every entry decided, with its evidence, written as JSON, HTML and Markdown."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from ratt_opt._files import output_directory, write_atomically, write_json
+from ratt_opt.audit import pattern1, pattern2, submodular
+from ratt_opt.audit.arrangements import arrangement_entries
+from ratt_opt.audit.decide import CURVATURE_GRID, Decision, Verdict, decide
+from ratt_opt.audit.dominance import dominance_entries
+from ratt_opt.audit.entry import Entry, EnumeratedEntry
+from ratt_opt.audit.expand import entries_of
+from ratt_opt.audit.records import claim_record, enumerated_record
+from ratt_opt.audit.report_html import html_report
+from ratt_opt.audit.report_markdown import markdown_report
+from ratt_opt.audit.running_time import running_time_entries
+from ratt_opt.audit.special import special_entries
+from ratt_opt.audit.summaries import summaries
+from ratt_opt.audit.theorems import closing_lines, lemmas, readings_of_the_attack, theorems
+from ratt_opt.audit.weaken import weaken
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+__all__ = ["Ledger", "all_entries", "decide_entry", "run_audit"]
+
+FORMAT = "ratt-opt audit, version 1"
+QUICK_ROBOTS = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ledger:
+    """All records in the paper's order, as written to ``audit.json``.
+
+    ``complete`` is False when the run was interrupted; the records so far are valid.
+    """
+
+    records: tuple[dict[str, object], ...]
+    seconds: float
+    complete: bool
+    quick: bool
+
+    def counts(self) -> dict[str, int]:
+        """Entries per verdict."""
+        return {v.value: sum(r["verdict"] == v.value for r in self.records) for v in Verdict}
+
+    def document(self) -> dict[str, object]:
+        """The ledger as strict JSON data."""
+        return {
+            "format": FORMAT,
+            "complete": self.complete,
+            "quick": self.quick,
+            "curvature_grid": [str(value) for value in sorted(CURVATURE_GRID)],
+            "counts": self.counts(),
+            "seconds": self.seconds,
+            "entries": list(self.records),
+        }
+
+
+def all_entries() -> Iterator[Entry | EnumeratedEntry]:
+    """Yield every entry in the paper's order: readings, Pattern 1, Pattern 2, closing lines, the rest."""
+    chains = (*pattern1.chains(), *pattern2.chains(), *submodular.chains())
+    yield from readings_of_the_attack()
+    for one in chains:
+        yield from entries_of(one)
+    yield from chain(special_entries(), summaries(), closing_lines(), dominance_entries(), theorems(), lemmas())
+    yield from arrangement_entries()
+    yield from running_time_entries()
+
+
+def decide_entry(entry: Entry | EnumeratedEntry, *, quick: bool = False) -> dict[str, object]:
+    """Decide one entry and return its record (JSON data).
+
+    ``quick`` leaves out sizes with more than three robots, as long as one remains.
+    """
+    start = time.perf_counter()
+    if isinstance(entry, EnumeratedEntry):
+        counted = entry.enumerate_cases()
+        return enumerated_record(entry, counted, seconds=time.perf_counter() - start)
+    claims = entry.claims
+    if quick:
+        smallest = min(sized.robots for sized in claims)
+        claims = tuple(sized for sized in claims if sized.robots <= max(QUICK_ROBOTS, smallest))
+    decisions = [decide(sized.claim) for sized in claims]
+    verdict = _verdict(decisions)
+    first = next((i for i, d in enumerate(decisions) if d.witness is not None), None)
+    weaker = weaken(claims[first]) if first is not None and not quick else ()
+    return claim_record(entry, claims, decisions, verdict, weaker, seconds=time.perf_counter() - start)
+
+
+def _verdict(decisions: Sequence[Decision]) -> Verdict:
+    """One refuted size refutes; all sizes must be proved to prove."""
+    for verdict in (Verdict.REFUTED, Verdict.UNDECIDED, Verdict.NO_VIOLATION):
+        if any(decision.verdict is verdict for decision in decisions):
+            return verdict
+    return Verdict.PROVED
+
+
+def run_audit(
+    out: str | Path, *, quick: bool = False, progress: Callable[[int, int, str], object] | None = None
+) -> Ledger:
+    """Decide every entry and write ``audit.json``, ``audit.html`` and ``audit.md`` to the folder ``out``.
+
+    A keyboard interrupt writes what is decided so far, marked incomplete.
+
+    Parameters
+    ----------
+    out : folder, created if needed
+    quick : only the sizes that take seconds
+    progress : called with (entries done, entries in all, label) before each entry
+
+    Raises
+    ------
+    InputError : ``out`` cannot be written.
+    """
+    folder = output_directory(out)
+    start = time.perf_counter()
+    entries = list(all_entries())
+    records: list[dict[str, object]] = []
+    complete = True
+    try:
+        for number, entry in enumerate(entries):
+            if progress is not None:
+                progress(number, len(entries), entry.label)
+            records.append(decide_entry(entry, quick=quick))
+    except KeyboardInterrupt:
+        complete = False
+    _add_survival(records)
+    ledger = Ledger(records=tuple(records), seconds=time.perf_counter() - start, complete=complete, quick=quick)
+    document = ledger.document()
+    write_json(folder / "audit.json", document)
+    html, markdown = html_report(document), markdown_report(document)
+    write_atomically(folder / "audit.html", lambda file: file.write_text(html, encoding="utf-8"))
+    write_atomically(folder / "audit.md", lambda file: file.write_text(markdown, encoding="utf-8"))
+    return ledger
+
+
+def _add_survival(records: list[dict[str, object]]) -> None:
+    """For each refuted entry: does the conclusion it served hold without it (the named entry's verdict)?"""
+    verdicts: dict[str, set[str]] = {}
+    for record in records:
+        verdicts.setdefault(f"{record['label']}/{record['kind']}", set()).add(str(record["verdict"]))
+    for record in records:
+        name = str(record.pop("survives_by", ""))
+        if record["verdict"] == Verdict.REFUTED.value and name:
+            found = verdicts.get(name, set())
+            verdict = next(iter(found)) if len(found) == 1 else None
+            record["conclusion_without_it"] = {"entry": name, "verdict": verdict}

@@ -1,0 +1,120 @@
+"""Records of the ledger: an entry, its verdict and its evidence as JSON data."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt.audit.proof import step_inequality
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt.audit.decide import Decision, Verdict
+    from ratt_opt.audit.entry import Counted, Entry, EnumeratedEntry, SizedClaim
+    from ratt_opt.audit.language import Claim
+    from ratt_opt.audit.proof import Proof, Witness
+    from ratt_opt.audit.weaken import Weakened
+
+__all__ = ["claim_record", "enumerated_record"]
+
+Record = dict[str, object]
+
+
+def _head(entry: Entry | EnumeratedEntry, verdict: Verdict, decided_by: str) -> Record:
+    return {
+        "label": entry.label,
+        "kind": entry.kind,
+        "chain": entry.chain,
+        "reading": entry.reading,
+        "statement": entry.statement,
+        "hypotheses": entry.hypotheses,
+        "decided_by": decided_by,
+        "verdict": verdict.value,
+    }
+
+
+def enumerated_record(entry: EnumeratedEntry, counted: Counted, *, seconds: float) -> Record:
+    """Record of an entry decided by enumeration; ``witness`` holds the first cases that break it."""
+    record = _head(entry, counted.verdict, "exhaustive enumeration")
+    record.update(
+        sizes=counted.sizes, detail=counted.detail, counterexamples=list(counted.cases), claims=[], seconds=seconds
+    )
+    return record
+
+
+def claim_record(
+    entry: Entry,
+    claims: Sequence[SizedClaim],
+    decisions: Sequence[Decision],
+    verdict: Verdict,
+    weaker: Sequence[Weakened],
+    *,
+    seconds: float,
+) -> Record:
+    """Record of an entry decided by the cone: every size with its proof or counterexample."""
+    record = _head(entry, verdict, "linear programming over the set-function cone, re-checked exactly")
+    kind = claims[0].claim.kind
+    robots = sorted({sized.robots for sized in claims})
+    record.update(
+        function_class=kind.value,
+        sizes=f"for all functions of the class, {robots[0]} to {robots[-1]} robots in play, {len(claims)} cases",
+        curvature=sorted({decision.scope for decision in decisions}),
+        claims=[_sized(sized, decision) for sized, decision in zip(claims, decisions, strict=True)],
+        best_factors=[
+            {
+                "curvature": None if w.curvature is None else str(w.curvature),
+                "factor": str(w.factor),
+                "cannot_exceed_by_1/1000": w.is_best,
+            }
+            for w in weaker
+        ],
+        survives_by=entry.survives_by,
+        seconds=seconds,
+    )
+    return record
+
+
+def _sized(sized: SizedClaim, decision: Decision) -> Record:
+    claim = sized.claim
+    return {
+        "size": sized.size,
+        "robots": sized.robots,
+        "claim": f"{claim.conclusion.text(claim.ground, claim.kind.symbol)} >= 0",
+        "premises": len(claim.premises),
+        "verdict": decision.verdict.value,
+        "scope": decision.scope,
+        "proofs": [_proof(claim, proof) for proof in decision.proofs],
+        "witness": None if decision.witness is None else _witness(claim, decision.witness),
+    }
+
+
+def _proof(claim: Claim, proof: Proof) -> Record:
+    """Multiplier, reason and inequality of every step; the steps sum to the claim."""
+    steps = []
+    for step in proof.steps:
+        inequality = step_inequality(claim, step)
+        steps.append(
+            [
+                step.multiplier.text(claim.kind.symbol),
+                inequality.reason,
+                f"{inequality.expression.text(claim.ground, claim.kind.symbol)} >= 0",
+            ]
+        )
+    return {
+        "curvature": None if proof.curvature is None else str(proof.curvature),
+        "curvature_domain": "feasible sets" if proof.feasible else "all sets",
+        "steps": steps,
+    }
+
+
+def _witness(claim: Claim, witness: Witness) -> Record:
+    """The function's values on all subsets, by bit mask over ``elements``."""
+    return {
+        "elements": list(witness.names),
+        "robot": list(claim.ground.owner),
+        "values": list(witness.values),
+        "auxiliary": {name: str(value) for name, value in witness.auxiliary.items()},
+        "curvature": None if witness.curvature is None else str(witness.curvature),
+        "violation": str(witness.violation),
+        "premises": [premise.reason for premise in claim.premises],
+    }

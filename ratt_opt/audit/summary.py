@@ -1,0 +1,86 @@
+"""What both reports say about the ledger: titles, counts per chain, evidence in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = ["evidence", "per_chain", "proof_lines", "shown_claim", "title"]
+
+SHOWN_SETS = 40
+
+
+def title(record: dict[str, Any]) -> str:
+    """Label, kind and reading of an entry."""
+    reading = f" ({record['reading']})" if record["reading"] else ""
+    return f"{record['label']}, {record['kind']}{reading}"
+
+
+def per_chain(document: dict[str, Any]) -> dict[str, dict[str, int]]:
+    """Verdict counts of each chain, in order of appearance, then of all."""
+    table: dict[str, dict[str, int]] = {}
+    for record in document["entries"]:
+        row = table.setdefault(record["chain"], dict.fromkeys(document["counts"], 0))
+        row[record["verdict"]] += 1
+    table["all"] = dict(document["counts"])
+    return table
+
+
+def shown_claim(record: dict[str, Any]) -> dict[str, Any] | None:
+    """The claim whose evidence a report prints: the first refuted one, else the first with a proof that has steps."""
+    claims: list[dict[str, Any]] = record["claims"]
+    refuted = [claim for claim in claims if claim["witness"] is not None]
+    stepped = [claim for claim in claims if claim["proofs"] and claim["proofs"][0]["steps"]]
+    return next(iter(refuted or stepped or claims), None)
+
+
+def evidence(record: dict[str, Any]) -> list[str]:
+    """Counterexample or enumeration, what is left of the step, and whether the conclusion survives."""
+    lines = list(record.get("counterexamples", []))
+    if "detail" in record:
+        lines.insert(0, f"{record['sizes']}: {record['detail']}")
+    claim = shown_claim(record)
+    if claim is not None and claim["witness"] is not None:
+        lines += _witness_lines(claim)
+    for weaker in record.get("best_factors", []):
+        best = "and no larger factor (within 1/1000)" if weaker["cannot_exceed_by_1/1000"] else "a valid factor"
+        where = "" if weaker["curvature"] is None else f" at curvature {weaker['curvature']}"
+        lines.append(f"with the factor {weaker['factor']} on the right the step holds{where}, {best}")
+    survival = record.get("conclusion_without_it")
+    if survival:
+        verdict = survival["verdict"] or "different verdicts for different readings"
+        lines.append(f"the conclusion without this step ({survival['entry']}): {verdict}")
+    return lines
+
+
+def _witness_lines(claim: dict[str, Any]) -> list[str]:
+    witness = claim["witness"]
+    lines = [f"smallest counterexample found: {claim['size']}; {claim['scope']}; the claim {claim['claim']}"]
+    lines.append(f"fails by {witness['violation']} for the function with values {_values(witness)}")
+    if witness["auxiliary"]:
+        lines.append("other numbers: " + ", ".join(f"{k} = {v}" for k, v in witness["auxiliary"].items()))
+    return lines
+
+
+def _values(witness: dict[str, Any]) -> str:
+    names = witness["elements"]
+    shown = []
+    for mask, value in enumerate(witness["values"]):
+        owners = [witness["robot"][e] for e in range(len(names)) if mask >> e & 1]
+        if mask and len(set(owners)) == len(owners):
+            shown.append(f"f({','.join(n for e, n in enumerate(names) if mask >> e & 1)}) = {value}")
+    if len(shown) > SHOWN_SETS:
+        rest = f"... ({len(shown) - SHOWN_SETS} more sets with one element per robot in audit.json)"
+        return ", ".join([*shown[:SHOWN_SETS], rest])
+    return ", ".join(shown)
+
+
+def proof_lines(claim: dict[str, Any]) -> list[str]:
+    """The printed proof of a claim: multiplier times inequality, one per line; their sum is the claim."""
+    lines = []
+    for proof in claim["proofs"]:
+        where = "all curvatures" if proof["curvature"] is None else f"curvature {proof['curvature']}"
+        lines.append(f"{where}, from {proof['curvature_domain']}; the sum of:")
+        lines += [f"[{multiplier}] x ({inequality})   {reason}" for multiplier, reason, inequality in proof["steps"]]
+        if not proof["steps"]:
+            lines.append("nothing: both sides are the same expression")
+    return lines
