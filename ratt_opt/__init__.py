@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.random_attack import random_attack as random_attack
     from ratt_opt.attackers.result import AttackResult as AttackResult
     from ratt_opt.attackers.survey import attack_survey as attack_survey
+    from ratt_opt.audit.ledger import Ledger as Ledger
+    from ratt_opt.audit.ledger import run_audit as run_audit
     from ratt_opt.audit.ratio import WorstCaseRatio as WorstCaseRatio
     from ratt_opt.audit.ratio import worst_case_ratio as worst_case_ratio
     from ratt_opt.audit.ratio_witness import RatioWitness as RatioWitness
@@ -160,6 +162,7 @@ _HOME = {
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
     "LargestGroup": "graph.largest_group",
+    "Ledger": "audit.ledger",
     "LogDetObjective": "setfunctions.information",
     "MaxEigenvalueObjective": "setfunctions.information",
     "MaxMinResult": "solvers.result",
@@ -212,6 +215,7 @@ _HOME = {
     "ratt": "solvers.ratt",
     "relaxation_bound": "bounds.relaxation",
     "remark1_bound": "bounds.guarantees",
+    "run_audit": "audit.ledger",
     "save_scenario": "scenario.files",
     "scenario_schema": "scenario.files",
     "sensing_only_bound": "bounds.guarantees",

@@ -83,6 +83,7 @@ def _sized(distribution: int, kind: FunctionClass, premises: tuple[Inequality, .
         claim=Claim(kind=kind, ground=team.ground, premises=premises, conclusion=left - right),
         left=left,
         right=right,
+        team=team,
     )
 
 

@@ -22,6 +22,7 @@ class SizedClaim:
     """One linear claim of an entry: a size, who is attacked, and the question.
 
     ``left``, ``right`` : the two sides of ``left >= right`` where a best factor makes sense.
+    ``team`` : the roles, where the elements have any.
     """
 
     size: str
@@ -29,6 +30,7 @@ class SizedClaim:
     claim: Claim
     left: Linear | None = None
     right: Linear | None = None
+    team: Team | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -65,4 +65,4 @@ def _sized(
     kind: FunctionClass, case: Case, premises: tuple[Inequality, ...], left: Linear, right: Linear
 ) -> SizedClaim:
     claim = Claim(kind=kind, ground=case.team.ground, premises=premises, conclusion=(left - right).reduced())
-    return SizedClaim(size=case.size, robots=len(case.team.robots), claim=claim, left=left, right=right)
+    return SizedClaim(size=case.size, robots=len(case.team.robots), claim=claim, left=left, right=right, team=case.team)

@@ -76,7 +76,7 @@ def all_entries() -> Iterator[Entry | EnumeratedEntry]:
 def decide_entry(entry: Entry | EnumeratedEntry, *, quick: bool = False) -> dict[str, object]:
     """Decide one entry and return its record (JSON data).
 
-    ``quick`` leaves out sizes with more than three robots, as long as one remains.
+    ``quick`` keeps the sizes with at most three robots, else the smallest size, and one case of more than four robots.
     """
     start = time.perf_counter()
     if isinstance(entry, EnumeratedEntry):
@@ -86,6 +86,7 @@ def decide_entry(entry: Entry | EnumeratedEntry, *, quick: bool = False) -> dict
     if quick:
         smallest = min(sized.robots for sized in claims)
         claims = tuple(sized for sized in claims if sized.robots <= max(QUICK_ROBOTS, smallest))
+        claims = claims[:1] if smallest > QUICK_ROBOTS + 1 else claims
     decisions = [decide(sized.claim) for sized in claims]
     verdict = _verdict(decisions)
     first = next((i for i, d in enumerate(decisions) if d.witness is not None), None)

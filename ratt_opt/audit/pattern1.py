@@ -58,6 +58,7 @@ def chains() -> tuple[Chain, ...]:
         Chain(name="nd_p1d2v1", kind=ND, hypotheses=ROLES, cases=tuple(_none_attacked())),
         Chain(name="nd_p1d2vk", kind=ND, hypotheses=ROLES, cases=tuple(_all_bait("nd_p1d2vk", attacked=1))),
         Chain(name="nd_p1d3v1", kind=ND, hypotheses=ROLES, cases=tuple(_part_attacked())),
+        Chain(name="nd_p1d3vk", kind=ND, hypotheses=ROLES, cases=tuple(_other_groups())),
     )
 
 
@@ -143,6 +144,16 @@ def _all_bait(label: str, *, attacked: int) -> Iterator[Case]:
             yield Case(
                 size=size_text(team, team.bait[survivors:]), team=team, start=team.chosen(left), lines=tuple(lines)
             )
+
+
+def _other_groups() -> Iterator[Case]:
+    """Distribution 3, other groups: the single line that quotes Distribution 2."""
+    for survivors, attacked in ((1, 1), (2, 1), (2, 2), (3, 1)):
+        team = team_of(survivors + attacked, 0)
+        left = team.bait[:survivors]
+        line = Line(label="nd_p1d3vk", relation=">=", expression=team.compared(left) * T2, statement="(1-c)^2 f(u*)")
+        size = size_text(team, team.bait[survivors:])
+        yield Case(size=size, team=team, start=team.chosen(left), lines=(line,))
 
 
 def _none_attacked() -> Iterator[Case]:

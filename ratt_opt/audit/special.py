@@ -54,4 +54,4 @@ def _claims(*, from_start: bool) -> Iterator[SizedClaim]:
                     conclusion=(first - second).reduced(),
                 )
                 text = f"2 bait, 2 greedy, blinded: {attacked}; W = {{{','.join(chosen)}}}; order {','.join(order)}"
-                yield SizedClaim(size=text, robots=4, claim=claim, left=first, right=second)
+                yield SizedClaim(size=text, robots=4, claim=claim, left=first, right=second, team=team)

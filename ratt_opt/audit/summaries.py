@@ -69,7 +69,7 @@ def _claims(kind: FunctionClass, case: Grouping, reading: str, *, is_step: bool)
                 conclusion=TEAM * below - OPT * above,
             )
             size = f"{case.size}; the optimum's best group is V{winner + 1}"
-            yield SizedClaim(size=size, robots=len(team.robots), claim=claim)
+            yield SizedClaim(size=size, robots=len(team.robots), claim=claim, team=team)
 
 
 def _distribution(label: str, kind: FunctionClass, cases: tuple[Grouping, ...], bound: str) -> Iterator[Entry]:
@@ -194,7 +194,7 @@ def every_group(
                 conclusion = (team.chosen(group) * below - team.compared(group) * above).reduced()
                 claim = Claim(kind=kind, ground=team.ground, premises=team.premises, conclusion=conclusion)
                 text = f"S = {{{','.join(group)}}} of {len(bait)} bait, {n_greedy} greedy"
-                yield SizedClaim(size=text, robots=total, claim=claim)
+                yield SizedClaim(size=text, robots=total, claim=claim, team=team)
 
 
 def _subsets_with_last(greedy: tuple[str, ...]) -> Iterator[tuple[str, ...]]:

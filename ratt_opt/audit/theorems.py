@@ -24,6 +24,7 @@ T2, T3 = T * T, T * T * T
 ONE_PLUS_K = constant(2) - T
 GROUPS = "the class and RATT's choices only; every set S of surviving robots, hence every graph, attack and budget"
 LARGEST = 4
+LARGEST_TEAM = 5
 
 
 def _entry(label: str, kind: str, statement: str, claims: Iterable[SizedClaim], hypotheses: str, **more: str) -> Entry:
@@ -48,11 +49,11 @@ def closing_lines() -> Iterator[Entry]:
         yield _entry("nd2", form, "f(u) >= (1-c)^2 f(u*) in every group", _all_bait(ND, T2), bait)
     for label in ("nd1", "nd"):
         text = "f(u on S) >= (1-c)^3 f(u* on S), which gives min[(1-c)^3, (1-c)^2/alpha_cs] for the team"
-        yield _entry(label, "cumulative", text, every_group(ND, T3, ONE, largest=LARGEST), GROUPS)
+        yield _entry(label, "cumulative", text, every_group(ND, T3, ONE, largest=LARGEST_TEAM), GROUPS)
     for form in ("step", "cumulative"):
         yield _entry("sub2", form, "f(u) >= (1-k) f(u*) in every group", _all_bait(SUB, T), bait)
     text = "f(u on S) >= (1-k)/(1+k) f(u* on S), which gives min[(1-k)/(1+k), (1-k)/alpha_cs] for the team"
-    yield _entry("sub", "cumulative", text, every_group(SUB, T, ONE_PLUS_K, largest=LARGEST), GROUPS)
+    yield _entry("sub", "cumulative", text, every_group(SUB, T, ONE_PLUS_K, largest=LARGEST_TEAM), GROUPS)
     for label, kind, bounds in (("nd", ND, ((T3, ONE), (T2, ONE))), ("sub", SUB, ((T, ONE_PLUS_K), (T, ONE)))):
         yield _entry(
             label, "step", "both cases together", _joined(kind, bounds), "the bounds of N > alpha and N <= alpha"
@@ -88,7 +89,7 @@ def theorems() -> Iterator[Entry]:
     for label, kind, above, below, text in rows:
         statement = f"{text}: f(u on S) >= factor f(o on S) for every S and every plan o"
         yield _entry(
-            label, "theorem", statement, every_group(kind, above, below, largest=LARGEST), GROUPS, chain="theorems"
+            label, "theorem", statement, every_group(kind, above, below, largest=LARGEST_TEAM), GROUPS, chain="theorems"
         )
     bait = "all surviving robots are bait"
     text = "an all-bait group of g robots keeps (1+(g-1)(1-k))/g of the optimum"
@@ -116,6 +117,12 @@ def lemmas() -> Iterator[Entry]:
         ("tzoumas2018_corollary1", ND, "sum of f(s) >= (1-c) f(S)", lambda f, s: _sum(f, s) - f(s) * T),
         ("tzoumas2018_lemma2", SUB, "f(S) >= (1-k) sum of f(s)", lambda f, s: f(s) - _sum(f, s) * T),
         ("submodular_subadditive", SUB, "sum of f(s) >= f(S)", lambda f, s: _sum(f, s) - f(s)),
+        (
+            "weak_subadditivity",
+            ND,
+            "f(X) + f(Y) >= (1-c) f(X and Y) for disjoint X, Y: what is left of the subadditivity used",
+            lambda f, s: f(s[:1]) + f(s[1:]) - f(s) * T,
+        ),
         (
             "subadditivity_as_used",
             ND,
@@ -182,7 +189,7 @@ def _lemma9(plan: str) -> Iterator[SizedClaim]:
             premises = team.premises + worst_for(team, team.robots, attacked, plan=plan)
             conclusion = team.compared(team.greedy) - team.compared(left)
             claim = Claim(kind=ND, ground=team.ground, premises=premises, conclusion=conclusion)
-            yield SizedClaim(size=size_text(team, attacked), robots=len(team.robots), claim=claim)
+            yield SizedClaim(size=size_text(team, attacked), robots=len(team.robots), claim=claim, team=team)
 
 
 def _curvatures() -> Iterator[Entry]:
@@ -238,7 +245,7 @@ def _attack_claims(plan: str, value: str) -> Iterator[SizedClaim]:
                     conclusion = side(set(team.robots) - {other}) - here
                     claim = Claim(kind=ND, ground=team.ground, premises=premises, conclusion=conclusion)
                     text = f"{size_text(team, attacked)}, against blinding {other}"
-                    yield SizedClaim(size=text, robots=len(team.robots), claim=claim)
+                    yield SizedClaim(size=text, robots=len(team.robots), claim=claim, team=team)
 
 
 def _below(value: str) -> Iterator[SizedClaim]:
