@@ -52,6 +52,17 @@ if TYPE_CHECKING:
     )
     from ratt_opt.bounds.relaxation import RelaxationBound as RelaxationBound
     from ratt_opt.bounds.relaxation import relaxation_bound as relaxation_bound
+    from ratt_opt.certificates.verified import Verified as Verified
+    from ratt_opt.certificates.verify import verify_certificate as verify_certificate
+    from ratt_opt.certificates.write import (
+        Certificate as Certificate,
+    )
+    from ratt_opt.certificates.write import (
+        certify as certify,
+    )
+    from ratt_opt.certificates.write import (
+        problem_document as problem_document,
+    )
     from ratt_opt.errors import FileFormatError as FileFormatError
     from ratt_opt.errors import InputError as InputError
     from ratt_opt.errors import ProofError as ProofError
@@ -155,6 +166,7 @@ _HOME = {
     "BoundReport": "main_job",
     "BreakingBudget": "attackers.breaking_budgets",
     "CaaResult": "graph.caa",
+    "Certificate": "certificates.write",
     "Criticality": "attackers.criticality",
     "Curvature": "setfunctions.curvature",
     "FileFormatError": "errors",
@@ -182,6 +194,7 @@ _HOME = {
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
     "Tracking": "scenario.simulation",
+    "Verified": "certificates.verified",
     "Violation": "setfunctions.sampling",
     "WorstCaseRatio": "audit.ratio",
     "all_bait_group_bound": "bounds.guarantees",
@@ -191,6 +204,7 @@ _HOME = {
     "bounded_rational_attack": "attackers.bounded_rational",
     "breaking_budgets": "attackers.breaking_budgets",
     "caa": "graph.caa",
+    "certify": "certificates.write",
     "criticality_ranking": "attackers.criticality",
     "curvature": "setfunctions.curvature",
     "exhaustive_optimum": "solvers.exhaustive",
@@ -209,6 +223,7 @@ _HOME = {
     "myopic": "solvers.baselines",
     "nonrobust_optimum": "solvers.baselines",
     "pattern_free_bound": "bounds.guarantees",
+    "problem_document": "certificates.write",
     "random_attack": "attackers.random_attack",
     "random_plan": "solvers.baselines",
     "random_scenario": "scenario.generator",
@@ -224,6 +239,7 @@ _HOME = {
     "solve_maxmin": "solvers.maxmin",
     "theorem1_bound": "bounds.guarantees",
     "total_curvature": "setfunctions.curvature",
+    "verify_certificate": "certificates.verify",
     "worst_case_attack": "attackers.exact",
     "worst_case_ratio": "audit.ratio",
 }

@@ -1,0 +1,120 @@
+"""Certificate files: strict JSON of bounded size and depth, every field checked as it is read.
+
+A JSON number stands for the binary64 float nearest to it; everything after that is exact.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from flint import fmpq, fmpq_mat
+
+from ratt_opt.errors import FileFormatError, InputError
+
+FORMAT = "ratt-opt certificate"
+VERSION = 1
+LARGEST_FILE = 32 * 2**20
+
+
+def _refusal(where: str, rule: str, value: object) -> FileFormatError:
+    return FileFormatError(f"certificate {where}".strip(), rule, value)
+
+
+def _finite(text: str) -> float:
+    if not math.isfinite(value := float(text)):
+        raise _refusal("number", "must be finite", text)
+    return value
+
+
+def _record(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    if len(record := dict(pairs)) < len(pairs):
+        raise _refusal("record", "must not repeat a field", [name for name, _ in pairs])
+    return record
+
+
+def load(path: str | Path) -> dict[str, Any]:
+    """Read a document of this format and version; anything else is a FileFormatError."""
+    try:
+        with Path(path).open("rb") as file:
+            raw = file.read(LARGEST_FILE + 1)
+        if len(raw) > LARGEST_FILE:
+            raise _refusal("file", f"must be at most {LARGEST_FILE} bytes", "more")
+        text = raw.decode("utf-8")
+        document = json.loads(text, parse_float=_finite, parse_constant=_finite, object_pairs_hook=_record)
+    except OSError as error:
+        raise _refusal("file", "must be a file that can be read", f"{path} ({error.strerror})") from None
+    except RecursionError:
+        raise _refusal("file", "must not nest this deep", "a deeper file") from None
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise _refusal("file", "must be complete JSON in UTF-8", error) from None
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise _refusal("format", f"must be {FORMAT!r}", document.get("format") if type(document) is dict else "none")
+    if type(document.get("version")) is not int or document["version"] != VERSION:
+        raise _refusal("version", f"must be {VERSION} (write the certificate again)", document.get("version"))
+    return document
+
+
+def document_hash(problem: object) -> str:
+    """SHA-256 of the problem record in canonical JSON (sorted fields, shortest round-trip floats)."""
+    text = json.dumps(problem, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def fields(where: str, value: Any, names: str) -> list[Any]:
+    """Return the values of a record that has exactly these fields (names separated by spaces)."""
+    if not isinstance(value, dict) or set(value) != set(names.split()):
+        found = sorted(value) if isinstance(value, dict) else type(value).__name__
+        raise _refusal(where, f"must be a record of {names.replace(' ', ', ')}", found)
+    return [value[name] for name in names.split()]
+
+
+def array(where: str, value: Any, length: int | None = None) -> list[Any]:
+    """Return a list, of the given length if any."""
+    if not isinstance(value, list) or (length is not None and len(value) != length):
+        found = f"{len(value)} entries" if isinstance(value, list) else type(value).__name__
+        raise _refusal(where, "must be a list" + (f" of {length} entries" if length is not None else ""), found)
+    return value
+
+
+def index(where: str, value: Any, size: int) -> int:
+    """Return an integer in ``[0, size)``."""
+    if type(value) is not int or not 0 <= value < size:
+        raise _refusal(where, f"must be an integer in [0, {size - 1}]", value)
+    return value
+
+
+def indices(where: str, value: Any, size: int) -> tuple[int, ...]:
+    """Return strictly ascending integers in ``[0, size)``."""
+    found = tuple(index(where, item, size) for item in array(where, value))
+    if any(a >= b for a, b in pairwise(found)):
+        raise _refusal(where, "must be strictly ascending", value)
+    return found
+
+
+def links(where: str, value: Any, size: int) -> frozenset[tuple[int, int]]:
+    """Return distinct pairs ``[i, j]`` with ``i < j < size``."""
+    found = [tuple(indices(where, array(where, pair, 2), size)) for pair in array(where, value)]
+    if len(set(found)) < len(found):
+        raise _refusal(where, "must not repeat a link", value)
+    return frozenset((i, j) for i, j in found)
+
+
+def exact(where: str, value: Any) -> fmpq:
+    """Return a number exactly."""
+    if type(value) is not float and (type(value) is not int or abs(value) > 2**53):
+        raise _refusal(where, "must be a number", value)
+    return fmpq(*value.as_integer_ratio())
+
+
+def packed(where: str, value: Any, d: int) -> fmpq_mat:
+    """Return a symmetric matrix from its lower triangle, row by row."""
+    flat = [exact(where, x) for x in array(where, value, d * (d + 1) // 2)]
+    place = [(max(i, j), min(i, j)) for i in range(d) for j in range(d)]
+    return fmpq_mat(d, d, [flat[i * (i + 1) // 2 + j] for i, j in place])

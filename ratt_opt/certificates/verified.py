@@ -1,0 +1,58 @@
+"""What a certificate proves, as a record and in words; decides nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Verified"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verified:
+    """What a certificate proves about one problem and one plan [unit of the objective].
+
+    No plan keeps more than ``upper`` under every attack (proved). The plan ``elements`` keeps
+    at least ``lower`` under every attack: proved if ``lower_proved``, otherwise only claimed.
+    ``largest_defect`` bounds how far below zero an eigenvalue of the stored information is (rounding);
+    the proofs account for it. ``problem_hash`` is the SHA-256 of the problem record.
+    """
+
+    lower: float
+    upper: float
+    lower_proved: bool
+    lower_method: str
+    elements: tuple[int, ...]
+    objective: str
+    arithmetic: str
+    problem_hash: str
+    n_robots: int
+    n_targets: int
+    n_elements: int
+    alpha_s: int
+    alpha_c: int
+    largest_defect: float
+    upper_leaves: int
+    lower_leaves: int
+
+    @property
+    def gap(self) -> float:
+        """``(upper - lower) / upper``; 0 when ``upper`` is 0."""
+        return (self.upper - self.lower) / self.upper if self.upper > 0 else 0.0
+
+    def lines(self) -> list[str]:
+        """Say in plain text what was proved, for which data, with which arithmetic, and what was not."""
+        proved = f"proved in {self.arithmetic}"
+        lower = f"this plan keeps at least {self.lower!r} under every attack"
+        gap = f"the plan is within {self.gap:.3g} (relative) of the best possible worst case"
+        return [
+            f"problem: {self.objective}, {self.n_robots} robots, {self.n_elements} elements, {self.n_targets} targets, "
+            f"alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}; SHA-256 of its data {self.problem_hash}",
+            f"plan: {', '.join(map(str, self.elements))}",
+            f"{proved}: no plan keeps more than {self.upper!r} under every attack ({self.upper_leaves} leaves)",
+            f"{proved}: {lower} ({self.lower_method}, {self.lower_leaves} leaves)"
+            if self.lower_proved
+            else f"NOT proved: {lower} (outcomes enumerated in floating point)",
+            f"{'proved' if self.lower_proved else 'NOT proved'}: {gap}",
+            f"information: positive semidefinite up to {self.largest_defect:.3g}, which the proofs account for",
+            "not covered: whether the data describe the real robots, targets and sensors",
+        ]

@@ -1,0 +1,196 @@
+"""Certificates: the problem as exact binary floats, the plan, the claim and its two proofs in one JSON file."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from ratt_opt._files import write_atomically
+from ratt_opt.certificates.lower import ENUMERATED, lower_proof
+from ratt_opt.certificates.reading import FORMAT, VERSION
+from ratt_opt.certificates.upper import upper_record
+from ratt_opt.certificates.verify import Checker, verify_certificate
+from ratt_opt.errors import InputError, ProofError
+from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.certificates.verified import Verified
+    from ratt_opt.problem import Problem
+    from ratt_opt.solvers.result import MaxMinResult
+
+__all__ = ["Certificate", "certify", "pack", "problem_document", "write_certificate"]
+
+NAMES = {TraceObjective: "trace", LogDetObjective: "logdet", MaxEigenvalueObjective: "maxeig"}
+SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
+"""How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
+LARGEST_SHAVE = SHAVES[-1]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """A certificate as written and verified.
+
+    ``lower_shaved`` and ``upper_raised`` : how far the claim's ends lie outside the given bracket, because
+    exact arithmetic proves a little less than floating point suggests [unit of the objective].
+    """
+
+    path: Path
+    verified: Verified
+    lower_shaved: float
+    upper_raised: float
+    size: int
+
+
+def pack(matrices: FloatArray) -> list[Any]:
+    """Lower triangles, row by row: (..., d, d) -> nested lists of shape (..., d (d + 1) / 2)."""
+    rows, columns = np.tril_indices(matrices.shape[-1])
+    packed: list[Any] = matrices[..., rows, columns].tolist()
+    return packed
+
+
+def problem_document(problem: Problem) -> dict[str, Any]:
+    """Return the problem record of a certificate; JSON numbers are shortest decimals that round-trip.
+
+    Raises
+    ------
+    InputError : the objective is not a criterion of information matrices.
+    """
+    objective = problem.objective
+    if type(objective) not in NAMES:
+        raise InputError("objective", "must be trace, logdet or maxeig to be certified", type(objective).__name__)
+    assert isinstance(objective, (TraceObjective, LogDetObjective, MaxEigenvalueObjective))
+    return {
+        "objective": NAMES[type(objective)],
+        "dimension": objective.dimension,
+        "prior": pack(objective.prior),
+        "information": pack(objective.information),
+        "weights": objective.weights.tolist(),
+        "owners": problem.robot.tolist(),
+        "links": [list(link) for link in sorted(problem.communication.links)],
+        "alpha_s": problem.alpha_s,
+        "alpha_c": problem.alpha_c,
+        "protected_robots": sorted(problem.protected_robots),
+        "protected_links": [list(link) for link in sorted(problem.protected_links)],
+    }
+
+
+def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:
+    """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver, and verify it.
+
+    The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
+    (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the node limit, the
+    lower end is stated as enumerated in floating point and ``verified.lower_proved`` is False.
+
+    Raises
+    ------
+    InputError : the objective cannot be certified, the result carries no proof, or the file cannot be written.
+    ProofError : the result's proof has a fault.
+    """
+    if result.proof is None:
+        raise InputError("result", "must carry a proof (from solve_maxmin)", result.stop)
+    record = upper_record(problem, result.proof)
+    return write_certificate(
+        problem, result.elements, lower=result.lower, upper=result.upper, upper_part=record, path=path
+    )
+
+
+def write_certificate(
+    problem: Problem,
+    elements: IntArray,
+    *,
+    lower: float,
+    upper: float,
+    upper_part: dict[str, Any],
+    path: str | Path,
+) -> Certificate:
+    """Write a certificate of the bracket, verify the file, and say how far its claim had to move.
+
+    Parameters
+    ----------
+    elements : (N,) the plan
+    lower, upper : the bracket as computed in floating point [unit of the objective]
+    upper_part : the record of the upper proof
+
+    Raises
+    ------
+    InputError : the objective cannot be certified, or the file cannot be written.
+    ProofError : the upper proof has a fault.
+    """
+    record, plan = problem_document(problem), problem.check_plan(elements).tolist()
+    prior_range = _prior_range(problem, record, plan)
+    checker = Checker(record, plan, prior_range)
+    high = max(float(upper), _proved_upper(checker, upper_part), 0.0)
+    low, lower_part = _proved_lower(checker, problem, elements, float(min(lower, high)))
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "problem": record,
+        "plan": plan,
+        "claim": {"lower": low, "upper": high},
+        "prior_eigenvalue": prior_range,
+        "upper": upper_part,
+        "lower": lower_part,
+    }
+    text = "{" + ",\n".join(f"{json.dumps(name)}:{_compact(value)}" for name, value in document.items()) + "}\n"
+    target = write_atomically(path, lambda file: file.write_text(text, encoding="utf-8"))
+    return Certificate(
+        path=target,
+        verified=verify_certificate(target, expected_problem=record),
+        lower_shaved=lower - low,
+        upper_raised=high - upper,
+        size=len(text),
+    )
+
+
+def _compact(value: object) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False)
+
+
+def _prior_range(problem: Problem, record: dict[str, Any], plan: list[int]) -> list[float]:
+    """Floats around the largest weighted eigenvalue of the priors, as narrow as the verifier can check."""
+    objective = problem.objective
+    if not isinstance(objective, MaxEigenvalueObjective):
+        return []
+    middle = float((objective.weights * np.linalg.eigvalsh(objective.prior)[:, -1]).max())
+    for shave in (1e-15, 1e-14, 1e-13, 1e-12):
+        found = [middle * (1 - shave), middle * (1 + shave)]
+        try:
+            Checker(record, plan, found)
+        except ProofError:
+            continue
+        return found
+    return [middle * (1 - 1e-9), middle * (1 + 1e-9)]
+
+
+def _proved_upper(checker: Checker, upper_part: dict[str, Any]) -> float:
+    """Smallest float that the verifier can prove as an upper bound from this proof."""
+    with ctx.workprec(256):
+        return max((_round_up(bound) for bound in checker.upper_bounds(upper_part)), default=0.0)
+
+
+def _round_up(bound: fmpq | arb) -> float:
+    value = float(arb(bound).mid())
+    while not bound <= fmpq(*value.as_integer_ratio()):
+        value = math.nextafter(value, math.inf)
+    return value
+
+
+def _proved_lower(checker: Checker, problem: Problem, elements: IntArray, lower: float) -> tuple[float, dict[str, Any]]:
+    """Largest float at or a little below ``lower`` that a cover of all attacks proves, and the cover."""
+    scale = max(abs(lower), abs(problem.objective(elements)))
+    part = lower_proof(problem, elements, lower - LARGEST_SHAVE * scale / 10)
+    for claim in (lower - shave * scale for shave in SHAVES):
+        try:
+            checker.check_lower(part, fmpq(*claim.as_integer_ratio()))
+        except ProofError:
+            continue
+        return claim, part
+    return lower, ENUMERATED
