@@ -62,6 +62,8 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
     if not attacks:
         raise InputError("attacks", "must hold at least one attack", "none")
     largest, others = _groups(problem, attacks)
+    if () in largest:
+        return RelaxationBound(upper=0.0, claimed=0.0, selection=_uniform(problem), status="an attack leaves nobody")
     claimed, selection, status = _solve(problem, objective, largest)
     cuts = [cut for group in largest for cut in _cuts_at(problem, objective, group, selection)]
     upper = max([_best_combination(problem, cuts), *(_group_bound(problem, objective, group) for group in others)])
@@ -91,9 +93,7 @@ def _solve(
     constraints = [cp.sum(z[choice]) == 1 for choice in problem.choices]
     constraints += [_value_constraint(objective, _posterior(problem, objective, group, z), t) for group in groups]
     program = cp.Problem(cp.Maximize(t), constraints)
-    uniform = np.concatenate([np.full(len(c), 1 / len(c)) for c in problem.choices])
-    selection = np.empty(objective.n)
-    selection[np.concatenate(problem.choices)] = uniform
+    selection = _uniform(problem)
     try:
         program.solve(solver=cp.CLARABEL)
     except cp.error.SolverError as error:
@@ -105,6 +105,13 @@ def _solve(
     return float(program.value), selection, str(program.status)
 
 
+def _uniform(problem: Problem) -> FloatArray:
+    selection = np.empty(problem.objective.n)
+    for choice in problem.choices:
+        selection[choice] = 1 / len(choice)
+    return selection
+
+
 def _posterior(problem: Problem, objective: InformationObjective, group: tuple[int, ...], z: Any) -> list[Any]:
     """One affine (d, d) expression per target."""
     inside = np.flatnonzero(np.isin(problem.robot, group))
@@ -113,7 +120,7 @@ def _posterior(problem: Problem, objective: InformationObjective, group: tuple[i
     for j in range(objective.n_targets):
         constant = objective.prior_information[j]
         flat = objective.information[inside, j].reshape(len(inside), -1)
-        mixed = (flat.T @ z[inside]).reshape((d, d), order="C") if len(inside) else np.zeros((d, d))
+        mixed = (flat.T @ z[inside]).reshape((d, d), order="C")
         matrices.append(constant + mixed)
     return matrices
 

@@ -1,0 +1,125 @@
+"""The three criteria against their definitions in plain matrix algebra."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.information import InformationObjective
+from tests.strategies import OBJECTIVES, information_data
+
+
+def by_definition(kind, prior, information, subset, weights=None):
+    """The architecture's definition, one target at a time, by explicit inversion."""
+    weights = np.ones(len(prior)) if weights is None else weights
+    before, after = [], []
+    for j, p in enumerate(prior):
+        posterior = np.linalg.inv(p) + sum((information[e, j] for e in subset), np.zeros_like(p))
+        if kind == "logdet":
+            before.append(-np.linalg.slogdet(p)[1])
+            after.append(np.linalg.slogdet(posterior)[1])
+        elif kind == "trace":
+            before.append(np.trace(p))
+            after.append(np.trace(np.linalg.inv(posterior)))
+        else:
+            before.append(np.linalg.eigvalsh(p)[-1])
+            after.append(np.linalg.eigvalsh(np.linalg.inv(posterior))[-1])
+    before, after = weights * before, weights * after
+    if kind == "maxeig":
+        return before.max() - after.max()
+    return (after - before).sum() if kind == "logdet" else (before - after).sum()
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("dimension", [1, 2, 3, 4])
+@pytest.mark.parametrize("weighted", [False, True])
+def test_values_are_the_definition_s(kind, dimension, weighted):
+    rng = np.random.default_rng([dimension, weighted])
+    for _ in range(15):
+        prior, information = information_data(rng, 6, int(rng.integers(1, 5)), dimension)
+        weights = rng.uniform(0.1, 3, len(prior)) if weighted else None
+        f = OBJECTIVES[kind](prior, information, weights)
+        scale = abs(by_definition(kind, prior, information, range(6), weights)) + 1
+        table = f.table()
+        for size in range(7):
+            for subset in combinations(range(6), size):
+                expected = by_definition(kind, prior, information, subset, weights)
+                assert abs(f(subset) - expected) < 1e-9 * scale
+                assert abs(table[sum(1 << e for e in subset)] - expected) < 1e-9 * scale
+        assert f([]) == 0
+        assert table[0] == 0
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_marginals_and_batches_are_differences_of_values(kind):
+    rng = np.random.default_rng(7)
+    for _ in range(30):
+        f = OBJECTIVES[kind](*information_data(rng, 8, 3, int(rng.integers(1, 4))))
+        members = rng.random((20, 8)) < 0.5
+        assert np.allclose(f.evaluate(members), [f(np.flatnonzero(row)) for row in members], atol=1e-10)
+        base = np.flatnonzero(members[0])
+        candidates = np.setdiff1d(np.arange(8), base)
+        expected = [f([*base, e]) for e in candidates]
+        assert np.allclose(f.extensions(base, candidates), expected, atol=1e-10)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_criteria_grow_and_are_concave_in_the_information(kind):
+    rng = np.random.default_rng(8)
+    for _ in range(40):
+        f = OBJECTIVES[kind](*information_data(rng, 6, 3, 2))
+        assert isinstance(f, InformationObjective)
+        low, high = (f.posterior_information(np.flatnonzero(rng.random(6) < 0.5)) for _ in range(2))
+        middle = f.value((low + high) / 2)
+        assert middle >= (f.value(low) + f.value(high)) / 2 - 1e-9
+        assert f.value(low + high) >= max(f.value(low), f.value(high)) - 1e-9
+
+
+@pytest.mark.parametrize("kind", ["trace", "maxeig"])
+def test_units_scale_the_value_and_logdet_is_free_of_them(kind):
+    rng = np.random.default_rng(9)
+    prior, information = information_data(rng, 6, 3, 2)
+    centimetres = OBJECTIVES[kind](prior * 1e4, information / 1e4)
+    assert np.allclose(centimetres.table(), 1e4 * OBJECTIVES[kind](prior, information).table())
+    scaled = ro.LogDetObjective(prior * 1e4, information / 1e4)
+    assert np.allclose(scaled.table(), ro.LogDetObjective(prior, information).table())
+
+
+def test_extreme_scales_keep_their_digits():
+    """A diffuse prior and a sharp sensor: the value is the prior's variance less the sensor's."""
+    f = ro.TraceObjective([np.eye(2) * 1e6], [[np.eye(2) * 1e8]])
+    assert f([0]) == pytest.approx(2e6 - 2e-8, rel=1e-14)
+    g = ro.LogDetObjective([np.eye(2) * 1e6], [[np.eye(2) * 1e8]])
+    assert g([0]) == pytest.approx(2 * np.log(1e14), rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize(
+    ("prior", "information", "text"),
+    [
+        (np.zeros((0, 2, 2)), np.zeros((1, 0, 2, 2)), "prior.*at least one target"),
+        ([[[1.0, 0.5], [0.0, 1.0]]], np.zeros((1, 1, 2, 2)), "prior.*symmetric"),
+        ([np.diag([1.0, -1.0])], np.zeros((1, 1, 2, 2)), "prior.*positive definite"),
+        ([np.diag([1.0, 0.0])], np.zeros((1, 1, 2, 2)), "prior.*positive definite"),
+        ([np.eye(2) * np.nan], np.zeros((1, 1, 2, 2)), "prior.*finite"),
+        ([np.eye(2)], np.full((1, 1, 2, 2), np.inf), "information.*finite"),
+        ([np.eye(2)], [[np.diag([1.0, -1e-3])]], "information.*semidefinite"),
+        ([np.eye(2)], np.zeros((1, 2, 2, 2)), "information.*shape"),
+        ([np.eye(2)], np.zeros((0, 1, 2, 2)), "information.*at least one element"),
+    ],
+)
+def test_bad_matrices_are_refused(kind, prior, information, text):
+    with pytest.raises(InputError, match=text):
+        OBJECTIVES[kind](prior, information)
+
+
+def test_rounding_below_zero_is_accepted_and_indices_are_checked():
+    f = ro.TraceObjective([np.eye(2)], [[np.diag([1.0, -1e-10])]])
+    assert f([0]) == pytest.approx(0.5)
+    for bad in ([1], [-1], [0, 0], [0.5]):
+        with pytest.raises(InputError):
+            f(bad)
