@@ -37,7 +37,7 @@ def _strict(text: str) -> Any:
 def _refused(arguments: list[str], capsys: pytest.CaptureFixture[str], text: str) -> None:
     assert run(arguments) == 2
     shown = capsys.readouterr().err
-    assert text in shown
+    assert text.lower() in shown.lower()
     assert shown.startswith("error: ")
     assert shown.count("\n") == 1
 
