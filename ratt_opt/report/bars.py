@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.report.tables import floored
+from ratt_opt.report.tables import share_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +33,13 @@ def draw_bars(axes: Axes, report: BoundReport) -> None:
         colour = "white" if inside and strong else "black"
         side = "right" if inside else "left"
         axes.text(
-            place, row, f"{value:.6g}  ({floored(report.share(plan))})", va="center", ha=side, fontsize=9, color=colour
+            place,
+            row,
+            f"{value:.6g}, {share_text(report.share(plan))}",
+            va="center",
+            ha=side,
+            fontsize=9,
+            color=colour,
         )
     axes.axvline(report.upper, color=LIMIT, linewidth=1.6, linestyle="--")
     axes.set_title(f"no plan can keep more than {report.upper:.6g}", fontsize=9.5, color=LIMIT, loc="right")

@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Attack
     from ratt_opt.setfunctions.curvature import Curvature
 
-__all__ = ["attack_table", "bracket_text", "floored", "report_tables"]
+__all__ = ["attack_table", "bracket_text", "report_tables", "share_text"]
 
+PROVED_OPTIMAL = 1e-9
+"""A plan proved to keep all but this share of the best possible is called optimal."""
 LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
@@ -51,15 +53,17 @@ def bracket_text(lower: float, upper: float) -> str:
     return f"[{lower:.8g}, {upper:.8g}]"
 
 
-def floored(share: float) -> str:
-    """A share to six decimals, rounded down: what is printed is never more than what was proved."""
-    return f"{math.floor(share * 1e6) / 1e6:.6f}"
+def share_text(share: float) -> str:
+    """A proved share in words; rounded down, so that what is printed is never more than what was proved."""
+    if share >= 1 - PROVED_OPTIMAL:
+        return "optimal to 1e-9"
+    return f"at least {math.floor(share * 1e6) / 1e6:.6f}"
 
 
 def _planners(report: BoundReport) -> Table:
     table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
     for plan in report.plans:
-        share = f"at least {floored(report.share(plan))}"
+        share = share_text(report.share(plan))
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
         table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
     table.caption = "* recommended: the best proved worst case"
@@ -86,7 +90,7 @@ def _bracket(report: BoundReport) -> Table:
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
     table.add_row("search stopped because", optimum.stop.value)
-    table.add_row("certified ratio of RATT", f"at least {floored(report.certified_ratio)}")
+    table.add_row("certified ratio of RATT", share_text(report.certified_ratio))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
     table.add_row("smallest largest group, n_max", str(report.n_max))
     table.add_row("equivalent sensing attacks, alpha_cs", str(report.alpha_cs))
