@@ -35,7 +35,7 @@ def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResu
     values = PlanValues(problem, elements)
     order = np.argsort(-values.singletons(), kind="stable").tolist()
     free = [i for i in order if i not in problem.protected_robots]
-    attack = PartialAttack(problem, blinded=frozenset(free[: problem.alpha_s]))
+    attack = PartialAttack.of(problem, frozenset(free[: problem.alpha_s]))
     locked = {i for link in problem.protected_links for i in link}
     for robot in order:
         if robot in attack.blinded or robot in locked:

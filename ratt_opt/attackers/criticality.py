@@ -63,10 +63,9 @@ def criticality_ranking(
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
     targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
-    untouched = PartialAttack(problem)
+    untouched = PartialAttack.of(problem)
     single = [
-        replace(untouched, blinded=frozenset([t])) if isinstance(t, int) else replace(untouched, cut=frozenset([t]))
-        for t in targets
+        untouched.blind(t) if isinstance(t, int) else PartialAttack.of(problem, cut=frozenset([t])) for t in targets
     ]
     worth = team_values(values, [untouched, *single])
     rows = []

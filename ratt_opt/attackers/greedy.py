@@ -27,7 +27,7 @@ def greedy_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
     InputError : an element is not its robot's, or ``elements`` has the wrong shape.
     """
     values = PlanValues(problem, elements)
-    attack = PartialAttack(problem)
+    attack = PartialAttack.of(problem)
     for _ in range(problem.threat.n_blinded):
         robots = [i for i in range(problem.n_robots) if i not in attack.blinded | problem.protected_robots]
         attack = _best(values, [attack.blind(i) for i in robots])

@@ -24,11 +24,22 @@ __all__ = ["PartialAttack", "heuristic_result", "team_values"]
 
 @dataclass(frozen=True, slots=True)
 class PartialAttack:
-    """Robots blinded and links cut so far."""
+    """Robots blinded and links cut so far; ``parts`` are the connected groups this leaves, blinded robots included.
+
+    :meth:`cut_off` relies on whole robots having been cut off so far: no link inside a part is cut.
+    """
 
     problem: Problem
-    blinded: frozenset[int] = frozenset()
-    cut: frozenset[Link] = frozenset()
+    blinded: frozenset[int]
+    cut: frozenset[Link]
+    parts: tuple[frozenset[int], ...]
+
+    @classmethod
+    def of(
+        cls, problem: Problem, blinded: frozenset[int] = frozenset(), cut: frozenset[Link] = frozenset()
+    ) -> PartialAttack:
+        """The attack that blinds and cuts the given ones."""
+        return cls(problem, blinded, cut, problem.communication.groups(cut))
 
     def blind(self, robot: int) -> PartialAttack:
         """Blind one more robot."""
@@ -36,14 +47,18 @@ class PartialAttack:
 
     def cut_off(self, robot: int) -> PartialAttack | None:
         """Cut all links that robot still has; ``None`` where one is protected or the budget is too small."""
-        links = {link for link in self.problem.communication.links if robot in link}
+        communication = self.problem.communication
+        links = communication.links_of(robot)
         if links & self.problem.protected_links or len(self.cut | links) > self.problem.alpha_c:
             return None
-        return replace(self, cut=self.cut | links)
+        home = next(part for part in self.parts if robot in part)
+        left = communication.groups_among(home - {robot}) if len(home) > 1 else ()
+        others = tuple(part for part in self.parts if part is not home)
+        return replace(self, cut=self.cut | links, parts=(*others, frozenset([robot]), *left))
 
     def groups(self) -> list[frozenset[int]]:
         """Robots of each group that still see."""
-        return [group - self.blinded for group in self.problem.communication.groups(self.cut)]
+        return [part - self.blinded for part in self.parts]
 
     def finished(self) -> Attack:
         """The attack so far."""

@@ -28,8 +28,13 @@ class CommunicationGraph:
     n_robots: int
     links: frozenset[Link]
     is_complete: bool = field(init=False)
+    _graph: nx.Graph = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(range(self.n_robots))
+        graph.add_edges_from(self.links)
+        object.__setattr__(self, "_graph", graph)
         complete = len(self.links) == self.n_robots * (self.n_robots - 1) // 2
         object.__setattr__(self, "is_complete", complete)
 
@@ -58,7 +63,17 @@ class CommunicationGraph:
 
     def groups(self, cut: Iterable[Link] = ()) -> tuple[frozenset[int], ...]:
         """Connected components left when the links of ``cut`` are gone, by lowest robot."""
-        rest: nx.Graph = nx.Graph()
-        rest.add_nodes_from(range(self.n_robots))
-        rest.add_edges_from(self.links - frozenset(cut))
+        rest = self._graph.copy()
+        rest.remove_edges_from(cut)
         return tuple(sorted((frozenset(group) for group in nx.connected_components(rest)), key=min))
+
+    def groups_among(self, robots: frozenset[int]) -> tuple[frozenset[int], ...]:
+        """Connected components of ``robots`` once all others are cut off, by lowest robot."""
+        if self.is_complete:
+            return (robots,) if robots else ()
+        found = nx.connected_components(self._graph.subgraph(robots))
+        return tuple(sorted((frozenset(group) for group in found), key=min))
+
+    def links_of(self, robot: int) -> frozenset[Link]:
+        """The links of one robot."""
+        return frozenset((min(robot, j), max(robot, j)) for j in self._graph[robot])
