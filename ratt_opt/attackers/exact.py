@@ -12,6 +12,7 @@ from ratt_opt.attackers.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
 from ratt_opt.attackers.threshold_search import LARGEST_PLAIN, LARGEST_THRESHOLD_SEARCH, threshold_search
+from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -36,7 +37,9 @@ def worst_case_attack(
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 
-    A keyboard interrupt or a spent budget returns the bracket reached.
+    A keyboard interrupt or a spent budget returns the bracket reached. Interrupted before any attack
+    is known, it evaluates the team without an attack and returns that; its lower bound, the value of no
+    measurement, relies on a non-decreasing objective until the 2**N values of a small team are tabulated.
 
     Parameters
     ----------
@@ -53,15 +56,17 @@ def worst_case_attack(
     """
     budget = Budget(max_nodes, time_limit)
     values = PlanValues(problem, elements)
-    first = bounded_rational_attack(problem, values.plan)
-    bracket = Bracket(first.attack, first.upper, first.lower)
-    values.evaluations = first.evaluations
+    bracket = None
     try:
+        first = bounded_rational_attack(problem, values.plan)
+        bracket = Bracket(first.attack, first.upper, first.lower)
+        values.evaluations = first.evaluations
         stop = _search(problem, values, bracket, budget)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
         stop = Stop.INTERRUPTED
+    bracket = bracket or _without_attack(problem, values)
     return AttackResult(
         attack=bracket.attack,
         lower=min(bracket.lower, bracket.upper),
@@ -70,6 +75,12 @@ def worst_case_attack(
         evaluations=values.evaluations,
         nodes=budget.nodes,
     )
+
+
+def _without_attack(problem: Problem, values: PlanValues) -> Bracket:
+    """The bracket that no attack at all gives."""
+    values.evaluations += len(problem.communication.groups())
+    return Bracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
 
 
 def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:

@@ -39,7 +39,7 @@ def threshold_search(problem: Problem, values: PlanValues, bracket: Bracket, bud
     low, high = 0, int(np.searchsorted(levels, bracket.upper))  # the answer is in levels[low : high + 1]
     # The heuristic's value, computed alone, may round differently from the table's.
     high = min(high, len(levels) - 1)
-    bracket.raise_lower(float(levels[0]))
+    bracket.lower = float(levels[0])  # relies on nothing, unlike the value of no measurement
     while low < high:
         middle = (low + high) // 2
         budget.spend()

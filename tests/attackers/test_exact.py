@@ -113,18 +113,36 @@ class Impatient(ro.SetFunction):
         return self.inner.evaluate(membership)
 
 
-def test_an_interrupt_returns_the_bracket():
-    prior, information = range_bearing(np.random.default_rng(3), 6, 4, 1)
-    objective = ro.LogDetObjective(prior, information)
+def interruptible(n_robots, graph, batches):
+    prior, information = range_bearing(np.random.default_rng(3), n_robots, 4, 1)
+    objective = Impatient(ro.LogDetObjective(prior, information), batches)
+    return ro.Problem(objective, np.arange(n_robots), graph, 2, 5)
+
+
+@pytest.mark.parametrize("graph", [None, nx.cycle_graph(6)])
+def test_an_interrupt_at_any_batch_returns_the_bracket(graph):
     plan = np.arange(6)
-    expected = worst_case_attack(ro.Problem(objective, plan, None, 2, 5), plan)
-    seen = set()
-    for batches in range(5, 12):
-        result = worst_case_attack(ro.Problem(Impatient(objective, batches), plan, None, 2, 5), plan)
-        assert result.lower <= expected.upper <= result.upper
-        seen.add(result.stop)
-    assert ro.Stop.INTERRUPTED in seen
-    assert seen <= {ro.Stop.INTERRUPTED, ro.Stop.EXHAUSTED}
+    free = interruptible(6, graph, 0)
+    expected = worst_case_attack(free, plan)
+    total = -free.objective.left
+    for batches in range(1, total + 1):
+        problem = interruptible(6, graph, batches)
+        result = worst_case_attack(problem, plan)
+        assert result.stop is ro.Stop.INTERRUPTED
+        assert 0.0 <= result.lower <= expected.upper <= result.upper
+        assert problem.team_value(plan, result.attack) == result.upper
+    assert worst_case_attack(interruptible(6, graph, total + 1), plan) == expected
+
+
+def test_a_search_that_is_stopped_relies_on_no_property_of_the_objective():
+    """The value of no measurement is no lower bound here: the table's least value is."""
+    values = np.random.default_rng(0).normal(size=2**4)
+    values[0] = values.max() + 1
+    problem = ro.Problem(ro.TableFunction(values), np.arange(4), None, 1, 2)
+    expected = brute_force_worst_case(problem, np.arange(4))
+    for nodes in range(4):
+        result = worst_case_attack(problem, np.arange(4), max_nodes=nodes)
+        assert result.lower <= expected <= result.upper
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
