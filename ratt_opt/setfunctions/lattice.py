@@ -34,24 +34,23 @@ def marginal_ends(values: Any, n: int) -> Any:
 
 @numba.njit(cache=True, fastmath=_FINITE)
 def second_differences(values: Any, n: int) -> Any:
-    """(2, n, n) smallest and largest ``f(S+i) + f(S+j) - f(S+i+j) - f(S)`` over ``S``, for ``i < j``; 0 elsewhere."""
-    ends = np.zeros((2, n, n))
+    """(n, n) smallest ``f(S+i) + f(S+j) - f(S+i+j) - f(S)`` over ``S``, for ``i < j``; 0 elsewhere."""
+    ends = np.zeros((n, n))
     for j in range(1, n):
         for i in range(j):
-            ends[0, i, j], ends[1, i, j] = np.inf, -np.inf
+            ends[i, j] = np.inf
     for j in range(1, n):
         top = 1 << j
         # All pairs (i, j) of one block of the table before the next block: the block stays in cache.
         for start in range(0, len(values), 2 * top):
             for i in range(j):
                 step = 1 << i
-                low, high = ends[0, i, j], ends[1, i, j]
+                low = ends[i, j]
                 for base in range(start, start + top, 2 * step):
                     for s in range(base, base + step):
                         slack = (values[s + step] - values[s]) - (values[s + top + step] - values[s + top])
                         low = min(low, slack)
-                        high = max(high, slack)
-                ends[0, i, j], ends[1, i, j] = low, high
+                ends[i, j] = low
     return ends
 
 

@@ -150,8 +150,9 @@ def _second_order(f: SetFunction, rule: str, tolerance: float, trials: int, seed
     from ratt_opt.setfunctions.lattice import second_differences
 
     values = f.table()
-    low, high = second_differences(values, f.n)
-    slack = np.minimum(low, -high) if rule == "modular" else low
+    slack = second_differences(values, f.n)
+    if rule == "modular":
+        slack = np.minimum(slack, second_differences(-values, f.n))
     i, j = (int(k) for k in np.unravel_index(int(slack.argmin()), slack.shape))
     if i == j:  # every slack of a pair is positive
         return None
