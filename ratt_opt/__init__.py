@@ -139,9 +139,18 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.properties import (
         find_submodularity_violation as find_submodularity_violation,
     )
+    from ratt_opt.setfunctions.reference import ConcaveOfModular as ConcaveOfModular
+    from ratt_opt.setfunctions.reference import Coverage as Coverage
+    from ratt_opt.setfunctions.reference import Cut as Cut
+    from ratt_opt.setfunctions.reference import FacilityLocation as FacilityLocation
+    from ratt_opt.setfunctions.reference import Modular as Modular
+    from ratt_opt.setfunctions.reference import PartitionMatroidRank as PartitionMatroidRank
     from ratt_opt.setfunctions.sampling import NotFound as NotFound
     from ratt_opt.setfunctions.sampling import Violation as Violation
     from ratt_opt.setfunctions.table import TableFunction as TableFunction
+    from ratt_opt.setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES
+    from ratt_opt.setfunctions.zoo import Reference as Reference
+    from ratt_opt.setfunctions.zoo import reference as reference
     from ratt_opt.solvers.baselines import (
         greedy as greedy,
     )
@@ -167,8 +176,12 @@ _HOME = {
     "BreakingBudget": "attackers.breaking_budgets",
     "CaaResult": "graph.caa",
     "Certificate": "certificates.write",
+    "ConcaveOfModular": "setfunctions.reference",
+    "Coverage": "setfunctions.reference",
     "Criticality": "attackers.criticality",
     "Curvature": "setfunctions.curvature",
+    "Cut": "setfunctions.reference",
+    "FacilityLocation": "setfunctions.reference",
     "FileFormatError": "errors",
     "Guarantee": "bounds.guarantees",
     "InformationInput": "scenario.model_free",
@@ -178,12 +191,16 @@ _HOME = {
     "LogDetObjective": "setfunctions.information",
     "MaxEigenvalueObjective": "setfunctions.information",
     "MaxMinResult": "solvers.result",
+    "Modular": "setfunctions.reference",
     "NotFound": "setfunctions.sampling",
+    "PartitionMatroidRank": "setfunctions.reference",
     "Plan": "problem",
     "PlanAssessment": "main_job",
     "Problem": "problem",
     "ProofError": "errors",
+    "REFERENCE_FAMILIES": "setfunctions.zoo",
     "RatioWitness": "audit.ratio_witness",
+    "Reference": "setfunctions.zoo",
     "RelaxationBound": "bounds.relaxation",
     "Robot": "scenario.model",
     "Scenario": "scenario.model",
@@ -228,6 +245,7 @@ _HOME = {
     "random_plan": "solvers.baselines",
     "random_scenario": "scenario.generator",
     "ratt": "solvers.ratt",
+    "reference": "setfunctions.zoo",
     "relaxation_bound": "bounds.relaxation",
     "remark1_bound": "bounds.guarantees",
     "run_audit": "audit.ledger",

@@ -1,0 +1,229 @@
+"""Set functions of textbook families: their properties and curvatures are known from theory.
+
+A family is a class with its data as attributes; :mod:`ratt_opt.setfunctions.zoo` states what is known of each.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, check_integer, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import SetFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
+__all__ = [
+    "ConcaveOfModular",
+    "Coverage",
+    "Cut",
+    "FacilityLocation",
+    "Modular",
+    "PartitionMatroidRank",
+    "nonnegative",
+]
+
+
+def nonnegative(argument: str, value: ArrayLike, ndim: int) -> FloatArray:
+    """Return a read-only array of finite numbers that are at least 0."""
+    array = check_finite(argument, value, ndim=ndim)
+    if (array < 0).any():
+        raise InputError(argument, "must not be negative", float(array.min()))
+    return array
+
+
+class Modular(SetFunction):
+    """``f(S) = sum of weights[e]``.
+
+    Parameters
+    ----------
+    weights : (n,) finite numbers of any sign
+
+    Raises
+    ------
+    InputError : a weight is not finite.
+    """
+
+    __slots__ = ("weights",)
+
+    def __init__(self, weights: ArrayLike) -> None:
+        self.weights: FloatArray = check_finite("weights", weights, ndim=1)
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return len(self.weights)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        return membership @ self.weights
+
+
+class Coverage(SetFunction):
+    """``f(S) =`` total weight of the items that some element of ``S`` covers.
+
+    Parameters
+    ----------
+    covers : (n, items) truth values; item_weights : (items,) non-negative
+
+    Raises
+    ------
+    InputError : a shape or sign rule is broken.
+    """
+
+    __slots__ = ("covers", "item_weights")
+
+    def __init__(self, covers: ArrayLike, item_weights: ArrayLike) -> None:
+        self.covers: BoolArray = readonly(np.asarray(covers, dtype=np.bool_))
+        self.item_weights: FloatArray = nonnegative("item_weights", item_weights, 1)
+        if self.covers.ndim != 2 or self.covers.shape[1] != len(self.item_weights):
+            raise InputError("covers", f"must have shape (n, {len(self.item_weights)})", f"shape {self.covers.shape}")
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return len(self.covers)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        return ((membership.astype(np.float64) @ self.covers) > 0) @ self.item_weights
+
+
+class PartitionMatroidRank(SetFunction):
+    """Weighted rank: the heaviest part of ``S`` with at most ``capacity[b]`` elements of each block ``b``.
+
+    Parameters
+    ----------
+    weights : (n,) non-negative; block : (n,) block of each element; capacity : (blocks,) at least 0
+
+    Raises
+    ------
+    InputError : a shape, sign or range rule is broken.
+    """
+
+    __slots__ = ("_order", "block", "capacity", "weights")
+
+    def __init__(self, weights: ArrayLike, block: ArrayLike, capacity: ArrayLike) -> None:
+        self.weights: FloatArray = nonnegative("weights", weights, 1)
+        self.capacity: IntArray = readonly(np.asarray(capacity, dtype=np.int64))
+        self.block: IntArray = readonly(np.asarray(block, dtype=np.int64))
+        if self.block.shape != self.weights.shape:
+            raise InputError("block", f"must have shape {self.weights.shape}", f"shape {self.block.shape}")
+        for b in self.block.tolist():
+            check_integer("block", b, low=0, high=len(self.capacity) - 1)
+        if (self.capacity < 0).any():
+            raise InputError("capacity", "must not be negative", int(self.capacity.min()))
+        self._order = np.argsort(-self.weights, kind="stable")
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return len(self.weights)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values: the greedy algorithm, heaviest first, which is exact for a matroid."""
+        value = np.zeros(len(membership))
+        left = np.tile(self.capacity, (len(membership), 1))
+        for e in self._order:
+            takes = membership[:, e] & (left[:, self.block[e]] > 0)
+            value[takes] += self.weights[e]
+            left[takes, self.block[e]] -= 1
+        return value
+
+
+class FacilityLocation(SetFunction):
+    """``f(S) = sum over customers of the best utility any element of S has for it`` (0 without one).
+
+    Parameters
+    ----------
+    utility : (n, customers) non-negative
+
+    Raises
+    ------
+    InputError : an entry is negative or not finite.
+    """
+
+    __slots__ = ("utility",)
+
+    def __init__(self, utility: ArrayLike) -> None:
+        self.utility: FloatArray = nonnegative("utility", utility, 2)
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return len(self.utility)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        best = np.zeros((len(membership), self.utility.shape[1]))
+        for e in range(self.n):
+            rows = membership[:, e]
+            best[rows] = np.maximum(best[rows], self.utility[e])
+        return np.asarray(best.sum(axis=1))
+
+
+class Cut(SetFunction):
+    """``f(S) =`` weight of the edges between ``S`` and the rest: submodular, symmetric, not monotone.
+
+    Parameters
+    ----------
+    weights : (n, n) symmetric, non-negative; the diagonal does not count
+
+    Raises
+    ------
+    InputError : not square, not symmetric, or negative.
+    """
+
+    __slots__ = ("weights",)
+
+    def __init__(self, weights: ArrayLike) -> None:
+        self.weights: FloatArray = nonnegative("weights", weights, 2)
+        if self.weights.shape[0] != self.weights.shape[1]:
+            raise InputError("weights", "must be square", f"shape {self.weights.shape}")
+        if (self.weights != self.weights.T).any():
+            raise InputError("weights", "must be symmetric", "an asymmetric matrix")
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return len(self.weights)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        inside = membership.astype(np.float64)
+        return np.asarray(((inside @ self.weights) * (1 - inside)).sum(axis=1))
+
+
+class ConcaveOfModular(SetFunction):
+    """``f(S) = shape(total weight of S) - shape(0)`` for a concave ``shape``: submodular.
+
+    Nothing checks that ``shape`` is concave: with a convex one the function is supermodular.
+
+    Parameters
+    ----------
+    weights : (n,) non-negative; shape : maps (K,) totals to (K,) values
+
+    Raises
+    ------
+    InputError : a weight is negative or not finite.
+    """
+
+    __slots__ = ("shape", "weights")
+
+    def __init__(self, weights: ArrayLike, shape: Callable[[FloatArray], FloatArray] = np.sqrt) -> None:
+        self.weights: FloatArray = nonnegative("weights", weights, 1)
+        self.shape = shape
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return len(self.weights)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        return self.shape(membership @ self.weights) - self.shape(np.zeros(1))
