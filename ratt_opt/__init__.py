@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.guarantees import (
         theorem1_bound as theorem1_bound,
     )
+    from ratt_opt.bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
     from ratt_opt.bounds.relaxation import RelaxationBound as RelaxationBound
     from ratt_opt.bounds.relaxation import relaxation_bound as relaxation_bound
     from ratt_opt.certificates.verified import Verified as Verified
@@ -73,6 +74,15 @@ if TYPE_CHECKING:
     )
     from ratt_opt.graph.largest_group import (
         smallest_largest_group as smallest_largest_group,
+    )
+    from ratt_opt.graph.outcomes import (
+        count_outcomes as count_outcomes,
+    )
+    from ratt_opt.graph.outcomes import (
+        non_dominated_outcomes as non_dominated_outcomes,
+    )
+    from ratt_opt.graph.outcomes import (
+        realise as realise,
     )
     from ratt_opt.main_job import BoundReport as BoundReport
     from ratt_opt.main_job import PlanAssessment as PlanAssessment
@@ -139,18 +149,36 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.properties import (
         find_submodularity_violation as find_submodularity_violation,
     )
-    from ratt_opt.setfunctions.reference import ConcaveOfModular as ConcaveOfModular
-    from ratt_opt.setfunctions.reference import Coverage as Coverage
-    from ratt_opt.setfunctions.reference import Cut as Cut
-    from ratt_opt.setfunctions.reference import FacilityLocation as FacilityLocation
-    from ratt_opt.setfunctions.reference import Modular as Modular
-    from ratt_opt.setfunctions.reference import PartitionMatroidRank as PartitionMatroidRank
+    from ratt_opt.setfunctions.reference import (
+        ConcaveOfModular as ConcaveOfModular,
+    )
+    from ratt_opt.setfunctions.reference import (
+        Coverage as Coverage,
+    )
+    from ratt_opt.setfunctions.reference import (
+        Cut as Cut,
+    )
+    from ratt_opt.setfunctions.reference import (
+        FacilityLocation as FacilityLocation,
+    )
+    from ratt_opt.setfunctions.reference import (
+        Modular as Modular,
+    )
+    from ratt_opt.setfunctions.reference import (
+        PartitionMatroidRank as PartitionMatroidRank,
+    )
     from ratt_opt.setfunctions.sampling import NotFound as NotFound
     from ratt_opt.setfunctions.sampling import Violation as Violation
     from ratt_opt.setfunctions.table import TableFunction as TableFunction
-    from ratt_opt.setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES
-    from ratt_opt.setfunctions.zoo import Reference as Reference
-    from ratt_opt.setfunctions.zoo import reference as reference
+    from ratt_opt.setfunctions.zoo import (
+        REFERENCE_FAMILIES as REFERENCE_FAMILIES,
+    )
+    from ratt_opt.setfunctions.zoo import (
+        Reference as Reference,
+    )
+    from ratt_opt.setfunctions.zoo import (
+        reference as reference,
+    )
     from ratt_opt.solvers.baselines import (
         greedy as greedy,
     )
@@ -222,6 +250,7 @@ _HOME = {
     "breaking_budgets": "attackers.breaking_budgets",
     "caa": "graph.caa",
     "certify": "certificates.write",
+    "count_outcomes": "graph.outcomes",
     "criticality_ranking": "attackers.criticality",
     "curvature": "setfunctions.curvature",
     "exhaustive_optimum": "solvers.exhaustive",
@@ -238,6 +267,7 @@ _HOME = {
     "load_plan": "scenario.plan_file",
     "load_scenario": "scenario.files",
     "myopic": "solvers.baselines",
+    "non_dominated_outcomes": "graph.outcomes",
     "nonrobust_optimum": "solvers.baselines",
     "pattern_free_bound": "bounds.guarantees",
     "problem_document": "certificates.write",
@@ -245,8 +275,10 @@ _HOME = {
     "random_plan": "solvers.baselines",
     "random_scenario": "scenario.generator",
     "ratt": "solvers.ratt",
+    "realise": "graph.outcomes",
     "reference": "setfunctions.zoo",
     "relaxation_bound": "bounds.relaxation",
+    "relaxation_bounds": "bounds.lazy_relaxation",
     "remark1_bound": "bounds.guarantees",
     "run_audit": "audit.ledger",
     "save_scenario": "scenario.files",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack, Problem
 
-__all__ = ["RelaxationBound", "relaxation_bound"]
+__all__ = ["RelaxationBound", "relaxation_bound", "uniform_selection"]
 
 TARGETS_A_GROUP = 6
 AVERAGING_STEPS = 12
@@ -63,7 +63,9 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
         raise InputError("attacks", "must hold at least one attack", "none")
     largest, others = _groups(problem, attacks)
     if () in largest:
-        return RelaxationBound(upper=0.0, claimed=0.0, selection=_uniform(problem), status="an attack leaves nobody")
+        return RelaxationBound(
+            upper=0.0, claimed=0.0, selection=uniform_selection(problem), status="an attack leaves nobody"
+        )
     claimed, selection, status = _solve(problem, objective, largest)
     cuts = [cut for group in largest for cut in _cuts_at(problem, objective, group, selection)]
     upper = max([_best_combination(problem, cuts), *(_group_bound(problem, objective, group) for group in others)])
@@ -93,7 +95,7 @@ def _solve(
     constraints = [cp.sum(z[choice]) == 1 for choice in problem.choices]
     constraints += [_value_constraint(objective, _posterior(problem, objective, group, z), t) for group in groups]
     program = cp.Problem(cp.Maximize(t), constraints)
-    selection = _uniform(problem)
+    selection = uniform_selection(problem)
     try:
         program.solve(solver=cp.CLARABEL)
     except cp.error.SolverError as error:
@@ -105,7 +107,8 @@ def _solve(
     return float(program.value), selection, str(program.status)
 
 
-def _uniform(problem: Problem) -> FloatArray:
+def uniform_selection(problem: Problem) -> FloatArray:
+    """(E,) every robot mixes its elements equally."""
     selection = np.empty(problem.objective.n)
     for choice in problem.choices:
         selection[choice] = 1 / len(choice)

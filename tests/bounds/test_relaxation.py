@@ -76,3 +76,25 @@ def test_what_it_cannot_bound_is_refused():
         relaxation.relaxation_bound(problem, [])
     with pytest.raises(InputError, match="at most alpha_s = 1"):
         relaxation.relaxation_bound(problem, [ro.Attack(frozenset({0, 1}), frozenset())])
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(4))
+def test_relaxing_over_all_attacks_is_the_root_of_the_search(kind, seed):
+    """Two independent ways: conic programs with outcomes by enumeration; linear cuts with outcomes by attacks."""
+    problem = ro.random_scenario(7, 6, alpha_s=2, alpha_c=6, seed=seed).problem(kind)
+    bounds = list(ro.relaxation_bounds(problem))
+    best = ro.solve_maxmin(problem)
+    assert all(bound.upper >= best.lower * (1 - 1e-12) for bound in bounds)
+    root = ro.solve_maxmin(problem, max_nodes=1)
+    if root.stop is ro.Stop.NODES:
+        assert root.upper == pytest.approx(bounds[-1].upper, rel=1e-3 if kind == "maxeig" else 1e-5)
+    else:
+        assert bounds[-1].upper >= root.lower * (1 - 1e-12)
+
+
+def test_relaxing_over_all_attacks_needs_a_list_of_them():
+    with pytest.raises(InputError, match="at most 20000 outcomes"):
+        next(ro.relaxation_bounds(ro.random_scenario(30, 2, alpha_s=10, alpha_c=108, seed=0).problem()))
+    with pytest.raises(InputError, match="information criterion"):
+        next(ro.relaxation_bounds(ro.Problem(ro.TableFunction([0, 1]), [0], None, 0, 0)))
