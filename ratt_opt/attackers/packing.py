@@ -38,15 +38,16 @@ class Packer:
 
         Weakest robots first; exact unless the search grows beyond ``LONGEST_PACKING`` nodes.
         """
+        weak = frozenset(i for i in available if self.team.value([i]) < threshold)
         missing = self.must & available
-        if sum(sizes) < len(missing):
+        # No group below the threshold holds a robot that alone reaches it.
+        if not missing <= weak or not len(missing) <= sum(sizes) <= len(weak):
             return Packing(None)
-        if not sizes:
-            return Packing(())
-        quick = self._weakest(available, sizes, threshold)
-        if quick is not None:
+        quick = self._weakest(weak, sizes, threshold)
+        # Robots on their own are all weak enough here, so only larger groups are searched for.
+        if quick is not None or not sizes or sizes[0] == 1:
             return Packing(quick)
-        return self._search(available, sizes, threshold)
+        return self._search(weak, sizes, threshold)
 
     def _weakest(
         self, available: frozenset[int], sizes: tuple[int, ...], threshold: float
