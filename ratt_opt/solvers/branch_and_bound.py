@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut, worst_targets
+from ratt_opt.solvers.branching import divide_elements, mixing_gains
 from ratt_opt.solvers.node_program import NodeProgram
 from ratt_opt.solvers.proof import Cut, Leaf, UpperProof
 from ratt_opt.solvers.search_tree import TreeNode, freeze
@@ -196,14 +197,11 @@ class BranchAndBound:
         if outcome is not None:
             children = self._divide_by_winner(node, outcome)
         else:
-            i = self._most_divided(node, relaxed, self._leaf_bound(node.leaf, node.choices)[1])
+            i, parts = self._branch(node, relaxed)
             if i is None:
                 self._finished = max(self._finished, node.bound)
                 return True
-            choice = node.choices[i]
-            first = choice[[int(relaxed.selection[choice].argmax()) if relaxed else 0]]
-            rest = choice[choice != first[0]]
-            children = [node.child(_with(node.choices, i, part)) for part in (first, rest)]
+            children = [node.child(_with(node.choices, i, part)) for part in parts]
             self._split(node, "element", i, children)
         for child in children:
             self._push(child)
@@ -216,16 +214,32 @@ class BranchAndBound:
             parts.append((tuple(members), child))
         node.split = (kind, robot, parts)
 
-    def _most_divided(self, node: TreeNode, relaxed: RelaxedPlan | None, scores: FloatArray) -> int | None:
-        """The robot whose undecided choice moves the bound most; any that still has a choice where none does."""
-        best, best_impact = None, -1.0
-        for i, choice in enumerate(node.choices):
-            if len(choice) > 1:
-                divided = 1 - float(relaxed.selection[choice].max()) if relaxed else 0.0
-                impact = (divided + 1e-3) * float(np.ptp(scores[choice]))
-                if impact > best_impact:
-                    best, best_impact = i, impact
-        return best
+    def _branch(self, node: TreeNode, relaxed: RelaxedPlan | None) -> tuple[int | None, tuple[IntArray, ...]]:
+        """The robot to branch on and the parts of its elements; any robot with a choice where none is mixed."""
+        open_robots = [i for i, choice in enumerate(node.choices) if len(choice) > 1]
+        if not open_robots:
+            return None, ()
+        if relaxed is None:
+            choice = node.choices[open_robots[0]]
+            return open_robots[0], (choice[:1], choice[1:])
+        active = relaxed.duals > NEGLIGIBLE
+        cuts, weights = relaxed.cuts[active].tolist(), relaxed.duals[active]
+        groups, targets = [self._origin[k][1] for k in cuts], [self._cuts[k].target for k in cuts]
+        inside = self.pool.membership()[groups] > 0
+        points = self.pool.group_points(self._mixed(relaxed.selection))[groups]
+        gains = mixing_gains(
+            self.problem,
+            self.objective,
+            selection=relaxed.selection,
+            inside=inside,
+            points=points,
+            weights=weights,
+            targets=targets,
+        )
+        i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(self._singles[node.choices[r]]))))
+        choice = node.choices[i]
+        heaviest = points[int(weights.argmax())] if len(weights) else self.objective.prior_information
+        return i, divide_elements(self.objective, choice, relaxed.selection, heaviest)
 
     # -- outcomes, cuts, plans ---------------------------------------------------------------------------------
 

@@ -29,6 +29,8 @@ class OutcomePool:
         self._number: dict[tuple[int, ...], int] = {}
         self._known: dict[tuple[int, ...], int] = {}
         self._membership = np.zeros((0, problem.n_robots))
+        self._flat = np.zeros(0, dtype=np.int64)
+        self._starts = np.zeros(0, dtype=np.int64)
 
     def add(self, attack: Attack) -> int:
         """Add the outcome of one attack and return its index, new or old."""
@@ -71,9 +73,10 @@ class OutcomePool:
         """(O,) team value of every outcome: the best of its groups; works along the last axis."""
         if not self.of_outcome:
             return np.full((*group_values.shape[:-1], 0), np.inf)
-        flat = np.concatenate([np.array(numbers) for numbers in self.of_outcome])
-        starts = np.cumsum([0, *(len(numbers) for numbers in self.of_outcome[:-1])])
-        return np.asarray(np.maximum.reduceat(group_values[..., flat], starts, axis=-1))
+        if len(self._starts) < len(self.of_outcome):
+            self._flat = np.array([g for numbers in self.of_outcome for g in numbers], dtype=np.int64)
+            self._starts = np.cumsum([0, *(len(numbers) for numbers in self.of_outcome[:-1])])
+        return np.asarray(np.maximum.reduceat(group_values[..., self._flat], self._starts, axis=-1))
 
     def plan_value(self, elements: IntArray) -> float:
         """Smallest team value of a plan under the known outcomes: an upper bound on its worst case."""

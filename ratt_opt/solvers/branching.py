@@ -1,0 +1,95 @@
+"""Which robot to branch on, and how to divide its elements.
+
+A relaxed plan mixes elements. The criteria are concave, so a mixture is worth more than its
+elements on average, and what a robot's mixture gains is about what deciding that robot takes off the bound:
+
+    gain_i = sum_k w_k [ value_k(Lambda_k) - sum_e z_e value_k(Lambda_k + I_e - sum_e' z_e' I_e') ],
+
+over the groups ``k`` in the bound's convex combination, with its weights ``w_k``. (The combined
+scores say nothing here: at an optimum all elements in a mixture have the same.)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.setfunctions.information import MaxEigenvalueObjective
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["divide_elements", "mixing_gains"]
+
+SUPPORT = 1e-6
+"""Elements with less weight are not part of a mixture."""
+
+
+def mixing_gains(
+    problem: Problem,
+    objective: InformationObjective,
+    *,
+    selection: FloatArray,
+    inside: BoolArray,
+    points: FloatArray,
+    weights: FloatArray,
+    targets: Sequence[int | None],
+) -> FloatArray:
+    """(N,) gain of each robot's mixture of elements.
+
+    Parameters
+    ----------
+    selection : (E,) weights of elements, summing to one for each robot
+    inside : (K, N) which robots are in each group; points : (K, M, d, d) information of each group under ``selection``
+    weights : (K,) weight of each group in the bound
+    targets : for max-eigenvalue, the target each group is bounded by
+    """
+    gains = np.zeros(problem.n_robots)
+    if not len(weights):
+        return gains
+    support = np.flatnonzero((selection > SUPPORT) & (selection < 1 - SUPPORT))
+    owners = problem.robot[support]
+    before = _per_group(objective, points, targets)
+    for i in np.unique(owners).tolist():
+        own, rows = support[owners == i], np.flatnonzero(inside[:, i])
+        if not len(rows) or len(own) < 2:
+            continue
+        share = selection[own] / selection[own].sum()
+        information = objective.information[own]
+        change = information - np.tensordot(share, information, axes=1)
+        own_targets = [targets[k] for k in rows.tolist()]
+        after = _per_group(objective, points[rows, None] + change[None], own_targets)
+        gains[i] = weights[rows] @ (before[rows] - after @ share)
+    return gains
+
+
+def _per_group(objective: InformationObjective, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:
+    """Value up to a constant of (K, ..., M, d, d) points: (K, ...)."""
+    if not isinstance(objective, MaxEigenvalueObjective):
+        return objective.value(points)
+    criterion = objective.criterion(points)
+    return -np.stack([row[..., target] for row, target in zip(criterion, targets, strict=True)])
+
+
+def divide_elements(
+    objective: InformationObjective, choice: IntArray, selection: FloatArray, point: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """Divide a robot's elements between the two of largest weight, each with those nearest to it.
+
+    Distances are measured in the curvature of the criterion at the posterior information ``point`` (M, d, d).
+    """
+    order = np.argsort(-selection[choice], kind="stable")
+    first, second = choice[order[0]], choice[order[1]]
+    covariance = np.linalg.inv(point)
+    distances = []
+    for seed in (first, second):
+        scaled = covariance @ (objective.information[choice] - objective.information[seed])
+        distances.append(np.einsum("ejkl,ejlm,jmk,j->e", scaled, scaled, covariance, objective.weights))
+    near = distances[0] <= distances[1]
+    near[order[1]] = False
+    return choice[near], choice[~near]
