@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq, fmpq_mat
 
+from ratt_opt.certificates.exact_matrices import defect_of, definite, total, trace
 from ratt_opt.certificates.reading import array, document_hash, exact, fields, index, indices, links, load, packed
 from ratt_opt.certificates.verified import Verified
 from ratt_opt.errors import ProofError
@@ -27,6 +28,7 @@ PRECISIONS = (128, 1024)
 """Bits of the balls; a comparison undecided at the last is not proved."""
 PROBLEM = "objective dimension prior information weights owners links alpha_s alpha_c protected_robots protected_links"
 LARGEST_TEAM = 1000
+LARGEST_TABLE = 4_000_000
 
 
 def verify_certificate(path: str | Path, *, expected_problem: object = None) -> Verified:
@@ -72,36 +74,6 @@ def verify_certificate(path: str | Path, *, expected_problem: object = None) -> 
 def _need(holds: object, fault: str) -> None:
     if not holds:
         raise ProofError(fault)
-
-
-def _sum(terms: Iterable[Any]) -> Any:
-    return sum(terms, fmpq(0))
-
-
-def _trace(a: fmpq_mat) -> Any:
-    return _sum(a[i, i] for i in range(a.nrows()))
-
-
-def definite(matrix: fmpq_mat) -> int:
-    """Return 1 for a positive definite, 0 for a singular positive semidefinite matrix, -1 otherwise (LDL')."""
-    rows, strict = matrix.tolist(), 1
-    for k, first in enumerate(rows):
-        pivot = first[k]
-        if pivot < 0 or (pivot == 0 and any(first[k + 1 :])):
-            return -1
-        strict = strict if pivot else 0
-        for row in rows[k + 1 :] if pivot else ():
-            factor = row[k] / pivot
-            row[k:] = [a - factor * b for a, b in zip(row[k:], first[k:], strict=True)]
-    return strict
-
-
-def _defect(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
-    """Return ``delta >= 0`` with ``matrix + delta I`` positive semidefinite; 0 where the matrix is."""
-    if definite(matrix) >= 0:
-        return fmpq(0)
-    enough = max(abs(x) for x in matrix.entries()) * matrix.nrows()  # by Gershgorin
-    return next(x for k in range(64, -1, -1) if definite(matrix + identity * (x := enough / 2**k)) >= 0)
 
 
 def _walk(name: str, tree: object, root: Any, expand: Callable[[Any, Any], Iterable[Any]]) -> int:
@@ -156,12 +128,12 @@ class Checker:
         _need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
         self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
         self.inverse = [p.inv() for p in self.prior]
-        self.defect = [[_defect(x, self.identity) for x in row] for row in self.information]
+        self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
         self.prior_low, self.prior_high = self._check_prior_range(prior_range)
         # Stored information is positive semidefinite up to rounding: with its defect added, it is. So L(S) is
         # positive definite for all plans; twice the defects leave room for the lower proof.
         for j, inverse in enumerate(self.inverse):
-            worst = _sum(max(self.defect[e][j] for e in own) for own in self.choices)
+            worst = total(max(self.defect[e][j] for e in own) for own in self.choices)
             _need(definite(inverse - self.identity * (2 * worst)) > 0, f"problem: information of target {j} is not PSD")
 
     def _check_prior_range(self, given: object) -> tuple[fmpq, fmpq]:
@@ -223,16 +195,16 @@ class Checker:
         chosen, given = fields("leaf", node, "cuts weights")
         used = [cuts[index("leaf cut", k, len(cuts))] for k in array("leaf cuts", chosen)]
         weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
-        total = _sum(weights)
-        _need(total > 0 and all(w >= 0 for w in weights), "upper proof: a leaf's weights are negative or all zero")
+        mass = total(weights)
+        _need(mass > 0 and all(w >= 0 for w in weights), "upper proof: a leaf's weights are negative or all zero")
         wins = all(len(groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for cut in used)
         _need(wins, "upper proof: a leaf uses a group that is not known to win")
         pairs = list(zip(weights, used, strict=True))
-        bound = _sum(w * cut.constant for w, cut in pairs)
+        bound = total(w * cut.constant for w, cut in pairs)
         for i, elements in enumerate(left):
             active = [(w, cut.scores) for w, cut in pairs if i in cut.group]
-            bound += max(_sum(w * scores[e] for w, scores in active) for e in elements) if active else 0
-        return bound / total
+            bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
+        return bound / mass
 
     def _groups(self, attack: object) -> list[frozenset[int]]:
         """Check an attack against the budgets; return the seeing robots of its groups, by lowest robot."""
@@ -254,6 +226,7 @@ class Checker:
 
     def _cuts(self, groups: list[list[frozenset[int]]], points: object, cut_list: object) -> list[_Cut]:
         fenchel = [self._fenchel(point) for point in array("points", points)]
+        _need(len(fenchel) * len(self.owner) <= LARGEST_TABLE, "upper proof: too many points for the memory allowed")
         width = len(self.prior) * self.d**2
         columns = [x for row in self.information for matrix in row for x in matrix.entries()]
         rows = fmpq_mat(len(fenchel), width, [x for row, _ in fenchel for x in row])
@@ -279,11 +252,11 @@ class Checker:
             j, t = index("point target", target, m), exact("point t", size)
             v = fmpq_mat(d, 1, [exact("point v", x) for x in array("point v", vector, d)])
             _need(any(v.entries()), "upper proof: a direction v is zero")
-            weight = v * v.transpose() * (self.weights[j] * t * t / _trace(v.transpose() * v))
+            weight = v * v.transpose() * (self.weights[j] * t * t / trace(v.transpose() * v))
             blank = [fmpq(0)] * (d * d)
             return blank * j + weight.entries() + blank * (m - j - 1), self.prior_high - 2 * self.weights[
                 j
-            ] * t + _trace(weight * self.inverse[j])
+            ] * t + trace(weight * self.inverse[j])
         row: list[fmpq] = []
         constant: Any = fmpq(0)
         packs = array("point", point, m)
@@ -294,8 +267,8 @@ class Checker:
                 _need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
                 constant -= w * d + w * arb((y * inverse).det()).log()
             else:
-                constant += w * (_trace(prior) - 2 * _trace(y))
-            constant += _trace(weight * inverse)
+                constant += w * (trace(prior) - 2 * trace(y))
+            constant += trace(weight * inverse)
             row += weight.entries()
         return row, constant
 
@@ -309,7 +282,7 @@ class Checker:
         order, so the group is worth at least the criterion there.
         """
         kind = part.get("kind") if isinstance(part, dict) else None
-        defects = [_sum(self.defect[e][j] for e in self.plan) for j in range(len(self.prior))]
+        defects = [total(self.defect[e][j] for e in self.plan) for j in range(len(self.prior))]
         start = [inverse - self.identity * delta for inverse, delta in zip(self.inverse, defects, strict=True)]
         if kind == "forced_size":
             _, size, tree = fields("lower proof", part, "kind size tree")
@@ -404,9 +377,9 @@ class Checker:
         if lower <= 0 and all(definite(m - i) >= 0 for m, i in zip(posterior, self.inverse, strict=True)):
             return True  # at least the prior's information is worth at least phi(empty set) = 0
         if self.objective == "trace":
-            return bool(_sum(w * (_trace(p) - _trace(m.inv())) for w, p, m in items) >= lower)
+            return bool(total(w * (trace(p) - trace(m.inv())) for w, p, m in items) >= lower)
         if self.objective == "logdet":
-            return bool(_sum(w * arb((m * p).det()).log() for w, p, m in items) >= lower)
+            return bool(total(w * arb((m * p).det()).log() for w, p, m in items) >= lower)
         # lambda_max(L^{-1}) <= room / w for every target, decided as L - (w / room) I >= 0.
         room = self.prior_low - lower
         return bool(room > 0) and all(definite(m - self.identity * (w / room)) >= 0 for w, _, m in items)

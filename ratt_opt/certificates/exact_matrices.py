@@ -1,0 +1,52 @@
+"""Exact rational matrices for the verifier: definiteness without rounding."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq, fmpq_mat
+
+from ratt_opt.errors import ProofError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["defect_of", "definite", "total", "trace"]
+
+
+def total(terms: Iterable[Any]) -> Any:
+    """Sum that starts from the exact zero."""
+    return sum(terms, fmpq(0))
+
+
+def trace(a: fmpq_mat) -> Any:
+    """Sum of the diagonal."""
+    return total(a[i, i] for i in range(a.nrows()))
+
+
+def definite(matrix: fmpq_mat) -> int:
+    """Return 1 for a positive definite, 0 for a singular positive semidefinite matrix, -1 otherwise (LDL')."""
+    rows, strict = matrix.tolist(), 1
+    for k, first in enumerate(rows):
+        pivot = first[k]
+        if pivot < 0 or (pivot == 0 and any(first[k + 1 :])):
+            return -1
+        strict = strict if pivot else 0
+        for row in rows[k + 1 :] if pivot else ():
+            factor = row[k] / pivot
+            row[k:] = [a - factor * b for a, b in zip(row[k:], first[k:], strict=True)]
+    return strict
+
+
+def defect_of(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
+    """Return ``delta >= 0`` with ``matrix + delta I`` positive semidefinite; 0 where the matrix is.
+
+    Raises ProofError where the matrix is further from it than rounding explains.
+    """
+    if definite(matrix) >= 0:
+        return fmpq(0)
+    enough = max(abs(x) for x in matrix.entries()) * matrix.nrows()  # by Gershgorin
+    for k in range(64, 27, -1):
+        if definite(matrix + identity * (delta := enough / 2**k)) >= 0:
+            return delta
+    raise ProofError("problem: an information matrix is not positive semidefinite")

@@ -1,0 +1,169 @@
+"""Certificates prove what the exhaustive optimum and brute-force attacks say, and nothing more."""
+
+from __future__ import annotations
+
+import json
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import ratt_opt
+from ratt_opt import (
+    FileFormatError,
+    InputError,
+    MaxEigenvalueObjective,
+    Problem,
+    ProofError,
+    TableFunction,
+    TraceObjective,
+    exhaustive_optimum,
+    random_scenario,
+    solve_maxmin,
+    verify_certificate,
+)
+from ratt_opt.certificates.lower import forced_size
+from ratt_opt.certificates.verify import _is_forced
+from ratt_opt.certificates.write import certify, problem_document
+from tests.certificates.cases import certified
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, information_data, random_problem
+
+KINDS = list(OBJECTIVES)
+
+
+def closes(written, expected, scale):
+    assert written.verified.lower_proved
+    assert written.verified.upper >= expected - 1e-9 * scale
+    assert written.verified.lower <= expected + 1e-9 * scale
+    assert written.verified.upper - written.verified.lower <= 1e-8 * scale
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_certifies_the_optimum_without_the_solver(seed, tmp_path):
+    rng = np.random.default_rng([21, seed])
+    problem = random_problem(rng, int(rng.integers(1, 5)), kind=KINDS[seed % 3])
+    written, _ = certified(problem, tmp_path / "c.json")
+    value = exhaustive_optimum(problem).lower
+    closes(written, value, max(1.0, problem.objective(range(problem.objective.n))))
+    worst = brute_force_worst_case(problem, written.verified.elements)
+    assert written.verified.lower <= worst + 1e-9 * max(1.0, worst)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_certifies_what_the_solver_proves(seed, tmp_path):
+    rng = np.random.default_rng([22, seed])
+    problem = random_problem(rng, int(rng.integers(1, 6)), kind=KINDS[seed % 3], controls=4)
+    result = solve_maxmin(problem)
+    written = certify(problem, result, tmp_path / "c.json")
+    closes(written, exhaustive_optimum(problem).lower, max(1.0, problem.objective(range(problem.objective.n))))
+    assert 0 <= written.upper_raised <= 1e-10 * max(1.0, result.upper)
+    assert 0 <= written.lower_shaved <= 1e-10 * max(1.0, result.upper)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("max_nodes", [1, 3])
+def test_an_open_bracket_is_certified_as_open(kind, max_nodes, tmp_path):
+    problem = random_scenario(5, 4, alpha_s=1, alpha_c=4, seed=2).problem(kind)
+    result = solve_maxmin(problem, max_nodes=max_nodes)
+    verified = certify(problem, result, tmp_path / "c.json").verified
+    assert verified.lower <= result.lower
+    assert verified.upper >= result.upper
+    assert verified.lower <= exhaustive_optimum(problem).lower <= verified.upper * (1 + 1e-12)
+
+
+def test_the_paper_s_size(tmp_path):
+    problem = random_scenario(10, 15, alpha_s=6, alpha_c=22, seed=1).problem("trace")
+    written = certify(problem, solve_maxmin(problem), tmp_path / "c.json")
+    assert written.verified.lower_proved
+    assert written.verified.gap < 1e-9
+    assert written.size < 20e6
+    assert (written.verified.n_robots, written.verified.n_targets, written.verified.n_elements) == (10, 15, 120)
+
+
+def test_says_what_was_proved_and_what_was_not(tmp_path):
+    problem = random_problem(np.random.default_rng(3), 3, kind="logdet")
+    path = tmp_path / "c.json"
+    _, document = certified(problem, path)
+    text = "\n".join(verify_certificate(path).lines())
+    assert "ball arithmetic" in text
+    assert "NOT proved" not in text
+    document["lower"] = {"kind": "enumerated"}
+    path.write_text(json.dumps(document))
+    verified = verify_certificate(path)
+    assert not verified.lower_proved
+    assert "NOT proved: this plan keeps" in "\n".join(verified.lines())
+    assert verified.problem_hash in text
+
+
+def test_refuses_another_problem(tmp_path):
+    scenario = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=1)
+    path = tmp_path / "c.json"
+    certify(scenario.problem("trace"), solve_maxmin(scenario.problem("trace")), path)
+    verify_certificate(path, expected_problem=problem_document(scenario.problem("trace")))
+    with pytest.raises(ProofError, match="different problem"):
+        verify_certificate(path, expected_problem=problem_document(scenario.problem("logdet")))
+
+
+def test_refuses_what_cannot_be_certified(tmp_path):
+    table = Problem(TableFunction([0.0, 1.0]), np.array([0]), None, 0, 0)
+    result = solve_maxmin(table)
+    with pytest.raises(InputError, match="proof"):
+        certify(table, result, tmp_path / "c.json")
+    with pytest.raises(InputError, match="objective"):
+        problem_document(table)
+
+
+@pytest.mark.parametrize("n", range(1, 9))
+def test_forced_size_agrees_with_the_verifier_s_own_argument(n):
+    for alpha_s in range(n + 1):
+        for alpha_c in range(n * (n - 1) // 2 + 1):
+            size = forced_size(n, alpha_s, alpha_c)
+            assert _is_forced(n, alpha_s, alpha_c, size)
+            assert size == n or not _is_forced(n, alpha_s, alpha_c, size + 1)
+
+
+def test_large_teams_by_forced_size(tmp_path):
+    """Where one forced group decides, the attacker's side is proved at N = 12 as well."""
+    problem = random_scenario(12, 6, alpha_s=3, alpha_c=11, seed=4).problem("trace")
+    result = solve_maxmin(problem, max_nodes=3)
+    verified = certify(problem, result, tmp_path / "c.json").verified
+    assert verified.lower_proved
+    assert verified.lower_method == "forced_size"
+
+
+def test_rank_deficient_and_slightly_indefinite_information(tmp_path):
+    """Rounding makes one matrix in five indefinite by 1e-16: the defect is found and the proof still closes."""
+    rng = np.random.default_rng(5)
+    prior, information = information_data(rng, 6, 2, 3)
+    information -= 1e-13 * np.eye(3)  # a visible defect, where the matrices are singular
+    accepted = np.maximum(np.linalg.eigvalsh(information)[..., -1], 0) * 1e-9 > 1e-13
+    information[~accepted] = 0.0
+    for kind in (TraceObjective, MaxEigenvalueObjective):
+        problem = Problem(kind(prior, information), np.repeat(np.arange(3), 2), None, 1, 1)
+        written, _ = certified(problem, tmp_path / "c.json")
+        assert 1e-14 < written.verified.largest_defect < 1e-12
+        closes(written, exhaustive_optimum(problem).lower, 1.0)
+
+
+def test_exact_value_of_a_scalar_problem(tmp_path):
+    """One target of dimension 1: phi = p - 1 / (1/p + sum of information), in fractions."""
+    information = np.array([0.1, 0.7, 0.3, 0.2, 0.9]).reshape(5, 1, 1, 1)
+    problem = Problem(TraceObjective(np.array([[[0.3]]]), information), np.array([0, 0, 1, 1, 2]), None, 1, 1)
+    written, _ = certified(problem, tmp_path / "c.json")
+    prior = Fraction(0.3)
+
+    def value(*elements):
+        return prior - 1 / (1 / prior + sum(Fraction(float(information[e, 0, 0, 0])) for e in elements))
+
+    # One robot blinded, one link cut: a triangle less a link stays connected, so the two weakest see.
+    best = value(1, 2)
+    assert Fraction(written.verified.lower) <= best <= Fraction(written.verified.upper)
+    assert math.isclose(written.verified.lower, float(best), rel_tol=1e-14)
+
+
+def test_public_names():
+    assert ratt_opt.certify is certify
+    assert ratt_opt.verify_certificate is verify_certificate
+    assert issubclass(FileFormatError, InputError)

@@ -1,0 +1,186 @@
+"""A corrupted certificate is never believed: no mutant whose claim is false is accepted.
+
+Truth is decided without the verifier: the mutated problem is rebuilt, its optimum found by the exhaustive search
+and the plan's worst case by trying every raw attack.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt import FileFormatError, InputError, ProofError, exhaustive_optimum, verify_certificate
+from tests.certificates.cases import certified, full, problem_of
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_problem
+
+MARGIN = 1e-9
+"""A claim is called false only when it is by more than this, so that the oracle's rounding cannot matter."""
+
+
+def places(value, at=()):
+    """Every (path, value) of numbers, texts and lists in a document."""
+    if isinstance(value, dict):
+        for name in value:
+            yield from places(value[name], (*at, name))
+    elif isinstance(value, list):
+        yield at, value
+        for k, item in enumerate(value):
+            yield from places(item, (*at, k))
+    else:
+        yield at, value
+
+
+def variants(value, rng):
+    """Corruptions of one field."""
+    if isinstance(value, str):
+        return ["trace", "maxeig", "", 0]
+    if isinstance(value, list):
+        if not value:
+            return []
+        k = int(rng.integers(len(value)))
+        return [value[:k] + value[k + 1 :], [*value, value[k]], value[::-1], []]
+    if isinstance(value, int):
+        return [value + 1, value - 1, 0, -value - 1, value + 1000]
+    return [value * (1 + 1e-6), value * (1 - 1e-6), value * 2, value / 2, -value, 0.0, value + 1.0, 1e4]
+
+
+def changed(document, at, value):
+    mutant = copy.deepcopy(document)
+    holder = mutant
+    for step in at[:-1]:
+        holder = holder[step]
+    holder[at[-1]] = value
+    return mutant
+
+
+def too_indefinite(record):
+    """Whether some information matrix is much further from semidefinite than rounding explains."""
+    eigenvalues = [np.linalg.eigvalsh(full(p, record["dimension"])) for row in record["information"] for p in row]
+    return any(values[0] < -1e-7 * max(abs(values)) for values in eigenvalues)
+
+
+def is_false(document):
+    """Whether the claim is false by more than the margin; True also where the data state no valid problem."""
+    try:
+        problem = problem_of(document)
+        plan = problem.check_plan(document["plan"])
+    except InputError as error:
+        # The verifier covers matrices that are a little further from semidefinite than the library takes.
+        return "positive semidefinite" not in str(error) or too_indefinite(document["problem"])
+    except (ValueError, IndexError, KeyError, TypeError, nx.NetworkXError):
+        return True
+    claim = document["claim"]
+    scale = max(1e-3, abs(problem.objective(range(problem.objective.n))))
+    optimum, worst = exhaustive_optimum(problem).upper, brute_force_worst_case(problem, plan)
+    return claim["upper"] < optimum - MARGIN * scale or claim["lower"] > worst + MARGIN * scale
+
+
+def accepted(document, path):
+    path.write_text(json.dumps(document))
+    return believed(path)
+
+
+def believed(path):
+    try:
+        verified = verify_certificate(path)
+    except (ProofError, FileFormatError) as error:
+        if "\n" in str(error):
+            raise AssertionError("an error must be one line") from error
+        return False
+    return verified.lower_proved
+
+
+def bases(tmp_path, seeds):
+    for seed in seeds:
+        rng = np.random.default_rng([31, seed])
+        kind = list(OBJECTIVES)[seed % 3]
+        problem = random_problem(rng, 3, kind=kind, controls=2, complete=True if seed % 2 else None)
+        written, document = certified(problem, tmp_path / "base.json")
+        if written.verified.lower > 1e-3:  # where every robot can be blinded there is nothing to mutate
+            assert not is_false(document)
+            assert accepted(document, tmp_path / "base.json")
+            yield rng, document
+
+
+def sweep_data(tmp_path, seeds, share):
+    """Mutate problem, plan and claim; return how many mutants had a false claim."""
+    false = 0
+    for rng, document in bases(tmp_path, seeds):
+        part = {name: document[name] for name in ("problem", "plan", "claim")}
+        for at, value in list(places(part)):
+            for new in variants(value, rng):
+                mutant = changed(document, at, new)
+                if new == value or rng.random() > share or not is_false(mutant):
+                    continue
+                false += 1
+                assert not accepted(mutant, tmp_path / "mutant.json"), (at, value, new)
+    return false
+
+
+def sweep_proofs(tmp_path, seeds, share):
+    """Make the claim false by little, then mutate the proofs so that they might hide it."""
+    false = 0
+    for rng, document in bases(tmp_path, seeds):
+        claim = document["claim"]
+        for side, factor in (("upper", 1 - 1e-5), ("lower", 1 + 1e-5)):
+            lie = changed(document, ("claim", side), claim[side] * factor)
+            other = "lower" if side == "upper" else "upper"
+            lie["claim"][other] = 0.0 if other == "lower" else claim["upper"] * 2
+            assert is_false(lie)
+            part = {name: document[name] for name in ("prior_eigenvalue", side)}
+            for at, value in list(places(part)):
+                for new in variants(value, rng):
+                    if new != value and rng.random() <= share:
+                        false += 1
+                        assert not accepted(changed(lie, at, new), tmp_path / "mutant.json"), (at, value, new)
+    return false
+
+
+def test_no_false_claim_about_mutated_data_is_accepted(tmp_path):
+    assert sweep_data(tmp_path, range(24), 0.25) >= 400
+
+
+def test_no_mutated_proof_hides_a_false_claim(tmp_path):
+    assert sweep_proofs(tmp_path, range(24), 0.15) >= 1000
+
+
+@pytest.mark.slow
+def test_full_sweep(tmp_path):
+    assert sweep_data(tmp_path, range(100, 220), 1.0) >= 5000
+    assert sweep_proofs(tmp_path, range(100, 220), 1.0) >= 20000
+
+
+@pytest.mark.slow
+def test_pairs_of_mutations(tmp_path):
+    """Two fields at once: no false claim is accepted either."""
+    for rng, document in bases(tmp_path, range(300, 330)):
+        spots = list(places({name: document[name] for name in document if name not in ("format", "version")}))
+        for _ in range(300):
+            mutant = document
+            for k in rng.integers(len(spots), size=2):
+                options = variants(spots[k][1], rng)
+                if options:
+                    try:
+                        mutant = changed(mutant, spots[k][0], options[int(rng.integers(len(options)))])
+                    except (IndexError, KeyError, TypeError):  # the second spot is gone
+                        continue
+            if is_false(mutant):
+                assert not accepted(mutant, tmp_path / "mutant.json")
+
+
+def test_bytes_flipped_or_cut_never_crash(tmp_path):
+    path = tmp_path / "mutant.json"
+    for rng, document in bases(tmp_path, range(3)):
+        raw = json.dumps(document).encode()
+        for _ in range(150):
+            flipped = bytearray(raw)
+            for k in rng.integers(len(raw), size=int(rng.integers(1, 4))):
+                flipped[k] = int(rng.integers(256))
+            cut = raw[: int(rng.integers(len(raw)))] if rng.random() < 0.3 else bytes(flipped)
+            path.write_bytes(cut)
+            believed(path)
