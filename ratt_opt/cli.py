@@ -10,13 +10,14 @@ import json
 import re
 import sys
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from ratt_opt import __version__
-from ratt_opt.errors import InputError, ProofError
+from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -49,6 +50,9 @@ OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; 
 JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 TimeLimit = Annotated[float, typer.Option("--time-limit", help="Seconds for the search for the optimum.")]
 Gap = Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")]
+CertificateFlag = Annotated[
+    bool, typer.Option(help="Write certificate.json, and verify it before anything is printed.")
+]
 ObjectiveOption = Annotated[Objective, typer.Option("--objective", help="Criterion of the tracking quality.")]
 
 
@@ -60,7 +64,7 @@ def _version(version: Annotated[bool, typer.Option("--version", help="Print the 
 
 
 @app.command()
-def demo(out: OutFolder = Path("demo"), as_json: JsonFlag = False) -> None:
+def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> None:
     """Plan, attack and bound the paper's small scenario (4 robots, 4 targets), end to end."""
     from ratt_opt._files import output_directory
     from ratt_opt.scenario.files import save_scenario
@@ -68,7 +72,7 @@ def demo(out: OutFolder = Path("demo"), as_json: JsonFlag = False) -> None:
 
     scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=DEMO_SEED)
     save_scenario(scenario, output_directory(out) / "scenario.json")
-    _bound(scenario, out, "trace", 60.0, 1e-9, as_json=as_json)
+    _bound(scenario, out, "trace", 60.0, 1e-9, certificate=certificate, as_json=as_json)
 
 
 @app.command()
@@ -115,12 +119,13 @@ def bound(
     objective: ObjectiveOption = "trace",
     time_limit: TimeLimit = 60.0,
     gap: Gap = 1e-9,
+    certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
 ) -> None:
-    """Plan, find the worst attack, bracket the best possible plan; write report.json, plan.png, plan.svg."""
+    """Plan, find the worst attack, bracket the best plan; write report.json, plan.png, plan.svg, certificate.json."""
     from ratt_opt.scenario.files import load_input
 
-    _bound(load_input(file), out, objective, time_limit, gap, as_json=as_json)
+    _bound(load_input(file), out, objective, time_limit, gap, certificate=certificate, as_json=as_json)
 
 
 @app.command()
@@ -148,6 +153,29 @@ def attack(
         print(json.dumps(attack_document(objective, elements, results), indent=1, allow_nan=False))
     else:
         _console().print(attack_table(results))
+
+
+@app.command()
+def verify(
+    file: Annotated[Path, typer.Argument(help="Certificate file.", show_default=False)],
+    problem: Annotated[
+        Path | None, typer.Option("--problem", help="Scenario or information file the certificate must be about.")
+    ] = None,
+    objective: Annotated[Objective, typer.Option("--objective", help="Criterion, with --problem.")] = "trace",
+    as_json: JsonFlag = False,
+) -> None:
+    """Check a certificate without trusting what wrote it; exit 0 and say what it proves, or 1 and the first fault."""
+    from ratt_opt.certificates.verify import verify_certificate
+
+    expected = None if problem is None else _problem_record(problem, objective)
+    try:
+        verified = verify_certificate(file, expected_problem=expected)
+    except FileFormatError as error:
+        raise ProofError(str(error)) from None
+    if as_json:
+        print(json.dumps(asdict(verified), indent=1, allow_nan=False))
+    else:
+        print("\n".join(verified.lines()))
 
 
 @app.command()
@@ -197,19 +225,38 @@ def _fail(text: str, code: int) -> int:
     return code
 
 
+def _problem_record(file: Path, objective: str) -> dict[str, Any]:
+    from ratt_opt.certificates.write import problem_document
+    from ratt_opt.scenario.files import load_input
+
+    return problem_document(load_input(file).problem(objective))
+
+
 def _bound(
-    source: Scenario | InformationInput, out: Path, objective: str, time_limit: float, gap: float, *, as_json: bool
+    source: Scenario | InformationInput,
+    out: Path,
+    objective: str,
+    time_limit: float,
+    gap: float,
+    *,
+    certificate: bool,
+    as_json: bool,
 ) -> None:
     from ratt_opt._files import output_directory
     from ratt_opt.main_job import bound as main_job
     from ratt_opt.report.document import report_document
     from ratt_opt.report.write import write_report
 
-    output_directory(out)
+    proof = output_directory(out) / "certificate.json"
+    path = proof if certificate else None
     with _progress() as tell:
-        report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, progress=tell)
+        report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, certificate=path, progress=tell)
         tell("report and figure")
         files = write_report(report, out, source)
+    if isinstance(report.certificate, str):
+        proof.unlink(missing_ok=True)  # an earlier run's: it is not about this report
+    else:
+        files.append(report.certificate.path)
     if as_json:
         print(json.dumps(report_document(report), indent=1, allow_nan=False))
         return

@@ -11,6 +11,7 @@ import numpy as np
 
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.guarantees import all_guarantees
+from ratt_opt.certificates.write import certify, why_not_certifiable
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.scenario.threat_fields import OBJECTIVES
@@ -23,10 +24,12 @@ from ratt_opt.solvers.ratt import equivalent_sensing_attacks, ratt
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
+    from ratt_opt.certificates.write import Certificate
     from ratt_opt.setfunctions.curvature import Curvature
     from ratt_opt.solvers.result import MaxMinResult
 
@@ -71,6 +74,7 @@ class BoundReport:
     its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
     ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
     ``curvature`` is given for log-det (submodular), ``total_curvature`` for the other criteria.
+    ``certificate`` : the verified proof file of ``optimum``, or why there is none.
     ``seconds`` : wall time of each step.
     """
 
@@ -85,6 +89,7 @@ class BoundReport:
     curvature: Curvature | None
     total_curvature: Curvature | None
     guarantees: Mapping[str, Guarantee]
+    certificate: Certificate | str
     seconds: Mapping[str, float]
 
     @property
@@ -123,9 +128,10 @@ def bound(
     objective: str | None = None,
     gap: float = 1e-9,
     time_limit: float | None = 60.0,
+    certificate: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> BoundReport:
-    """Plan, find the worst attack, bracket the optimum and list the guarantees of one scenario.
+    """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
     Parameters
     ----------
@@ -133,11 +139,13 @@ def bound(
     objective : ``"trace"`` (the default), ``"logdet"`` or ``"maxeig"``; not with a problem, which has its own
     gap : relative gap at which the search for the optimum stops
     time_limit : seconds for that search, and for each attack; ``None`` for no limit
+    certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
 
     Raises
     ------
-    InputError : an argument breaks its rule.
+    InputError : an argument breaks its rule, or the certificate cannot be written.
+    ProofError : the verifier finds a fault in the search's own proof.
     """
     check_limits(gap, time_limit)
     problem, name = _problem_of(scenario_or_problem, objective)
@@ -153,6 +161,8 @@ def bound(
         k, c = _curvatures(problem)
         alpha_cs = equivalent_sensing_attacks(problem)
         guarantees = all_guarantees(problem, alpha_cs, k=k, c=c)
+    with clock("certificate"):
+        proof = _certificate(problem, optimum, certificate)
     return BoundReport(
         problem=problem,
         objective=name,
@@ -165,6 +175,7 @@ def bound(
         curvature=k,
         total_curvature=c,
         guarantees=guarantees,
+        certificate=proof,
         seconds=clock.seconds,
     )
 
@@ -208,6 +219,12 @@ def _baselines(problem: Problem) -> Iterator[tuple[str, Plan]]:
 
 def _assess_optimum(problem: Problem, optimum: MaxMinResult, time_limit: float | None) -> PlanAssessment:
     return assess(problem, "maxmin", Plan(elements=optimum.elements, evaluations=optimum.evaluations), time_limit)
+
+
+def _certificate(problem: Problem, optimum: MaxMinResult, path: str | Path | None) -> Certificate | str:
+    if path is None:
+        return "not asked for"
+    return why_not_certifiable(problem, optimum) or certify(problem, optimum, path)
 
 
 def _targets(problem: Problem) -> int | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ratt_opt import random_scenario, save_scenario, worst_case_attack
+from ratt_opt.certificates import write
 from ratt_opt.cli import run
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 REPORT_FIELDS = {
     "format", "version", "n_robots", "n_targets", "objective", "alpha_s", "alpha_c", "n_max", "alpha_cs", "ratt",
-    "optimum", "certified_ratio", "curvature", "total_curvature", "guarantees", "baselines",
+    "optimum", "certificate", "certified_ratio", "curvature", "total_curvature", "guarantees", "baselines",
 }  # fmt: skip
 
 
@@ -44,7 +45,8 @@ def _refused(arguments: list[str], capsys: pytest.CaptureFixture[str], text: str
 
 def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["demo", "--out", str(tmp_path / "demo")]) == 0
-    assert sorted(os.listdir(tmp_path / "demo")) == ["plan.png", "plan.svg", "report.json", "scenario.json"]
+    written = ["certificate.json", "plan.png", "plan.svg", "report.json", "scenario.json"]
+    assert sorted(os.listdir(tmp_path / "demo")) == written
     report = _strict((tmp_path / "demo" / "report.json").read_text())
     assert report.keys() >= REPORT_FIELDS
     assert (report["n_robots"], report["n_targets"], report["alpha_s"], report["alpha_c"]) == (4, 4, 1, 3)
@@ -83,6 +85,8 @@ def test_blinding_everyone_is_worth_nothing_and_ratio_one(tmp_path: Path) -> Non
     report = _strict((tmp_path / "o" / "report.json").read_text())
     assert report["optimum"]["upper"] == report["ratt"]["worst_case"]["lower"] == 0
     assert report["certified_ratio"] == 1.0
+    assert report["certificate"]["lower_proved"]
+    assert run(["verify", str(tmp_path / "o" / "certificate.json")]) == 0
 
 
 def test_a_model_free_file_is_bounded(tmp_path: Path) -> None:
@@ -95,6 +99,94 @@ def test_a_model_free_file_is_bounded(tmp_path: Path) -> None:
     assert run(["bound", str(path), "--out", str(tmp_path / "o")]) == 0
     report = _strict((tmp_path / "o" / "report.json").read_text())
     assert report["optimum"]["upper"] == pytest.approx(2 - 1 / (0.5 + 0.5))
+
+
+@pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])
+def test_a_bound_comes_with_a_certificate_that_verifies(
+    scenario_file: Path, tmp_path: Path, objective: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, about = tmp_path / "out", ["--problem", str(scenario_file), "--objective", objective]
+    assert run(["bound", str(scenario_file), "--out", str(out), "--objective", objective]) == 0
+    printed = capsys.readouterr().out
+    assert "verified, both ends proved in" in printed
+    assert "certificate.json" in printed
+    assert run(["verify", str(out / "certificate.json"), *about]) == 0
+    text = capsys.readouterr().out
+    assert "no plan keeps more than" in text
+    assert "not covered" in text
+    assert run(["verify", str(out / "certificate.json"), "--json"]) == 0
+    found = _strict(capsys.readouterr().out)
+    report = _strict((out / "report.json").read_text())
+    assert report["certificate"]["claim"] == {"lower": found["lower"], "upper": found["upper"]}
+    assert report["certificate"]["problem_hash"] == found["problem_hash"]
+    assert found["lower"] <= report["optimum"]["lower"] <= report["optimum"]["upper"] <= found["upper"]
+    assert found["elements"] == report["optimum"]["elements"]
+
+
+def test_no_certificate_is_left_from_an_earlier_run(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["bound", str(scenario_file), "--out", str(tmp_path / "o")]
+    assert run(command) == 0
+    assert run([*command, "--no-certificate"]) == 0
+    assert not (tmp_path / "o" / "certificate.json").exists()
+    assert "none: not asked for" in capsys.readouterr().out
+    assert _strict((tmp_path / "o" / "report.json").read_text())["certificate"]["verified"] is False
+
+
+def test_a_bound_whose_proof_has_a_fault_fails(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A solver that claims too much: its proof is refused, nothing is printed as a result, no file is left."""
+    real = write.upper_record
+
+    def without_last_leaf(*arguments: Any) -> Any:
+        record = real(*arguments)
+        record["tree"].pop()
+        return record
+
+    monkeypatch.setattr(write, "upper_record", without_last_leaf)
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 1
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "error: upper proof: 1 cases have no leaf" in shown.err
+    assert os.listdir(tmp_path / "o") == []
+
+
+@pytest.mark.parametrize(
+    ("edit", "text"),
+    [
+        (lambda text: text[:-30], "complete JSON"),
+        (lambda text: text.replace('"version":1', '"version":2'), "version must be 1"),
+        (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper"),
+        (lambda text: text[:0], "complete JSON"),
+    ],
+)
+def test_verify_names_the_first_fault_in_one_line(
+    edit: Any, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "o" / "certificate.json"
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
+    path.write_text(edit(path.read_text()))
+    capsys.readouterr()
+    for arguments in (["verify", str(path)], ["verify", str(path), "--json"]):
+        assert run(arguments) == 1
+        shown = capsys.readouterr()
+        assert shown.out == ""
+        assert shown.err.startswith("error: ")
+        assert text in shown.err
+        assert shown.err.count("\n") == 1
+
+
+def test_verify_refuses_a_missing_file_and_another_problem(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["verify", str(tmp_path / "none.json")]) == 1
+    assert "none.json" in capsys.readouterr().err
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
+    certificate = str(tmp_path / "o" / "certificate.json")
+    assert run(["verify", certificate, "--problem", str(scenario_file), "--objective", "logdet"]) == 1
+    assert "different problem" in capsys.readouterr().err
 
 
 def test_attack_evaluates_the_users_plan(
@@ -125,7 +217,7 @@ def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
-    for command in ("demo", "new", "bound", "attack", "schema"):
+    for command in ("demo", "new", "bound", "attack", "verify", "schema"):
         assert run([command, "--help"]) == 0
         assert "--help" in capsys.readouterr().out
     assert run(["--version"]) == 0

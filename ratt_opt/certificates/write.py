@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["Certificate", "certify", "pack", "problem_document", "write_certificate"]
+__all__ = ["Certificate", "certify", "pack", "problem_document", "why_not_certifiable", "write_certificate"]
 
 NAMES = {TraceObjective: "trace", LogDetObjective: "logdet", MaxEigenvalueObjective: "maxeig"}
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
@@ -82,8 +82,17 @@ def problem_document(problem: Problem) -> dict[str, Any]:
     }
 
 
+def why_not_certifiable(problem: Problem, result: MaxMinResult) -> str | None:
+    """Return why ``certify`` would refuse this result, or ``None`` where it would not."""
+    if type(problem.objective) not in NAMES:
+        return "only the trace, log-det and max-eigenvalue criteria have certificates"
+    return "the search stopped before it proved a bound" if result.proof is None else None
+
+
 def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:
-    """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver, and verify it.
+    """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver.
+
+    The file is verified under a temporary name first; only then is it renamed to ``path``.
 
     The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
     (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the node limit, the
@@ -140,10 +149,17 @@ def write_certificate(
         "lower": lower_part,
     }
     text = "{" + ",\n".join(f"{json.dumps(name)}:{_compact(value)}" for name, value in document.items()) + "}\n"
-    target = write_atomically(path, lambda file: file.write_text(text, encoding="utf-8"))
+    found: list[Verified] = []
+
+    def write(file: Path) -> None:
+        """A file that does not stand before the verifier never gets the certificate's name."""
+        file.write_text(text, encoding="utf-8")
+        found.append(verify_certificate(file, expected_problem=record))
+
+    target = write_atomically(path, write)
     return Certificate(
         path=target,
-        verified=verify_certificate(target, expected_problem=record),
+        verified=found[0],
         lower_shaved=lower - low,
         upper_raised=high - upper,
         size=len(text),

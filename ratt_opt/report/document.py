@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.certificates.write import Certificate
     from ratt_opt.main_job import BoundReport, PlanAssessment
     from ratt_opt.setfunctions.curvature import Curvature
 
@@ -42,6 +43,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
             "stop": report.optimum.stop.value,
             **_assessment(report.best),
         },
+        "certificate": _certificate(report.certificate),
         "certified_ratio": _number(report.certified_ratio),
         "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
         "baselines": {plan.name: {"worst_case": _worst_case(plan.worst_case)} for plan in report.baselines},
@@ -80,6 +82,23 @@ def _worst_case(result: AttackResult) -> dict[str, Any]:
         "sensing": sorted(result.attack.sensing),
         "links": [list(link) for link in sorted(result.attack.links)],
         "stop": result.stop.value,
+    }
+
+
+def _certificate(proof: Certificate | str) -> dict[str, Any]:
+    """The verifier's verdict, or why there is none."""
+    if isinstance(proof, str):
+        return {"file": None, "verified": False, "reason": proof}
+    found = proof.verified
+    return {
+        "file": proof.path.name,
+        "verified": True,
+        "claim": {"lower": found.lower, "upper": found.upper},
+        "lower_proved": found.lower_proved,
+        "lower_method": found.lower_method,
+        "arithmetic": found.arithmetic,
+        "problem_hash": found.problem_hash,
+        "bytes": proof.size,
     }
 
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.certificates.write import Certificate
     from ratt_opt.main_job import BoundReport
     from ratt_opt.problem import Attack
     from ratt_opt.setfunctions.curvature import Curvature
@@ -90,6 +91,7 @@ def _bracket(report: BoundReport) -> Table:
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
     table.add_row("search stopped because", optimum.stop.value)
+    table.add_row("certificate", _verdict(report.certificate))
     table.add_row("certified ratio of RATT", share_text(report.certified_ratio))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
     table.add_row("smallest largest group, n_max", str(report.n_max))
@@ -98,6 +100,14 @@ def _bracket(report: BoundReport) -> Table:
         if bracket is not None:
             table.add_row(f"{name} over {bracket.domain} sets", _curvature(bracket))
     return table
+
+
+def _verdict(proof: Certificate | str) -> str:
+    if isinstance(proof, str):
+        return f"none: {proof}"
+    found = proof.verified
+    ends = "both ends proved" if found.lower_proved else "upper end proved, lower end only enumerated in floating point"
+    return f"verified, {ends} in {found.arithmetic}: {bracket_text(found.lower, found.upper)}"
 
 
 def _guarantees(report: BoundReport) -> Table:
