@@ -14,7 +14,16 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["BoolArray", "FloatArray", "IntArray", "check_finite", "check_integer", "check_subset", "readonly"]
+__all__ = [
+    "BoolArray",
+    "FloatArray",
+    "IntArray",
+    "check_finite",
+    "check_integer",
+    "check_number",
+    "check_subset",
+    "readonly",
+]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -38,6 +47,18 @@ def check_integer(argument: str, value: object, *, low: int, high: int | None = 
     except TypeError:
         raise InputError(argument, rule, value) from None
     if number < low or (high is not None and number > high):
+        raise InputError(argument, rule, value)
+    return number
+
+
+def check_number(argument: str, value: object, *, low: float = -np.inf) -> float:
+    """Return ``value`` as a finite ``float`` that is at least ``low``."""
+    rule = "must be a finite number" if low == -np.inf else f"must be a finite number >= {low:g}"
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(argument, rule, value) from None
+    if not low <= number < np.inf:
         raise InputError(argument, rule, value)
     return number
 

@@ -13,7 +13,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["SetFunction", "check_table_size"]
+__all__ = ["SetFunction", "check_table_size", "finite_values"]
 
 LARGEST_TABLE = 26
 """Largest ground set that :meth:`SetFunction.table` accepts (512 MiB of float64)."""
@@ -24,6 +24,16 @@ def check_table_size(n: int) -> None:
     if n > LARGEST_TABLE:
         need = f"{2.0 ** (n - 27):.3g} GiB" if n >= 27 else f"{2 ** (n - 17)} MiB"
         raise InputError("n", f"must be at most {LARGEST_TABLE} for a full table (2**n float64 values, here {need})", n)
+
+
+def finite_values(values: FloatArray) -> FloatArray:
+    """Return values of a set function, refused where one is NaN or infinite."""
+    with np.errstate(all="ignore"):
+        total = float(values.sum())  # NaN and infinities survive a sum; a sum of finite values may overflow
+    if not np.isfinite(total) and not np.isfinite(values).all():
+        bad = values[~np.isfinite(values)][0]
+        raise InputError("f", "must have finite values", f"{bad} among the {values.size} asked for")
+    return values
 
 
 class SetFunction(ABC):

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._validation import check_number
+from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample
 
@@ -40,7 +42,8 @@ TOLERANCE = 1e-9
 
 def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> Violation | None:
     """Return the empty set as a witness if its value is not 0 (``tolerance`` is absolute: there is no scale to it)."""
-    value = f([])
+    tolerance = check_number("tolerance", tolerance, low=0)
+    value = float(finite_values(np.array([f([])]))[0])
     if abs(value) <= tolerance:
         return None
     return Violation(rule="normalised", a=(), b=(), slack=-abs(value), tolerance=tolerance)
@@ -53,9 +56,10 @@ def find_negativity(
 
     Parameters are those of :func:`find_monotonicity_violation`.
     """
+    tolerance = check_number("tolerance", tolerance, low=0)
     if f.n > LARGEST_EXACT:
         return sample(f, "non-negative", tolerance, trials=trials, seed=seed)
-    values = f.table()
+    values = finite_values(f.table())
     return _witness(f, "non-negative", (int(values.argmin()), 0), values, tolerance)
 
 
@@ -78,13 +82,14 @@ def find_monotonicity_violation(
     Source: ratt.tex, Section III.
     """
     rule = "non-decreasing"
+    tolerance = check_number("tolerance", tolerance, low=0)
     if f.n > LARGEST_EXACT:
         if isinstance(f, InformationObjective):
             return None
         return sample(f, rule, tolerance, trials=trials, seed=seed)
     from ratt_opt.setfunctions.lattice import marginal_ends
 
-    values = f.table()
+    values = finite_values(f.table())
     if f.n == 0:
         return None
     x = int(marginal_ends(values, f.n)[0].argmin())
@@ -128,8 +133,9 @@ def find_subadditivity_violation(
     :func:`find_monotonicity_violation`.
     """
     rule = "subadditive"
+    tolerance = check_number("tolerance", tolerance, low=0)
     if f.n <= LARGEST_EXACT:
-        values = f.table()
+        values = finite_values(f.table())
         limit = 0.0  # theory needs the premises exactly
         if values.min() >= 0 and _second_order(f, "submodular", limit, trials, seed) is None:
             return None
@@ -143,13 +149,14 @@ def find_subadditivity_violation(
 
 
 def _second_order(f: SetFunction, rule: str, tolerance: float, trials: int, seed: int) -> Violation | NotFound | None:
+    tolerance = check_number("tolerance", tolerance, low=0)
     if f.n > LARGEST_EXACT:
         return sample(f, rule, tolerance, trials=trials, seed=seed)
     if f.n < 2:
         return None
     from ratt_opt.setfunctions.lattice import second_differences
 
-    values = f.table()
+    values = finite_values(f.table())
     slack = second_differences(values, f.n)
     if rule == "modular":
         slack = np.minimum(slack, second_differences(-values, f.n))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
+from ratt_opt.setfunctions.base import finite_values
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -75,14 +76,16 @@ class NotFound:
 
 def slack_of(f: SetFunction, rule: str, a: BoolArray, b: BoolArray) -> FloatArray:
     """(K,) slack of one inequality for each pair of rows of ``a`` and ``b`` (K, n)."""
+    first = finite_values(f.evaluate(a))
     if rule == "non-negative":
-        return f.evaluate(a)
+        return first
+    union = finite_values(f.evaluate(a | b))
     if rule == "non-decreasing":
-        return f.evaluate(a | b) - f.evaluate(a)
-    both = f.evaluate(a) + f.evaluate(b) - f.evaluate(a | b)
+        return np.asarray(union - first)
+    both = first + finite_values(f.evaluate(b)) - union
     if rule == "subadditive":
         return np.asarray(both)
-    slack = both - f.evaluate(a & b)
+    slack = both - finite_values(f.evaluate(a & b))
     return np.asarray(-np.abs(slack) if rule == "modular" else slack)
 
 
@@ -124,7 +127,6 @@ def _random_pairs(rng: np.random.Generator, rule: str, n: int, count: int) -> tu
     base = rng.random((count, n)) < density
     if rule == "subadditive":
         return base, rng.random((count, n)) < rng.random((count, 1))
-    a, b = base.copy(), base.copy()
     rows = np.arange(count)
     x, y = rng.integers(0, n, (2, count))
     base[rows, x] = base[rows, y] = False

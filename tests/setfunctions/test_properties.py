@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import SetFunction
 from ratt_opt.setfunctions.information import LogDetObjective, TraceObjective
 from ratt_opt.setfunctions.properties import (
     NotFound,
@@ -148,3 +150,42 @@ def test_one_bad_set_in_a_large_table_is_found():
     f = TableFunction(values)
     assert find_monotonicity_violation(f).slack < -0.3
     assert find_submodularity_violation(f).slack < -0.3
+
+
+class Broken(SetFunction):
+    """Not a number on the sets with element 0."""
+
+    def __init__(self, n, value):
+        self.size, self.value = n, value
+
+    @property
+    def n(self):
+        return self.size
+
+    def evaluate(self, membership):
+        return np.where(membership[:, 0], self.value, membership.sum(axis=1))
+
+
+@pytest.mark.parametrize("n", [5, 30])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_values_that_are_no_numbers_are_refused(n, value):
+    for check in CHECKS.values():
+        with pytest.raises(InputError, match="f must have finite values"):
+            check(Broken(n, value))
+
+
+def test_bad_tolerances_and_trials_are_refused():
+    f = TableFunction([0.0, 1.0])
+    for check in (*CHECKS.values(), find_normalisation_violation):
+        for tolerance in (-1.0, np.nan, "small"):
+            with pytest.raises(InputError, match="tolerance must be a finite number >= 0"):
+                check(f, tolerance=tolerance)
+    with pytest.raises(InputError, match="trials"):
+        find_negativity(Broken(30, 0.0), trials=0)
+
+
+def test_tiny_ground_sets():
+    for values in ([2.0], [0.0, 3.0]):
+        for check in CHECKS.values():
+            assert check(TableFunction(values)) is None
+    assert find_monotonicity_violation(TableFunction([1.0, 0.0])).slack == -1.0
