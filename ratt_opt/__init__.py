@@ -149,6 +149,18 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.properties import (
         find_submodularity_violation as find_submodularity_violation,
     )
+    from ratt_opt.setfunctions.ratios import (
+        GeneralisedCurvature as GeneralisedCurvature,
+    )
+    from ratt_opt.setfunctions.ratios import (
+        SubmodularityRatio as SubmodularityRatio,
+    )
+    from ratt_opt.setfunctions.ratios import (
+        generalised_curvature as generalised_curvature,
+    )
+    from ratt_opt.setfunctions.ratios import (
+        submodularity_ratio as submodularity_ratio,
+    )
     from ratt_opt.setfunctions.reference import (
         ConcaveOfModular as ConcaveOfModular,
     )
@@ -211,6 +223,7 @@ _HOME = {
     "Cut": "setfunctions.reference",
     "FacilityLocation": "setfunctions.reference",
     "FileFormatError": "errors",
+    "GeneralisedCurvature": "setfunctions.ratios",
     "Guarantee": "bounds.guarantees",
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
@@ -235,6 +248,7 @@ _HOME = {
     "Sensor": "scenario.sensor",
     "SetFunction": "setfunctions.base",
     "Stop": "stopping",
+    "SubmodularityRatio": "setfunctions.ratios",
     "TableFunction": "setfunctions.table",
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
@@ -261,6 +275,7 @@ _HOME = {
     "find_subadditivity_violation": "setfunctions.properties",
     "find_submodularity_violation": "setfunctions.properties",
     "from_mrclam": "scenario.mrclam",
+    "generalised_curvature": "setfunctions.ratios",
     "greedy": "solvers.baselines",
     "greedy_attack": "attackers.greedy",
     "load_input": "scenario.files",
@@ -287,6 +302,7 @@ _HOME = {
     "simulate_tracking": "scenario.simulation",
     "smallest_largest_group": "graph.largest_group",
     "solve_maxmin": "solvers.maxmin",
+    "submodularity_ratio": "setfunctions.ratios",
     "theorem1_bound": "bounds.guarantees",
     "total_curvature": "setfunctions.curvature",
     "verify_certificate": "certificates.verify",

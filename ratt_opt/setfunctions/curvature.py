@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["Curvature", "curvature", "total_curvature"]
+__all__ = ["Curvature", "check_monotone", "curvature", "total_curvature"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +99,7 @@ def curvature(f: SetFunction, owners: ArrayLike | None = None, *, plan: ArrayLik
 def _marginals(domain: Domain) -> tuple[Marginals, str]:
     if domain.count <= LARGEST_ENUMERATION:
         found = enumerate_marginals(domain)
-        _check_monotone(domain, found)
+        check_monotone(domain, found)
         return found, "every context enumerated"
     if isinstance(domain.restricted, InformationObjective):
         return bracket_marginals(domain.restricted, domain.owners), "convex minorants and attained contexts"
@@ -107,7 +107,10 @@ def _marginals(domain: Domain) -> tuple[Marginals, str]:
     raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
 
 
-def _check_monotone(domain: Domain, found: Marginals) -> None:
+def check_monotone(domain: Domain, found: Marginals) -> None:
+    """Refuse a function with a negative marginal (beyond rounding), showing it."""
+    if len(found.smallest_lower) == 0:
+        return
     scale = max(float(np.abs(found.largest_upper).max(initial=0.0)), 1e-300)
     worst = int(found.smallest_lower.argmin())
     if found.smallest_lower[worst] < -1e-9 * scale:

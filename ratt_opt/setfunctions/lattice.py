@@ -10,7 +10,7 @@ from typing import Any
 import numba
 import numpy as np
 
-__all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_differences"]
+__all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_differences", "smallest_gain_ratio"]
 
 # Values are finite (checked on entry), so comparisons may assume it; no operation is reordered.
 _FINITE = {"nnan", "ninf", "nsz"}
@@ -80,3 +80,40 @@ def overlapping_slack(values: Any) -> Any:
             if slack < worst:
                 worst, first, second = slack, a, b
     return worst, first, second
+
+
+@numba.njit(cache=True)
+def smallest_gain_ratio(values: Any, sizes: Any) -> Any:
+    """Smallest ``(sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S))``, ``S`` in ``T``, where the gain is not 0.
+
+    ``values`` : flat, in C order, one axis of ``sizes[a]`` options an owner, option 0 being none of its elements.
+    Returns the ratio (infinite if no gain is positive), the position of ``T``, and ``S`` as a mask over the axes
+    where ``T`` takes part, the last axis first. Looks at ``prod(2 * sizes - 1)`` pairs.
+    """
+    axes = len(sizes)
+    best, best_top, best_part = np.inf, 0, 0
+    position = np.empty(1 << axes, np.int64)
+    for top in range(len(values)):
+        rest, stride, count = top, 1, 0
+        position[0] = 0
+        for a in range(axes - 1, -1, -1):
+            pick = rest % sizes[a]
+            rest //= sizes[a]
+            if pick > 0:
+                for s in range(1 << count):
+                    position[s + (1 << count)] = position[s] + pick * stride
+                count += 1
+            stride *= sizes[a]
+        full = 1 << count
+        for part in range(full - 1):
+            base = values[position[part]]
+            gain = values[top] - base
+            if gain <= 0:
+                continue
+            total = 0.0
+            for i in range(count):
+                if not part >> i & 1:
+                    total += values[position[part | 1 << i]] - base
+            if total < best * gain:
+                best, best_top, best_part = total / gain, top, part
+    return best, best_top, best_part

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.base import SetFunction
     from ratt_opt.setfunctions.contexts import Domain
 
-__all__ = ["Marginals", "domain_values", "enumerate_marginals"]
+__all__ = ["Marginals", "domain_values", "enumerate_marginals", "groups_of"]
 
 Context = tuple[int, ...]
 
@@ -34,10 +35,16 @@ class Marginals:
     largest_context: tuple[Context, ...]
 
 
-def enumerate_marginals(domain: Domain) -> Marginals:
-    """Exact smallest and largest marginals, O(n) passes over the domain."""
-    groups = [np.flatnonzero(domain.owners == i) for i in range(int(domain.owners.max(initial=-1)) + 1)]
-    values = domain_values(domain.restricted, groups)
+def groups_of(owners: IntArray) -> list[IntArray]:
+    """Elements of each owner."""
+    return [np.flatnonzero(owners == i) for i in range(int(owners.max(initial=-1)) + 1)]
+
+
+def enumerate_marginals(domain: Domain, values: FloatArray | None = None) -> Marginals:
+    """Exact smallest and largest marginals, O(n) passes over the domain (``values`` : its table, if known)."""
+    groups = groups_of(domain.owners)
+    if values is None:
+        values = finite_values(domain_values(domain.restricted, groups))
     n = domain.restricted.n
     ends = np.empty((2, n))
     contexts: tuple[list[Context], list[Context]] = ([()] * n, [()] * n)

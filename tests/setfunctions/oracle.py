@@ -71,3 +71,32 @@ def curvature(values, owners=None):
         if values[1 << x] - values[0] > 0
     ]
     return 1 - min(ratios) if ratios else 0.0
+
+
+def submodularity_ratio(values, owners=None):
+    """Bian et al. 2017, Definition 1, over all disjoint pairs whose union is allowed."""
+    n = len(values).bit_length() - 1
+    allowed = allowed_sets(n, owners)
+    best = 1.0
+    for top in allowed:
+        for s in allowed:
+            gain = values[top] - values[s]
+            if s & top == s and gain > 0:
+                total = sum(values[s | 1 << w] - values[s] for w in range(n) if (top & ~s) >> w & 1)
+                best = min(best, total / gain)
+    return best
+
+
+def generalised_curvature(values, owners=None):
+    """Bian et al. 2017, Definition 2, over all nested pairs that stay allowed with the element."""
+    n = len(values).bit_length() - 1
+    allowed = allowed_sets(n, owners)
+    worst = 0.0
+    for i in range(n):
+        open_sets = [s for s in allowed if not s >> i & 1 and (s | 1 << i) in allowed]
+        for a in open_sets:
+            early = values[a | 1 << i] - values[a]
+            if early > 0:
+                late = [values[b | 1 << i] - values[b] for b in open_sets if a & b == a]
+                worst = max(worst, 1 - min(late) / early)
+    return worst

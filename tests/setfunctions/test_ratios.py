@@ -1,0 +1,117 @@
+"""Submodularity ratio and generalised curvature against their definitions over all pairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions import ratios
+from tests.setfunctions import oracle
+from tests.strategies import monotone_table, random_objective
+
+
+def random_owners(rng, n):
+    return rng.integers(0, max(n // 2, 1), n) if rng.random() < 0.5 else None
+
+
+def gain(f, small, large):
+    return f(set(small) | set(large)) - f(small)
+
+
+def check_ratio(f, found, exact):
+    """The bracket holds the exact value and its sets attain the upper end."""
+    assert found.lower - 1e-9 <= exact <= found.upper + 1e-9
+    if found.added:
+        assert not set(found.base) & set(found.added)
+        total = sum(gain(f, found.base, [w]) for w in found.added)
+        assert min(total / gain(f, found.base, found.added), 1) == pytest.approx(found.upper, abs=1e-9)
+
+
+def check_curvature(f, found, exact):
+    """The bracket holds the exact value and its sets attain the lower end."""
+    assert found.lower - 1e-9 <= exact <= found.upper + 1e-9
+    if found.element is not None:
+        assert set(found.small) <= set(found.large)
+        kept = gain(f, found.large, [found.element]) / gain(f, found.small, [found.element])
+        assert 1 - kept == pytest.approx(found.lower, abs=1e-9)
+
+
+def test_both_agree_with_their_definitions():
+    rng = np.random.default_rng(21)
+    for _ in range(250):
+        n = int(rng.integers(1, 6))
+        f = ro.TableFunction(monotone_table(rng, n))
+        owners = random_owners(rng, n)
+        ratio = ro.submodularity_ratio(f, owners)
+        bent = ro.generalised_curvature(f, owners)
+        assert ratio.lower == ratio.upper
+        assert bent.lower == bent.upper
+        check_ratio(f, ratio, oracle.submodularity_ratio(f.values, owners))
+        check_curvature(f, bent, oracle.generalised_curvature(f.values, owners))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_brackets_hold_the_exact_value_where_the_domain_is_taken_for_too_large(seed, monkeypatch):
+    rng = np.random.default_rng([seed, 22])
+    f = random_objective(rng, 6, ("trace", "logdet", "maxeig")[seed % 3])
+    owners = np.array([0, 0, 1, 1, 2, 3])
+    values = f.table()
+    exact = oracle.submodularity_ratio(values, owners), oracle.generalised_curvature(values, owners)
+    monkeypatch.setattr(ratios, "LARGEST_PAIRS", 1)
+    ratio = ro.submodularity_ratio(f, owners)
+    check_ratio(f, ratio, exact[0])
+    assert ratio.how.startswith("later marginals")
+    monkeypatch.setattr(ratios, "LARGEST_ENUMERATION", 1)
+    monkeypatch.setattr("ratt_opt.setfunctions.curvature.LARGEST_ENUMERATION", 1)
+    check_ratio(f, ro.submodularity_ratio(f, owners), exact[0])
+    check_curvature(f, ro.generalised_curvature(f, owners), exact[1])
+
+
+@pytest.mark.parametrize("family", ["modular", "coverage", "matroid rank", "facility location", "concave of modular"])
+def test_submodular_functions_have_ratio_one_and_alpha_is_their_curvature(family):
+    rng = np.random.default_rng(23)
+    for _ in range(10):
+        known = ro.reference(family, int(rng.integers(2, 8)), rng)
+        assert ro.submodularity_ratio(known.function).upper == pytest.approx(1, abs=1e-9)
+        assert ro.generalised_curvature(known.function).upper == pytest.approx(known.curvature, abs=1e-9)
+
+
+def test_supermodular_functions_have_alpha_zero():
+    known = ro.reference("convex of modular", 6, np.random.default_rng(24))
+    assert ro.generalised_curvature(known.function).upper == pytest.approx(0, abs=1e-9)
+    weights = known.function.weights
+    total = weights.sum()
+    assert ro.submodularity_ratio(known.function).upper == pytest.approx((weights**2).sum() / total**2)
+
+
+def test_nothing_restricts_a_function_that_never_gains():
+    f = ro.TableFunction(np.full(8, 2.0))
+    assert ro.submodularity_ratio(f).lower == 1
+    assert ro.generalised_curvature(f).upper == 0
+
+
+def test_relabelling_and_scaling_change_nothing():
+    rng = np.random.default_rng(25)
+    values = monotone_table(rng, 5) + rng.random()
+    order = rng.permutation(5)
+    masks = np.arange(32)
+    moved = (((masks[:, None] >> order) & 1) << np.arange(5)).sum(axis=1)
+    f, g = ro.TableFunction(values), ro.TableFunction(1e-6 * values[moved])
+    for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
+        assert quantity(f).upper == pytest.approx(quantity(g).upper, abs=1e-9)
+
+
+def test_a_function_that_falls_is_refused():
+    f = ro.TableFunction([0.0, 1.0, 1.0, 0.5])
+    for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
+        with pytest.raises(InputError, match="f must be non-decreasing"):
+            quantity(f)
+
+
+def test_a_domain_too_large_says_the_memory():
+    f = ro.reference("modular", 30, np.random.default_rng(0)).function
+    for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
+        with pytest.raises(InputError, match="8 GiB"):
+            quantity(f)
