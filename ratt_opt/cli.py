@@ -179,6 +179,29 @@ def verify(
 
 
 @app.command()
+def audit(
+    out: OutFolder,
+    quick: Annotated[bool, typer.Option("--quick", help="Only the sizes that take seconds.")] = False,
+    as_json: JsonFlag = False,
+) -> int:
+    """Decide the paper's proof line by line; write audit.json, audit.html and audit.md.
+
+    An interrupt (Ctrl-C) writes what is decided so far, marked incomplete, and exits with 130.
+    """
+    from ratt_opt.audit.ledger import run_audit
+    from ratt_opt.report.tables import audit_table
+
+    with _progress() as tell:
+        ledger = run_audit(out, quick=quick, progress=lambda done, total, name: tell(f"{done + 1}/{total} {name}"))
+    if as_json:
+        print(json.dumps({**ledger.document(), "entries": len(ledger.records)}, indent=1, allow_nan=False))
+    else:
+        _console().print(audit_table(ledger.per_chain()))
+        print("written: " + ", ".join(str(out / name) for name in ("audit.json", "audit.html", "audit.md")))
+    return 0 if ledger.complete else _fail(f"interrupted after {len(ledger.records)} entries, which were written", 130)
+
+
+@app.command()
 def schema(
     kind: Annotated[Literal["scenario", "information"], typer.Argument(help="Which input file.")] = "scenario",
 ) -> None:

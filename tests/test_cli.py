@@ -217,7 +217,7 @@ def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
-    for command in ("demo", "new", "bound", "attack", "verify", "schema"):
+    for command in ("demo", "new", "bound", "attack", "verify", "audit", "schema"):
         assert run([command, "--help"]) == 0
         assert "--help" in capsys.readouterr().out
     assert run(["--version"]) == 0
@@ -235,6 +235,7 @@ BAD = [
     (["bound", "FILE", "--colour", "red"], "--colour"),
     (["bound"], "Missing argument 'file'"),
     (["plan"], "plan"),
+    (["audit", "--out", "FILE"], "out must be a folder that can be written"),
     ([*NEW, "--robots", "2", "--targets", "2"], "--seed must be given for a random scenario"),
     ([*NEW, "--robots", "2", "--targets", "0", "--seed", "1"], "n_targets must be an integer >= 1; got 0"),
     ([*NEW, "--robots", "1", "--targets", "1", "--seed", "1"], "alpha_c must be an integer in [0, 0]; got 1"),

@@ -20,6 +20,7 @@ from ratt_opt.audit.report_markdown import markdown_report
 from ratt_opt.audit.running_time import running_time_entries
 from ratt_opt.audit.special import special_entries
 from ratt_opt.audit.summaries import summaries
+from ratt_opt.audit.summary import per_chain
 from ratt_opt.audit.theorems import closing_lines, lemmas, readings_of_the_attack, theorems
 from ratt_opt.audit.weaken import weaken
 
@@ -48,6 +49,10 @@ class Ledger:
     def counts(self) -> dict[str, int]:
         """Entries per verdict."""
         return {v.value: sum(r["verdict"] == v.value for r in self.records) for v in Verdict}
+
+    def per_chain(self) -> dict[str, dict[str, int]]:
+        """Entries per verdict of each chain, in order of appearance, then of all."""
+        return per_chain(self.document())
 
     def document(self) -> dict[str, object]:
         """The ledger as strict JSON data."""

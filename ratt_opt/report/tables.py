@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Attack
     from ratt_opt.setfunctions.curvature import Curvature
 
-__all__ = ["attack_table", "bracket_text", "report_tables", "share_text"]
+__all__ = ["attack_table", "audit_table", "bracket_text", "report_tables", "share_text"]
 
 PROVED_OPTIMAL = 1e-9
 """A plan proved to keep all but this share of the best possible is called optimal."""
@@ -44,6 +44,15 @@ def attack_table(results: Mapping[str, AttackResult]) -> Table:
     for name, result in results.items():
         proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
         table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
+    return table
+
+
+def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
+    """One row a chain of the proof: how many of its entries have each verdict."""
+    verdicts = list(next(iter(chains.values())))
+    table = _table("proof ledger", "chain", *verdicts)
+    for name, counts in chains.items():
+        table.add_row(name, *(str(counts[verdict] or "") for verdict in verdicts))
     return table
 
 

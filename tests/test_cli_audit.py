@@ -1,0 +1,66 @@
+"""``ratt-opt audit`` as a stranger uses it: files, plain progress, an interrupt that keeps what was decided."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from ratt_opt.audit import ledger
+from ratt_opt.audit.ledger import all_entries
+from ratt_opt.cli import run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+LABELS = ("nd_p1d1v1_7", "nd_p1d1v1_8", "nd1")
+
+
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    entries = [entry for entry in all_entries() if entry.label in LABELS]
+    monkeypatch.setattr(ledger, "all_entries", lambda: iter(entries))
+
+
+@pytest.mark.usefixtures("short")
+def test_audit_writes_three_files_and_prints_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["audit", "--out", str(tmp_path / "a"), "--quick"]) == 0
+    assert sorted(path.name for path in (tmp_path / "a").iterdir()) == ["audit.html", "audit.json", "audit.md"]
+    shown = capsys.readouterr()
+    document = json.loads((tmp_path / "a" / "audit.json").read_text(encoding="utf-8"))
+    assert document["complete"]
+    assert {entry["label"] for entry in document["entries"]} == set(LABELS)
+    assert "refuted" in shown.out
+    assert f"1/{len(document['entries'])} {LABELS[0]}" in shown.err.splitlines()
+    assert "\x1b" not in shown.out + shown.err
+
+
+@pytest.mark.usefixtures("short")
+def test_audit_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["audit", "--out", str(tmp_path), "--quick", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert sum(printed["counts"].values()) == printed["entries"]
+
+
+def test_ctrl_c_keeps_what_is_decided(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", "from ratt_opt.cli import main; main()", "audit", "--quick", "--out", "o"]
+    folder = tmp_path / "o"
+    with subprocess.Popen(
+        [*command[:-1], str(folder)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            if line.startswith("8/"):
+                break
+        process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+    assert process.returncode == 130
+    assert "interrupted after" in rest
+    assert "Traceback" not in rest
+    document = json.loads((folder / "audit.json").read_text(encoding="utf-8"))
+    assert not document["complete"]
+    assert len(document["entries"]) >= 7
