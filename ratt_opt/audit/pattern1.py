@@ -25,7 +25,7 @@ ND = FunctionClass.TOTAL_CURVATURE
 ROLES = "f normalised, non-decreasing, total curvature <= c; baits and greedy robots as RATT chooses them"
 PLAN_WORST = "A* hurts RATT's plan most in its group"
 OPTIMUM_WORST = "A* hurts the optimum most in its group"
-ANY_ATTACK = "A* any attack of that size"
+ANY_ATTACK = "A* worst for the team only, so any attack on a group that is not the best"
 
 
 def team_of(n_bait: int, n_greedy: int) -> Team:
@@ -43,10 +43,11 @@ def attacks_on(group: tuple[str, ...], count: int) -> Iterator[tuple[str, ...]]:
 
 
 def readings(team: Team, group: tuple[str, ...], attacked: tuple[str, ...]) -> dict[str, tuple[Inequality, ...]]:
-    """Whose worst attack A* is: the text admits the plan's and the optimum's."""
+    """Whose worst attack A* is: the plan's in the group, the optimum's in the group, or the team's."""
     return {
         PLAN_WORST: worst_for(team, group, attacked, plan="chosen"),
         OPTIMUM_WORST: worst_for(team, group, attacked, plan="compared"),
+        ANY_ATTACK: (),
     }
 
 

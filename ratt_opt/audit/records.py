@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.audit.proof import step_inequality
+from ratt_opt.problem import Problem
+from ratt_opt.solvers.ratt import bait_and_greedy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -13,6 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt.audit.entry import Counted, Entry, EnumeratedEntry, SizedClaim
     from ratt_opt.audit.language import Claim
     from ratt_opt.audit.proof import Proof, Witness
+    from ratt_opt.audit.roles import Team
     from ratt_opt.audit.weaken import Weakened
 
 __all__ = ["claim_record", "enumerated_record"]
@@ -84,7 +89,7 @@ def _sized(sized: SizedClaim, decision: Decision) -> Record:
         "verdict": decision.verdict.value,
         "scope": decision.scope,
         "proofs": [_proof(claim, proof) for proof in decision.proofs],
-        "witness": None if decision.witness is None else _witness(claim, decision.witness),
+        "witness": None if decision.witness is None else _witness(sized, decision.witness),
     }
 
 
@@ -107,8 +112,13 @@ def _proof(claim: Claim, proof: Proof) -> Record:
     }
 
 
-def _witness(claim: Claim, witness: Witness) -> Record:
-    """The function's values on all subsets, by bit mask over ``elements``."""
+def _witness(sized: SizedClaim, witness: Witness) -> Record:
+    """The function's values on all subsets, by bit mask over ``elements``.
+
+    ``ratt_chooses_the_roles`` : whether RATT itself, run on the function with this many baits,
+    picks the elements named as its choices (``None`` where the elements have no roles).
+    """
+    claim = sized.claim
     return {
         "elements": list(witness.names),
         "robot": list(claim.ground.owner),
@@ -117,4 +127,12 @@ def _witness(claim: Claim, witness: Witness) -> Record:
         "curvature": None if witness.curvature is None else str(witness.curvature),
         "violation": str(witness.violation),
         "premises": [premise.reason for premise in claim.premises],
+        "ratt_chooses_the_roles": None if sized.team is None else replays(sized.team, witness),
     }
+
+
+def replays(team: Team, witness: Witness) -> bool:
+    """Run RATT's bait and greedy rules on the witness: are its choices the elements named as such?"""
+    problem = Problem(witness.function(), np.array(team.ground.owner), None, 0, 0)
+    plan = bait_and_greedy(problem, len(team.bait))
+    return bool((plan.elements == np.arange(len(team.robots))).all())

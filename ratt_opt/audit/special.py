@@ -21,7 +21,44 @@ GROUP = ("b1", "b2", "g1")
 
 
 def special_entries() -> Iterator[Entry]:
-    """Yield sub_p2d1v1_9 read "for all W in V1 with |W| = |Vg|", and sub_p2d1v1_10 from that reading."""
+    """Yield the entries of this module."""
+    yield from _every_subset()
+    yield from _substitution()
+
+
+def _substitution() -> Iterator[Entry]:
+    """Pattern 2, i): a bait of V1 stands in for a greedy robot x1 of V2. Does the value not rise with the stand-in?"""
+    sides = (
+        ("RATT's plan", "f(u on V1) >= f(u on V1 with a bait replaced by x1)"),
+        ("the optimum", "f(u* on V1 with a bait replaced by x1) >= f(u* on V1)"),
+    )
+    for reading, text in sides:
+        yield Entry(
+            label="nd_p2_substitution",
+            kind="claim",
+            chain="nd_p2d1v1",
+            statement=f"the bait is individually better than x1, hence {text}",
+            hypotheses="total curvature <= c; all of RATT's choices",
+            claims=tuple(_swaps(own=reading == "RATT's plan")),
+            reading=reading,
+            survives_by="nd_p2d1v1/cumulative",
+        )
+
+
+def _swaps(*, own: bool) -> Iterator[SizedClaim]:
+    for order in (("g1", "x1"), ("x1", "g1")):
+        team = Team(("b1",), order)
+        whole, swapped = ["b1", "g1"], ["x1", "g1"]
+        first = team.chosen(whole) if own else team.compared(swapped)
+        second = team.chosen(swapped) if own else team.compared(whole)
+        kind = FunctionClass.TOTAL_CURVATURE
+        claim = Claim(kind=kind, ground=team.ground, premises=team.premises, conclusion=first - second)
+        text = f"b1 replaced by x1 beside g1; greedy order {','.join(order)}"
+        yield SizedClaim(size=text, robots=3, claim=claim, left=first, right=second, team=team)
+
+
+def _every_subset() -> Iterator[Entry]:
+    """Yield sub_p2d1v1_9 read "for all W in V1 with |W| = |Vg|"."""
     roles = "f normalised, non-decreasing, submodular, curvature <= k; RATT's choices"
     for kind in ("step", "cumulative"):
         yield Entry(

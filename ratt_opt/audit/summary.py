@@ -56,6 +56,9 @@ def _witness_lines(claim: dict[str, Any]) -> list[str]:
     witness = claim["witness"]
     lines = [f"smallest counterexample found: {claim['size']}; {claim['scope']}; the claim {claim['claim']}"]
     lines.append(f"fails by {witness['violation']} for the function with values {_values(witness)}")
+    if witness["ratt_chooses_the_roles"] is not None:
+        said = "does" if witness["ratt_chooses_the_roles"] else "does not"
+        lines.append(f"run on this function, RATT {said} choose the elements the claim calls its own")
     if witness["auxiliary"]:
         lines.append("other numbers: " + ", ".join(f"{k} = {v}" for k, v in witness["auxiliary"].items()))
     return lines

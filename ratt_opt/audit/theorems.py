@@ -25,6 +25,7 @@ ONE_PLUS_K = constant(2) - T
 GROUPS = "the class and RATT's choices only; every set S of surviving robots, hence every graph, attack and budget"
 LARGEST = 4
 LARGEST_TEAM = 5
+LARGEST_PATTERN_FREE = 5
 
 
 def _entry(label: str, kind: str, statement: str, claims: Iterable[SizedClaim], hypotheses: str, **more: str) -> Entry:
@@ -88,9 +89,9 @@ def theorems() -> Iterator[Entry]:
     )
     for label, kind, above, below, text in rows:
         statement = f"{text}: f(u on S) >= factor f(o on S) for every S and every plan o"
-        yield _entry(
-            label, "theorem", statement, every_group(kind, above, below, largest=LARGEST_TEAM), GROUPS, chain="theorems"
-        )
+        largest = LARGEST_PATTERN_FREE if label.startswith("pattern_free") else LARGEST_TEAM
+        claims = every_group(kind, above, below, largest=largest)
+        yield _entry(label, "theorem", statement, claims, GROUPS, chain="theorems")
     bait = "all surviving robots are bait"
     text = "an all-bait group of g robots keeps (1+(g-1)(1-k))/g of the optimum"
     yield _entry("all_bait_sub", "theorem", text, _better(SUB), bait, chain="theorems")
