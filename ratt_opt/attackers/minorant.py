@@ -22,7 +22,7 @@ from ratt_opt.attackers.linear_program import EqualityProgram
 from ratt_opt.attackers.outer_points import OuterPoints, SetFamily, outer_points, target_values
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
 __all__ = ["Minorant", "affine_minorant"]
 
@@ -60,6 +60,18 @@ class Minorant:
     def bound(self, size: int) -> float:
         """No set of ``size`` robots is worth less."""
         return self.constant + float(np.partition(self.scores, size - 1)[:size].sum())
+
+
+    def restricted(self, free: BoolArray, chosen: BoolArray) -> Minorant:
+        """The minorant of the sets that hold the ``chosen`` robots and else only ``free`` ones (masks (F,))."""
+        constant = self.constant + float(self.scores[chosen].sum())
+        return replace(
+            self,
+            constant=constant,
+            scores=self.scores[free],
+            fraction=self.fraction[free],
+            tension=self.tension[free],
+        )
 
 
 def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None) -> Minorant:

@@ -10,7 +10,7 @@ other groups of the outcome are packed; that makes a new incumbent or proves the
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["SizeNode", "SizeSearch"]
 
 FIRST_ENUMERATION = 2_000_000
-SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 150_000, 400_000
+SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 300_000, 1_000_000
 """Compiled nodes spent on one branch-and-bound node before it is split: more after successes, fewer after failures."""
 
 UNINTERRUPTED = 2_000_000
@@ -108,6 +108,9 @@ class SizeSearch:
             threshold = self._try(node, robots[order[:size]], threshold)
         if bound >= threshold:
             return [], threshold
+        if minorant is not None:
+            node, robots, minorant = self._fix(node, robots, minorant, threshold)
+            size = self.size - len(node.inside)
         low = self._enumeration(node, robots, size, minorant)
         threshold = self._enumerate(low, threshold, budget)
         children = [] if low.finished else self._split(node, bound, robots, minorant)
@@ -130,9 +133,31 @@ class SizeSearch:
                 threshold = self.offer(one)
         return threshold
 
+    def _fix(
+        self, node: SizeNode, robots: IntArray, minorant: Minorant, threshold: float
+    ) -> tuple[SizeNode, IntArray, Minorant]:
+        """Decide robots by reduced cost: on their other side the minorant reaches the threshold."""
+        size = self.size - len(node.inside)
+        scores = minorant.scores
+        chosen = np.zeros(len(scores), dtype=np.bool_)
+        chosen[np.argsort(scores, kind="stable")[:size]] = True
+        last, first = scores[chosen].max(), scores[~chosen].min()
+        room = threshold - minorant.bound(size)
+        surely_in = chosen & (first - scores >= room)
+        surely_out = ~chosen & (scores - last >= room)
+        free = ~(surely_in | surely_out)
+        fixed = replace(
+            node,
+            inside=node.inside | frozenset(robots[surely_in].tolist()),
+            outside=node.outside | frozenset(robots[surely_out].tolist()),
+        )
+        return fixed, robots[free], minorant.restricted(free, surely_in)
+
     def _enumeration(self, node: SizeNode, robots: IntArray, size: int, minorant: Minorant | None) -> LowSets:
         """The node's sets, those robots first whose side the minorant is surest of."""
         if minorant is None:
+            return LowSets(self.team, robots, node.inside, size)
+        if not 0 < size < len(robots):
             return LowSets(self.team, robots, node.inside, size)
         middle = np.partition(minorant.scores, size - 1)[size - 1]
         order = np.argsort(-np.abs(minorant.scores - middle), kind="stable")
