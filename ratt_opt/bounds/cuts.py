@@ -80,9 +80,9 @@ def tangent_cut(
         nothing = np.zeros(objective.n)
         return GroupCut(group=(), constant=objective([]), scores=nothing, point=point, target=target)
     slope, offset = _fenchel(objective, point, target)
-    inside = np.isin(problem.robot, members)
-    scores = np.zeros(objective.n)
-    scores[inside] = np.einsum("jkl,ejkl->e", slope, objective.information[inside])
+    team = np.zeros(problem.n_robots)
+    team[list(members)] = 1.0
+    scores = (objective.information.reshape(objective.n, -1) @ slope.ravel()) * team[problem.robot]
     prior_part = float(np.einsum("jkl,jkl->", slope, objective.prior_information))
     constant = offset + prior_part
     constant += ROUNDING * (abs(offset) + abs(prior_part) + float(np.abs(scores).max(initial=0.0)) * len(members))

@@ -11,7 +11,10 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.solvers.proof import Node
 
-__all__ = ["TreeNode", "freeze"]
+__all__ = ["Classes", "TreeNode", "divide", "freeze", "used_cuts", "with_choice"]
+
+Classes = list[dict[int, list[int]]]
+"""Per robot, lowest element -> all elements with the same information: one of each is searched."""
 
 
 @dataclass(slots=True, eq=False)
@@ -38,6 +41,33 @@ class TreeNode:
             leaf=self.leaf,
             depth=self.depth + 1,
         )
+
+
+def with_choice(choices: tuple[IntArray, ...], robot: int, elements: IntArray) -> tuple[IntArray, ...]:
+    """``choices`` with those of one robot replaced."""
+    return (*choices[:robot], elements, *choices[robot + 1 :])
+
+
+def divide(node: TreeNode, robot: int, children: list[TreeNode], classes: Classes) -> None:
+    """Record that a node is divided by one robot's elements."""
+    parts = []
+    for child in children:
+        members = sorted(e for r in child.choices[robot].tolist() for e in classes[robot][r])
+        parts.append((tuple(members), child))
+    node.split = ("element", robot, parts)
+
+
+def used_cuts(root: TreeNode) -> set[int]:
+    """Cuts that some leaf below ``root`` weighs."""
+    found: set[int] = set()
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        if node.split is None:
+            found.update(node.leaf.cuts)
+        else:
+            stack.extend(child for _, child in node.split[2])
+    return found
 
 
 def freeze(root: TreeNode) -> Node:
