@@ -43,6 +43,9 @@ STALL = 0.03
 STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
 PATIENCE = 30
 """Solves without a multiplier after which a cut leaves the program; it stays stored."""
+FLAT = 1e-3
+"""Mixtures that gain less than this share of the gap do not explain it; what falls short in rounding may."""
+SHORT_OUTCOMES = 16
 NEGLIGIBLE = 1e-12
 """Multipliers below this are left out of a leaf."""
 
@@ -208,20 +211,44 @@ class BranchAndBound:
             return open_robots[0], (choice[:1], choice[1:])
         active = relaxed.duals > NEGLIGIBLE
         cuts, weights = relaxed.cuts[active], relaxed.duals[active]
-        groups = self._cuts.groups[cuts]
-        points = self.pool.group_points(self._mixed(relaxed.selection))[groups]
-        gains = mixing_gains(
+        points = self.pool.group_points(self._mixed(relaxed.selection))
+        groups, targets = self._cuts.groups[cuts], [self._cuts.target(k) for k in cuts.tolist()]
+        gains = self._gains(relaxed, points, groups, weights, targets)
+        if gains.max() < FLAT * (node.bound - self.incumbent.lower):
+            groups, weights = self._short(node, relaxed)
+            targets = [worst_targets(self.objective, points[g], -np.inf, 1)[0] for g in groups.tolist()]
+            gains = self._gains(relaxed, points, groups, weights, targets)
+        i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(self._singles[node.choices[r]]))))
+        heaviest = points[groups[int(weights.argmax())]] if len(weights) else self.objective.prior_information
+        return i, divide_elements(self.objective, node.choices[i], relaxed.selection, heaviest)
+
+    def _gains(
+        self,
+        relaxed: RelaxedPlan,
+        points: FloatArray,
+        groups: IntArray,
+        weights: FloatArray,
+        targets: list[int | None],
+    ) -> FloatArray:
+        return mixing_gains(
             self.problem,
             self.objective,
             selection=relaxed.selection,
             inside=self.pool.membership()[groups] > 0,
-            points=points,
+            points=points[groups],
             weights=weights,
-            targets=[self._cuts.target(k) for k in cuts.tolist()],
+            targets=targets,
         )
-        i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(self._singles[node.choices[r]]))))
-        heaviest = points[int(weights.argmax())] if len(weights) else self.objective.prior_information
-        return i, divide_elements(self.objective, node.choices[i], relaxed.selection, heaviest)
+
+    def _short(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[IntArray, FloatArray]:
+        """Groups that fall short of the relaxed level once the relaxed plan is rounded, and by how much."""
+        plan = np.array([choice[relaxed.selection[choice].argmax()] for choice in node.choices])
+        values = self.pool.group_values(self.objective.information[plan])
+        teams = self.pool.outcome_values(values)
+        worst = np.argsort(teams, kind="stable")[:SHORT_OUTCOMES]
+        worst = worst[teams[worst] < relaxed.level]
+        best = [max(self.pool.of_outcome[o], key=lambda g: values[g]) for o in worst.tolist()]
+        return np.array(best, dtype=np.int64), relaxed.level - teams[worst]
 
     # -- outcomes, cuts, plans ---------------------------------------------------------------------------------
 
