@@ -54,9 +54,13 @@ def claim_record(
     verdict: Verdict,
     weaker: Sequence[Weakened],
     *,
+    realistic: Record | None,
     seconds: float,
 ) -> Record:
-    """Record of an entry decided by the cone: every size with its proof or counterexample."""
+    """Record of an entry decided by the cone: every size with its proof or counterexample.
+
+    ``realistic`` : what the search on EKF objectives found, where the claim speaks of them.
+    """
     record = _head(entry, verdict, "linear programming over the set-function cone, re-checked exactly")
     kind = claims[0].claim.kind
     robots = sorted({sized.robots for sized in claims})
@@ -73,6 +77,7 @@ def claim_record(
             }
             for w in weaker
         ],
+        realistic=realistic,
         survives_by=entry.survives_by,
         seconds=seconds,
     )

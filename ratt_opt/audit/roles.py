@@ -17,7 +17,7 @@ from ratt_opt.audit.language import Ground, Inequality, Linear
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["Team", "optimum", "worst_for"]
+__all__ = ["Team", "optimum", "own_best", "worst_for"]
 
 
 def optimum(robot: str) -> str:
@@ -25,7 +25,8 @@ def optimum(robot: str) -> str:
     return f"o({robot})"
 
 
-def _own_best(robot: str) -> str:
+def own_best(robot: str) -> str:
+    """Individually best element of ``robot``."""
     return f"h({robot})"
 
 
@@ -57,7 +58,7 @@ class Team:
                 names.append(optimum(robot))
                 owner.append(i)
         if self.with_own_best:
-            names += [_own_best(robot) for robot in self.greedy]
+            names += [own_best(robot) for robot in self.greedy]
             owner += list(range(len(self.bait), len(self.robots)))
         return Ground(tuple(names), tuple(owner))
 
@@ -91,7 +92,7 @@ class Team:
                 out.append(Inequality(f"bait: f({b}) >= f({rival})", self.f([b]) - self.f([rival])))
         for g in self.greedy if self.with_own_best else ():
             for rival in self._elements_of(g)[:-1]:
-                best = _own_best(g)
+                best = own_best(g)
                 out.append(Inequality(f"{best} is the best of {g}'s robot", self.f([best]) - self.f([rival])))
         return tuple(out)
 
@@ -115,7 +116,7 @@ class Team:
         if robot not in self.without_optimum:
             elements.append(optimum(robot))
         if self.with_own_best and robot in self.greedy:
-            elements.append(_own_best(robot))
+            elements.append(own_best(robot))
         return elements
 
 

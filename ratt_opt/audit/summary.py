@@ -45,6 +45,8 @@ def evidence(record: dict[str, Any]) -> list[str]:
         best = "and no larger factor (within 1/1000)" if weaker["cannot_exceed_by_1/1000"] else "a valid factor"
         where = "" if weaker["curvature"] is None else f" at curvature {weaker['curvature']}"
         lines.append(f"with the factor {weaker['factor']} on the right the step holds{where}, {best}")
+    if record.get("realistic"):
+        lines += _realistic_lines(record["realistic"])
     survival = record.get("conclusion_without_it")
     if survival:
         verdict = survival["verdict"] or "different verdicts for different readings"
@@ -61,6 +63,23 @@ def _witness_lines(claim: dict[str, Any]) -> list[str]:
         lines.append(f"run on this function, RATT {said} choose the elements the claim calls its own")
     if witness["auxiliary"]:
         lines.append("other numbers: " + ", ".join(f"{k} = {v}" for k, v in witness["auxiliary"].items()))
+    return lines
+
+
+def _realistic_lines(found: dict[str, Any]) -> list[str]:
+    """The search on EKF objectives in words."""
+    seen, broken = found["section_vi_instances"], found["section_vi_violations"]
+    lines = [f"on Section VI scenarios ({found['objective']}): violated in {broken} of {seen} cases it applies to"]
+    worst = found["worst"]
+    if worst is None:
+        return lines
+    size = f"{worst['relative_violation']:.3g} of the largest value in it"
+    if worst["violated_exactly"]:
+        lines.append(f"worst geometry found: violated by {size}, replayed without rounding; {worst['origin']}")
+    else:
+        lines.append(
+            f"worst geometry found: not violated (margin {-worst['relative_violation']:.3g}); {worst['origin']}"
+        )
     return lines
 
 
