@@ -20,6 +20,23 @@ __all__ = ["arrangement_entries", "partitions"]
 
 LARGEST = 8
 
+SURVIVES_BY = {
+    "caa_determines_groups": "eqn:appro_non_descrease/theorem",
+    "caa_counts_groups": "eqn:appro_non_descrease/theorem",
+    "pattern2_sizes": "nd_p2/cumulative",
+    "patterns_cover": "nd1/cumulative",
+    "nd1": "nd1/cumulative",
+    "pattern2_distributions_cover": "nd_p2/cumulative",
+    "nd_p1d3v1_sizes": "nd_p1d3v1_7/cumulative",
+    "nd_p1d3v1_4_counts": "nd_p1d3v1_7/cumulative",
+    "sub_p2d1v1_sizes": "sub_p2d1v1_10/cumulative",
+    "bound_defined": "pattern_free_nd/theorem",
+}
+"""Label of a claim -> label and kind of the entry that shows the conclusion without it."""
+
+SERVES_BY = {"nd_p1d3v1_4_counts": "nd_p1d3v1_4_counts_repaired/claim"}
+"""Label of a claim -> label and kind of the weaker or repaired claim that the proof could use."""
+
 
 @dataclass(frozen=True, slots=True)
 class Budgets:
@@ -356,4 +373,6 @@ def arrangement_entries() -> Iterator[EnumeratedEntry]:
             statement=statement,
             hypotheses="RATT's and CAA's definitions",
             enumerate_cases=run,
+            survives_by=SURVIVES_BY.get(label, ""),
+            serves_by=SERVES_BY.get(label, ""),
         )

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from ratt_opt.audit.polynomial import ONE, Polynomial
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from ratt_opt.audit.decide import Verdict
     from ratt_opt.audit.language import Claim, FunctionClass, Inequality, Linear
     from ratt_opt.audit.roles import Team
 
-__all__ = ["Case", "Chain", "Counted", "Entry", "EnumeratedEntry", "Line", "SizedClaim"]
+__all__ = ["Case", "Chain", "Counted", "Detour", "Entry", "EnumeratedEntry", "Line", "SizedClaim"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +40,8 @@ class Entry:
     ``label`` : the paper's without ``eq:``; ours where it has none.
     ``kind`` : ``step``, ``step as equality``, ``cumulative``, ``lemma``, ``reading``, ``claim`` or ``theorem``.
     ``survives_by`` : label and kind of the entry that shows the conclusion without this step.
+    ``serves_by`` : label and kind of a weaker statement that the proof could use in its place.
+    ``detours`` : the same line from earlier ones: (label, claims), the latest first.
     """
 
     label: str
@@ -50,6 +52,16 @@ class Entry:
     claims: tuple[SizedClaim, ...]
     reading: str = ""
     survives_by: str = ""
+    serves_by: str = ""
+    detours: Callable[[], Iterator[Detour]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Detour:
+    """The claims that lead from line ``start`` of a chain directly to a later one."""
+
+    start: str
+    claims: tuple[SizedClaim, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +85,8 @@ class EnumeratedEntry:
     hypotheses: str
     enumerate_cases: Callable[[], Counted]
     reading: str = ""
+    survives_by: str = ""
+    serves_by: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.entry import Case, Chain, Entry, SizedClaim
+from ratt_opt.audit.entry import Case, Chain, Detour, Entry, SizedClaim
 from ratt_opt.audit.language import Claim, FunctionClass, Inequality, Linear
 from ratt_opt.audit.polynomial import ONE
 
@@ -44,7 +45,21 @@ def _entry(chain: Chain, number: int, kind: str, reading: str) -> Entry:
         claims=claims,
         reading=reading,
         survives_by="" if kind == "cumulative" else f"{last}/cumulative",
+        serves_by=f"{line.label}/step" if kind == AS_WRITTEN else "",
+        detours=partial(_detours, chain, number, reading) if kind == "step" and number > 1 else None,
     )
+
+
+def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:
+    """Yield the line from each earlier line but the one before, latest first, with all of RATT's choices given."""
+    for start in range(number - 2, -1, -1):
+        claims = []
+        for case in chain.cases:
+            before, line = case.lines[start], case.lines[number]
+            premises = case.team.premises + line.readings.get(reading, ())
+            left, right = before.expression * line.denominator, line.expression * before.denominator
+            claims.append(_sized(chain.kind, case, premises, left, right))
+        yield Detour(chain.cases[0].lines[start].label, tuple(claims))
 
 
 def _claims(kind: FunctionClass, case: Case, number: int, form: str, reading: str) -> Iterator[SizedClaim]:

@@ -15,7 +15,7 @@ from ratt_opt.audit.dominance import dominance_entries
 from ratt_opt.audit.entry import Entry, EnumeratedEntry
 from ratt_opt.audit.expand import entries_of
 from ratt_opt.audit.realistic import realistic_search
-from ratt_opt.audit.records import claim_record, enumerated_record
+from ratt_opt.audit.records import claim_record, enumerated_record, factor_records
 from ratt_opt.audit.report_html import html_report
 from ratt_opt.audit.report_markdown import markdown_report
 from ratt_opt.audit.running_time import running_time_entries
@@ -23,11 +23,14 @@ from ratt_opt.audit.special import special_entries
 from ratt_opt.audit.summaries import summaries
 from ratt_opt.audit.summary import per_chain
 from ratt_opt.audit.theorems import closing_lines, lemmas, readings_of_the_attack, theorems
+from ratt_opt.audit.tightness import tightness_entries
 from ratt_opt.audit.weaken import weaken
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
+
+    from ratt_opt.audit.entry import Detour
 
 __all__ = ["Ledger", "all_entries", "decide_entry", "run_audit"]
 
@@ -76,6 +79,7 @@ def all_entries() -> Iterator[Entry | EnumeratedEntry]:
         yield from entries_of(one)
     yield from chain(special_entries(), summaries(), closing_lines(), dominance_entries(), theorems(), lemmas())
     yield from arrangement_entries()
+    yield from tightness_entries()
     yield from running_time_entries()
 
 
@@ -96,11 +100,23 @@ def decide_entry(entry: Entry | EnumeratedEntry, *, quick: bool = False) -> dict
         claims = claims[:1] if smallest > QUICK_ROBOTS + 1 else claims
     decisions = [decide(sized.claim) for sized in claims]
     verdict = _verdict(decisions)
-    first = next((i for i, d in enumerate(decisions) if d.witness is not None), None)
-    weaker = weaken(claims[first]) if first is not None and not quick else ()
-    realistic = None if quick else realistic_search(claims, refuted=verdict is Verdict.REFUTED)
-    seconds = time.perf_counter() - start
-    return claim_record(entry, claims, decisions, verdict, weaker, realistic=realistic, seconds=seconds)
+    record = claim_record(entry, claims, decisions, verdict)
+    if not quick:
+        broken = [sized for sized, decision in zip(claims, decisions, strict=True) if decision.witness is not None]
+        record["best_factors"] = factor_records(() if entry.serves_by else weaken(broken))
+        record["realistic"] = realistic_search(claims, refuted=bool(broken))
+        if broken and entry.detours is not None:
+            record["follows_from"] = _latest_detour(entry.detours())
+    record["seconds"] = time.perf_counter() - start
+    return record
+
+
+def _latest_detour(detours: Iterator[Detour]) -> str | None:
+    """The latest earlier line from which the refuted one is proved directly, at every size."""
+    for detour in detours:
+        if all(decide(sized.claim).verdict is Verdict.PROVED for sized in detour.claims):
+            return detour.start
+    return None
 
 
 def _verdict(decisions: Sequence[Decision]) -> Verdict:
@@ -151,13 +167,15 @@ def run_audit(
 
 
 def _add_survival(records: list[dict[str, object]]) -> None:
-    """For each refuted entry: does the conclusion it served hold without it (the named entry's verdict)?"""
+    """For each refuted entry: does the conclusion hold without it, and which weaker step serves (entries' verdicts)?"""
     verdicts: dict[str, set[str]] = {}
     for record in records:
         verdicts.setdefault(f"{record['label']}/{record['kind']}", set()).add(str(record["verdict"]))
     for record in records:
-        name = str(record.pop("survives_by", ""))
-        if record["verdict"] == Verdict.REFUTED.value and name:
-            found = verdicts.get(name, set())
-            verdict = next(iter(found)) if len(found) == 1 else None
-            record["conclusion_without_it"] = {"entry": name, "verdict": verdict}
+        named = {"conclusion_without_it": "survives_by", "weaker_step_that_serves": "serves_by"}
+        for field, source in named.items():
+            name = str(record.pop(source, ""))
+            if record["verdict"] == Verdict.REFUTED.value and name:
+                found = verdicts.get(name, set())
+                verdict = next(iter(found)) if len(found) == 1 else None
+                record[field] = {"entry": name, "verdict": verdict}

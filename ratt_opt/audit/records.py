@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.audit.roles import Team
     from ratt_opt.audit.weaken import Weakened
 
-__all__ = ["claim_record", "enumerated_record"]
+__all__ = ["claim_record", "enumerated_record", "factor_records", "replays"]
 
 Record = dict[str, object]
 
@@ -42,7 +42,13 @@ def enumerated_record(entry: EnumeratedEntry, counted: Counted, *, seconds: floa
     """Record of an entry decided by enumeration; ``witness`` holds the first cases that break it."""
     record = _head(entry, counted.verdict, "exhaustive enumeration")
     record.update(
-        sizes=counted.sizes, detail=counted.detail, counterexamples=list(counted.cases), claims=[], seconds=seconds
+        sizes=counted.sizes,
+        detail=counted.detail,
+        counterexamples=list(counted.cases),
+        claims=[],
+        survives_by=entry.survives_by,
+        serves_by=entry.serves_by,
+        seconds=seconds,
     )
     return record
 
@@ -52,15 +58,8 @@ def claim_record(
     claims: Sequence[SizedClaim],
     decisions: Sequence[Decision],
     verdict: Verdict,
-    weaker: Sequence[Weakened],
-    *,
-    realistic: Record | None,
-    seconds: float,
 ) -> Record:
-    """Record of an entry decided by the cone: every size with its proof or counterexample.
-
-    ``realistic`` : what the search on EKF objectives found, where the claim speaks of them.
-    """
+    """Record of an entry decided by the cone: every size with its proof or counterexample."""
     record = _head(entry, verdict, "linear programming over the set-function cone, re-checked exactly")
     kind = claims[0].claim.kind
     robots = sorted({sized.robots for sized in claims})
@@ -69,19 +68,22 @@ def claim_record(
         sizes=f"for all functions of the class, {robots[0]} to {robots[-1]} robots in play, {len(claims)} cases",
         curvature=sorted({decision.scope for decision in decisions}),
         claims=[_sized(sized, decision) for sized, decision in zip(claims, decisions, strict=True)],
-        best_factors=[
-            {
-                "curvature": None if w.curvature is None else str(w.curvature),
-                "factor": str(w.factor),
-                "cannot_exceed_by_1/1000": w.is_best,
-            }
-            for w in weaker
-        ],
-        realistic=realistic,
         survives_by=entry.survives_by,
-        seconds=seconds,
+        serves_by=entry.serves_by,
     )
     return record
+
+
+def factor_records(weaker: Sequence[Weakened]) -> list[Record]:
+    """Best factors of a refuted step as JSON data."""
+    return [
+        {
+            "curvature": None if w.curvature is None else str(w.curvature),
+            "factor": str(w.factor),
+            "cannot_exceed_by_1/1000": w.is_best,
+        }
+        for w in weaker
+    ]
 
 
 def _sized(sized: SizedClaim, decision: Decision) -> Record:

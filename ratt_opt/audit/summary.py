@@ -42,11 +42,20 @@ def evidence(record: dict[str, Any]) -> list[str]:
     if claim is not None and claim["witness"] is not None:
         lines += _witness_lines(claim)
     for weaker in record.get("best_factors", []):
+        if weaker["factor"] == "0":
+            where = "" if weaker["curvature"] is None else f" at curvature {weaker['curvature']}"
+            lines.append(f"no positive factor on the right saves the step{where}")
+            continue
         best = "and no larger factor (within 1/1000)" if weaker["cannot_exceed_by_1/1000"] else "a valid factor"
         where = "" if weaker["curvature"] is None else f" at curvature {weaker['curvature']}"
         lines.append(f"with the factor {weaker['factor']} on the right the step holds{where}, {best}")
     if record.get("realistic"):
         lines += _realistic_lines(record["realistic"])
+    if record.get("follows_from"):
+        lines.append(f"a direct step that serves the proof: the line follows from {record['follows_from']} (proved)")
+    serves = record.get("weaker_step_that_serves")
+    if serves:
+        lines.append(f"a weaker step that serves the proof: {serves['entry']} ({serves['verdict']})")
     survival = record.get("conclusion_without_it")
     if survival:
         verdict = survival["verdict"] or "different verdicts for different readings"

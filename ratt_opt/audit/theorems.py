@@ -28,10 +28,35 @@ LARGEST_TEAM = 5
 LARGEST_PATTERN_FREE = 5
 
 
-def _entry(label: str, kind: str, statement: str, claims: Iterable[SizedClaim], hypotheses: str, **more: str) -> Entry:
-    chain = more.pop("chain", label)
+SURVIVES_BY = {
+    "team_subgroup": "eqn:appro_non_descrease/theorem",
+    "opt_team_subgroup": "eqn:appro_non_descrease/theorem",
+    "subadditivity_as_used": "nd_p1d2v1_9/cumulative",
+    "tzoumas2018_lemma9": "nd_p1d1v1_8/cumulative",
+}
+SERVES_BY = {"subadditivity_as_used": "weak_subadditivity/lemma"}
+
+
+def _entry(
+    label: str,
+    kind: str,
+    statement: str,
+    claims: Iterable[SizedClaim],
+    hypotheses: str,
+    *,
+    chain: str = "",
+    reading: str = "",
+) -> Entry:
     return Entry(
-        label=label, kind=kind, chain=chain, statement=statement, hypotheses=hypotheses, claims=tuple(claims), **more
+        label=label,
+        kind=kind,
+        chain=chain or label,
+        statement=statement,
+        hypotheses=hypotheses,
+        claims=tuple(claims),
+        reading=reading,
+        survives_by=SURVIVES_BY.get(label, ""),
+        serves_by=SERVES_BY.get(label, ""),
     )
 
 
@@ -51,10 +76,15 @@ def closing_lines() -> Iterator[Entry]:
     for label in ("nd1", "nd"):
         text = "f(u on S) >= (1-c)^3 f(u* on S), which gives min[(1-c)^3, (1-c)^2/alpha_cs] for the team"
         yield _entry(label, "cumulative", text, every_group(ND, T3, ONE, largest=LARGEST_TEAM), GROUPS)
+    text = "in every other pattern too, f(u on S) >= (1-c)^3 f(u* on S): 'the same approximation bound or a better one'"
+    yield _entry("nd_other_patterns", "claim", text, every_group(ND, T3, ONE, largest=LARGEST_TEAM), GROUPS)
     for form in ("step", "cumulative"):
         yield _entry("sub2", form, "f(u) >= (1-k) f(u*) in every group", _all_bait(SUB, T), bait)
     text = "f(u on S) >= (1-k)/(1+k) f(u* on S), which gives min[(1-k)/(1+k), (1-k)/alpha_cs] for the team"
-    yield _entry("sub", "cumulative", text, every_group(SUB, T, ONE_PLUS_K, largest=LARGEST_TEAM), GROUPS)
+    other = "in every other pattern and distribution too, f(u on S) >= (1-k)/(1+k) f(u* on S)"
+    claims = tuple(every_group(SUB, T, ONE_PLUS_K, largest=LARGEST_TEAM))
+    yield _entry("sub_other_patterns", "claim", other, claims, GROUPS)
+    yield _entry("sub", "cumulative", text, claims, GROUPS)
     for label, kind, bounds in (("nd", ND, ((T3, ONE), (T2, ONE))), ("sub", SUB, ((T, ONE_PLUS_K), (T, ONE)))):
         yield _entry(
             label, "step", "both cases together", _joined(kind, bounds), "the bounds of N > alpha and N <= alpha"

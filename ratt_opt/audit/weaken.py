@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import floor
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.decide import CURVATURE_GRID
@@ -13,6 +14,8 @@ from ratt_opt.audit.prove import find_proof
 from ratt_opt.audit.refute import find_witness, least_ratio
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt.audit.entry import SizedClaim
     from ratt_opt.audit.language import Linear
 
@@ -23,36 +26,57 @@ _STEP = Fraction(1, 1000)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Weakened:
-    """``left >= factor * right`` is proved at ``curvature``; ``is_best``: with ``factor + 1/1000`` it is refuted."""
+    """``left >= factor * right`` is proved at ``curvature``; ``is_best``: with ``factor + 1/1000`` it is refuted.
+
+    Factor 0 is trivial: no positive factor was found.
+    """
 
     curvature: Fraction | None
     factor: Fraction
     is_best: bool
 
 
-def weaken(sized: SizedClaim) -> tuple[Weakened, ...]:
-    """Return the best factor at each curvature of the grid where one was found and checked; factor 0 is trivial."""
-    if sized.left is None or sized.right is None:
+def weaken(refuted: Sequence[SizedClaim]) -> tuple[Weakened, ...]:
+    """Return, at each curvature of the grid, the best factor that was found and checked for all of these sizes."""
+    if not refuted or any(sized.left is None or sized.right is None for sized in refuted):
         return ()
-    kind = sized.claim.kind
+    kind = refuted[0].claim.kind
     grid: tuple[Fraction | None, ...] = CURVATURE_GRID if kind.is_parametric else (None,)
-    found = (_at(sized.claim, sized.left, sized.right, curvature) for curvature in sorted(grid, key=lambda v: v or 0))
+    found = (_for_all(refuted, curvature) for curvature in sorted(grid, key=lambda v: v or 0))
     return tuple(item for item in found if item is not None)
+
+
+def _for_all(refuted: Sequence[SizedClaim], curvature: Fraction | None) -> Weakened | None:
+    """The smallest factor of the sizes: every value in a claim is non-negative, so it serves the other sizes too."""
+    each = []
+    for sized in refuted:
+        assert sized.left is not None
+        assert sized.right is not None
+        found = _at(sized.claim, sized.left, sized.right, curvature)
+        if found is None:
+            return None
+        each.append(found)
+        if found.factor == 0:
+            break
+    return min(each, key=lambda found: found.factor)
 
 
 def _at(claim: Claim, left: Linear, right: Linear, curvature: Fraction | None) -> Weakened | None:
     ratio = least_ratio(claim, left, right, curvature=curvature)
     if ratio is None:
         return None
-    factor = Fraction(max(ratio, 0.0)).limit_denominator(200)
-    weaker = _scaled(claim, left, right, factor)
-    proof = find_proof(weaker, feasible=True, curvature=curvature) or find_proof(
-        weaker, feasible=False, curvature=curvature
-    )
-    if proof is None:
+    simple, rounded = Fraction(max(ratio, 0.0)).limit_denominator(200), Fraction(floor(max(ratio, 0.0) * 1000), 1000)
+    proved = (factor for factor in (simple, rounded) if _is_proved(_scaled(claim, left, right, factor), curvature))
+    factor = next(proved, None)
+    if factor is None:
         return None
     above = find_witness(_scaled(claim, left, right, factor + _STEP), curvature=curvature)
     return Weakened(curvature=curvature if claim.kind.is_parametric else None, factor=factor, is_best=above is not None)
+
+
+def _is_proved(claim: Claim, curvature: Fraction | None) -> bool:
+    proofs = (find_proof(claim, feasible=feasible, curvature=curvature) for feasible in (True, False))
+    return any(proof is not None for proof in proofs)
 
 
 def _scaled(claim: Claim, left: Linear, right: Linear, factor: Fraction) -> Claim:

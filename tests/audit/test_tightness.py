@@ -1,0 +1,55 @@
+"""Tightness: the limit family against the exact worst-case ratio, by replay, and verdicts that can change."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from ratt_opt import ProofError
+from ratt_opt.audit.decide import Verdict
+from ratt_opt.audit.ratio import worst_case_ratio
+from ratt_opt.audit.ratio_witness import replay
+from ratt_opt.audit.tightness import limit_instance, limit_ratio, tightness_entries
+
+
+@pytest.mark.parametrize(
+    ("size", "c"),
+    [
+        (1, Fraction(1, 3)),
+        (2, Fraction(1, 3)),
+        (2, Fraction(4, 5)),
+        pytest.param(3, Fraction(4, 5), marks=pytest.mark.slow),
+        pytest.param(3, Fraction(1, 3), marks=pytest.mark.slow),
+    ],
+)
+def test_the_family_has_its_ratio_and_curvature(size: int, c: Fraction) -> None:
+    witness = limit_instance(size, c)
+    assert replay(witness) == limit_ratio(size, c)
+    with pytest.raises(ProofError, match="curvature"):
+        replay(replace(witness, curvature=c - Fraction(1, 1000)))
+
+
+@pytest.mark.parametrize("size", [1, 2])
+def test_the_family_is_the_worst_for_its_size(size: int) -> None:
+    c = Fraction(1, 2)
+    found = worst_case_ratio(2 * size, size, 0, curvature=c, family="nondecreasing")
+    assert found.exact_lower == found.exact_upper == limit_ratio(size, c)
+
+
+def test_the_family_tends_to_the_pattern_free_bound_from_above() -> None:
+    c = Fraction(1, 2)
+    ratios = [limit_ratio(size, c) for size in (1, 10, 100, 10_000)]
+    assert ratios == sorted(ratios, reverse=True)
+    assert 0 < ratios[-1] - (1 - c) ** 2 < Fraction(1, 1000)
+
+
+def test_verdicts() -> None:
+    verdicts = {entry.label: entry.enumerate_cases().verdict for entry in tightness_entries()}
+    assert verdicts == {
+        "theorem1_nd_tight": Verdict.REFUTED,
+        "theorem1_sub_tight": Verdict.REFUTED,
+        "pattern_free_sub_tight": Verdict.PROVED,
+        "pattern_free_nd_tight": Verdict.PROVED,
+    }
