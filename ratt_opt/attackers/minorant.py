@@ -61,7 +61,6 @@ class Minorant:
         """No set of ``size`` robots is worth less."""
         return self.constant + float(np.partition(self.scores, size - 1)[:size].sum())
 
-
     def restricted(self, free: BoolArray, chosen: BoolArray) -> Minorant:
         """The minorant of the sets that hold the ``chosen`` robots and else only ``free`` ones (masks (F,))."""
         constant = self.constant + float(self.scores[chosen].sum())
