@@ -129,7 +129,7 @@ def _panel(axis: Axes, points: Sequence[Point]) -> None:
     axis.plot(grid, best, "k:", lw=1.8, label="Theorem 1 (its largest over these cases)", zorder=20)
     axis.set(xlim=(0, 1), ylim=(0, 1.02), xlabel="curvature", ylabel="worst value / optimum")
     axis.grid(alpha=0.3)
-    axis.legend(fontsize=8, loc="lower left")
+    axis.legend(fontsize=8, loc="upper right")
 
 
 def write_csv(points: Sequence[Point], path: Path) -> None:
