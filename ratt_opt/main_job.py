@@ -37,6 +37,8 @@ __all__ = ["BoundReport", "PlanAssessment", "bound"]
 
 NONROBUST_PLANS = 300_000
 """The non-robust optimum is a baseline where it has at most this many plans to look at."""
+CURVATURE_GAP = 0.1
+"""A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this."""
 SECONDS_BETWEEN_LINES = 1.0
 RANDOM_SEED = 0
 """Seed of the random baseline, so that a report is reproducible."""
@@ -158,7 +160,7 @@ def bound(
         optimum = solve_maxmin(problem, gap=gap, time_limit=time_limit, progress=_search_lines(tell))
         best = _assess_optimum(problem, optimum, time_limit)
     with clock("curvature and guarantees"):
-        k, c = _curvatures(problem)
+        k, c = _curvatures(problem, time_limit)
         alpha_cs = equivalent_sensing_attacks(problem)
         guarantees = all_guarantees(problem, alpha_cs, k=k, c=c)
     with clock("certificate"):
@@ -261,12 +263,12 @@ class _Clock:
         self.seconds[step] = time.monotonic() - began
 
 
-def _curvatures(problem: Problem) -> tuple[Curvature | None, Curvature | None]:
+def _curvatures(problem: Problem, time_limit: float | None) -> tuple[Curvature | None, Curvature | None]:
     """Curvature (log-det, which is submodular) and total curvature over feasible sets, where they can be bracketed."""
     f, owners = problem.objective, problem.robot
     submodular = isinstance(f, LogDetObjective)
     if not isinstance(f, InformationObjective) and f.n > LARGEST_TABLE:
         return None, None
     if submodular:
-        return curvature(f, owners), None
-    return None, total_curvature(f, owners)
+        return curvature(f, owners, gap=CURVATURE_GAP, time_limit=time_limit), None
+    return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=time_limit)

@@ -28,12 +28,14 @@ class Domain:
     """``restricted`` is the function on the elements that take part; a set holds at most one of each owner's.
 
     ``owners`` : owner of each of its elements, 0.. without gaps. ``names`` : their indices in the original function.
+    ``rounding`` : error that a marginal may have; 0 where the values are given and not computed.
     """
 
     name: str
     restricted: SetFunction
     owners: IntArray
     names: IntArray
+    rounding: float
 
     @property
     def count(self) -> float:
@@ -56,18 +58,23 @@ def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) 
     ------
     InputError : owners of the wrong shape, or a plan that repeats or exceeds the elements.
     """
+    error = _rounding(f)
     if plan is not None:
         chosen = check_subset("plan", np.asarray(plan).tolist(), f.n)
         alone = np.arange(len(chosen))
-        return Domain(name="robots", restricted=_restriction(f, chosen), owners=alone, names=chosen)
+        return Domain(
+            name="robots", restricted=_restriction(f, chosen), owners=alone, names=chosen, rounding=_rounding(f)
+        )
     everything = np.arange(f.n)
     if owners is None:
-        return Domain(name="elements", restricted=f, owners=everything, names=everything)
+        return Domain(name="elements", restricted=f, owners=everything, names=everything, rounding=error)
     given = np.asarray(owners)
     if given.shape != (f.n,) or given.dtype.kind not in "iu":
         raise InputError("owners", f"must hold {f.n} integers, one per element", f"shape {given.shape}, {given.dtype}")
     _, compact = np.unique(given, return_inverse=True)
-    return Domain(name="feasible", restricted=f, owners=compact.astype(np.int64), names=everything)
+    return Domain(
+        name="feasible", restricted=f, owners=compact.astype(np.int64), names=everything, rounding=_rounding(f)
+    )
 
 
 def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
@@ -77,3 +84,13 @@ def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
     membership = np.zeros((len(masks), f.n), dtype=np.bool_)
     membership[:, chosen] = masks[:, None] >> np.arange(len(chosen)) & 1
     return TableFunction(f.evaluate(membership))
+
+
+def _rounding(f: SetFunction) -> float:
+    """Several hundred units in the last place of the numbers that a marginal is the difference of."""
+    if isinstance(f, TableFunction):
+        return 0.0
+    size = abs(f(range(f.n)))
+    if isinstance(f, InformationObjective):
+        size += float(np.abs(f.criterion(f.prior_information)).sum())
+    return 1e-13 * size

@@ -7,25 +7,32 @@ element per robot: owners are given), or ``"robots"`` (the robots under one plan
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._validation import check_integer, check_number
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.contexts import LARGEST_ENUMERATION, Domain, domain_of
-from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.setfunctions.marginal_bounds import bracket_marginals
+from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.marginal_bounds import Budget, bracket_marginals
 from ratt_opt.setfunctions.marginals import Marginals, enumerate_marginals
+from ratt_opt.setfunctions.properties import Violation, find_submodularity_violation
 from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.base import SetFunction
 
 __all__ = ["Curvature", "check_monotone", "curvature", "total_curvature"]
+
+GAP = 0.02
+SECONDS = 30.0
+LARGEST_CHECKED = 16
+"""Largest ground set whose submodularity is checked before the closed form is used (milliseconds)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +41,9 @@ class Curvature:
 
     ``element`` attains ``lower``: its marginal in ``smallest_context`` is the smallest found, and the one in
     ``largest_context`` the largest. ``useless`` : elements whose every marginal is 0, left out by definition
-    (0 / 0 says nothing about them). ``how`` : what the ends rest on.
+    (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within the
+    rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
+    ``how`` : what the ends rest on. ``stop`` : why the search stopped; ``nodes`` : parts of the domain bounded.
     """
 
     lower: float
@@ -44,20 +53,33 @@ class Curvature:
     smallest_context: tuple[int, ...]
     largest_context: tuple[int, ...]
     useless: tuple[int, ...]
+    near_zero: tuple[int, ...]
     how: str
+    stop: Stop
+    nodes: int
 
 
-def total_curvature(f: SetFunction, owners: ArrayLike | None = None, *, plan: ArrayLike | None = None) -> Curvature:
+def total_curvature(
+    f: SetFunction,
+    owners: ArrayLike | None = None,
+    *,
+    plan: ArrayLike | None = None,
+    gap: float = GAP,
+    time_limit: float | None = SECONDS,
+    max_nodes: int | None = None,
+) -> Curvature:
     """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
 
-    Exact where the domain can be enumerated, else for information criteria a certified bracket:
-    see :mod:`ratt_opt.setfunctions.marginal_bounds`.
+    Exact where the domain can be enumerated (up to 2**24 sets), else for information criteria a certified bracket,
+    tightened by branch and bound: see :mod:`ratt_opt.setfunctions.marginal_bounds`. An interrupt returns the bracket.
 
     Parameters
     ----------
     f : non-decreasing set function; refused with a witness where an enumeration shows that it is not
     owners : (n,) robot of each element, for the domain ``"feasible"``; without it the domain is ``"elements"``
     plan : one element per robot, for the domain ``"robots"`` (``owners`` are then not used)
+    gap : the search stops once ``(1 - lower) / (1 - upper) <= 1 + gap``; not used where everything is enumerated
+    time_limit : seconds for the search; ``None`` for no limit. max_nodes : parts it may bound
 
     Raises
     ------
@@ -65,12 +87,21 @@ def total_curvature(f: SetFunction, owners: ArrayLike | None = None, *, plan: Ar
 
     Source: ratt.tex, eq:total_curvature (Sviridenko, Vondrak, Ward 2017, Section 8).
     """
+    budget = _budget(gap, time_limit, max_nodes)
     domain = domain_of(f, owners, plan)
-    marginals, how = _marginals(domain)
-    return _curvature_from(marginals, marginals.largest_upper, marginals.largest_lower, domain, how)
+    found = _marginals(domain, budget, against_own=False)
+    return _curvature_from(found, domain)
 
 
-def curvature(f: SetFunction, owners: ArrayLike | None = None, *, plan: ArrayLike | None = None) -> Curvature:
+def curvature(
+    f: SetFunction,
+    owners: ArrayLike | None = None,
+    *,
+    plan: ArrayLike | None = None,
+    gap: float = GAP,
+    time_limit: float | None = SECONDS,
+    max_nodes: int | None = None,
+) -> Curvature:
     """Curvature ``k = 1 - min_x (smallest marginal of x) / f(x)`` of a submodular function.
 
     Over ``"elements"`` and ``"robots"`` the smallest marginal of a submodular function is the one on top of all
@@ -78,33 +109,69 @@ def curvature(f: SetFunction, owners: ArrayLike | None = None, *, plan: ArrayLik
 
     Parameters
     ----------
-    f : normalised, non-decreasing and submodular (for the closed form: relied on, not checked, except log-det,
-        which is); owners, plan : see :func:`total_curvature`
+    f : normalised, non-decreasing and submodular. Over ``"elements"`` and ``"robots"`` that is checked where the table
+        fits, known for log-det, and otherwise relied on, not checked (``how`` says which)
+    owners, plan, gap, time_limit, max_nodes : see :func:`total_curvature`
 
     Raises
     ------
-    InputError : not non-decreasing, or the domain is too large for an enumeration and no bracket is known for ``f``.
+    InputError : not non-decreasing or not submodular (shown), or the domain is too large for an enumeration and no
+        bracket is known for ``f``.
 
     Source: ratt.tex, eq:curvature (Conforti and Cornuejols 1984).
     """
+    budget = _budget(gap, time_limit, max_nodes)
     domain = domain_of(f, owners, plan)
-    single = domain.restricted.singletons()
-    if domain.name != "feasible":
-        marginals, how = _top_of_lattice(domain.restricted), "ends of the lattice (submodular)"
+    if domain.name == "feasible":
+        found = _marginals(domain, budget, against_own=True)
     else:
-        marginals, how = _marginals(domain)
-    return _curvature_from(marginals, single, single, domain, how)
+        found = _Found(_top_of_lattice(domain.restricted), _submodularity(domain), Stop.EXHAUSTED, 0)
+        check_monotone(domain, found.marginals)
+    single = domain.restricted.singletons() - domain.restricted([])
+    marginals = replace(found.marginals, largest_lower=single, largest_upper=single)
+    return _curvature_from(replace(found, marginals=marginals), domain)
 
 
-def _marginals(domain: Domain) -> tuple[Marginals, str]:
+@dataclass(frozen=True, slots=True)
+class _Found:
+    marginals: Marginals
+    how: str
+    stop: Stop
+    nodes: int
+
+
+def _budget(gap: float, time_limit: float | None, max_nodes: int | None) -> Budget:
+    return Budget(
+        gap=check_number("gap", gap, low=0),
+        seconds=None if time_limit is None else check_number("time_limit", time_limit, low=0),
+        nodes=None if max_nodes is None else check_integer("max_nodes", max_nodes, low=0),
+    )
+
+
+def _marginals(domain: Domain, budget: Budget, *, against_own: bool) -> _Found:
     if domain.count <= LARGEST_ENUMERATION:
         found = enumerate_marginals(domain)
         check_monotone(domain, found)
-        return found, "every context enumerated"
+        return _Found(found, "every context enumerated", Stop.EXHAUSTED, 0)
     if isinstance(domain.restricted, InformationObjective):
-        return bracket_marginals(domain.restricted, domain.owners), "convex minorants and attained contexts"
+        searched = bracket_marginals(domain.restricted, domain.owners, budget, against_own=against_own)
+        return _Found(searched.marginals, "separable minorants and attained contexts", searched.stop, searched.nodes)
     need = f"{domain.count:.3g} contexts, {domain.count * 8 / 2**30:.3g} GiB"
     raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
+
+
+def _submodularity(domain: Domain) -> str:
+    """Say on what the closed form rests; refuse a function that is shown not to be submodular."""
+    how = "ends of the lattice"
+    if isinstance(domain.restricted, LogDetObjective):
+        return f"{how} (log-det is submodular)"
+    if domain.restricted.n > LARGEST_CHECKED:
+        return f"{how} (submodularity relied on, not checked)"
+    found = find_submodularity_violation(domain.restricted)
+    if isinstance(found, Violation):
+        sets = " and ".join(str(list(domain.named(s))) for s in (found.a, found.b))
+        raise InputError("f", "must be submodular (see total_curvature)", f"slack {found.slack:.6g} at {sets}")
+    return f"{how} (submodularity checked)"
 
 
 def check_monotone(domain: Domain, found: Marginals) -> None:
@@ -133,36 +200,28 @@ def _top_of_lattice(f: SetFunction) -> Marginals:
     return Marginals(top, top, single, single, contexts, nothing)
 
 
-def _curvature_from(
-    marginals: Marginals, largest_upper: FloatArray, largest_lower: FloatArray, domain: Domain, how: str
-) -> Curvature:
-    useful = largest_upper > 0
-    useless = tuple(domain.element(x) for x in np.flatnonzero(~useful))
-    if not useful.any():
-        return Curvature(
-            lower=0.0,
-            upper=0.0,
-            domain=domain.name,
-            element=None,
-            smallest_context=(),
-            largest_context=(),
-            useless=useless,
-            how="no element ever adds anything: modular",
-        )
-    safest = np.full(len(useful), np.inf)
-    safest[useful] = np.clip(marginals.smallest_lower[useful], 0.0, None) / largest_upper[useful]
-    attained = np.full(len(useful), np.inf)
-    seen = useful & (largest_lower > 0)
-    attained[seen] = np.clip(marginals.smallest_upper[seen], 0.0, None) / largest_lower[seen]
-    x = int(attained.argmin())
-    upper = 1.0 - float(safest.min())
+def _curvature_from(found: _Found, domain: Domain) -> Curvature:
+    marginals, rounding = found.marginals, domain.rounding
+    most, seen = marginals.largest_upper, marginals.largest_lower
+    useful = most > 0
+    doubtful = useful & (most <= rounding)
+    safe, shown = np.full(len(most), np.inf), np.full(len(most), np.inf)
+    safe[useful] = np.clip(marginals.smallest_lower[useful], 0.0, None) / most[useful]
+    safe[doubtful] = np.clip(marginals.smallest_lower[doubtful] - rounding, 0.0, None) / (most[doubtful] + rounding)
+    sure = useful & (seen > rounding)
+    shown[sure] = np.clip(marginals.smallest_upper[sure], 0.0, None) / seen[sure]
+    upper = 1.0 - float(safe.min(initial=1.0))
+    x = int(shown.argmin()) if sure.any() else None
     return Curvature(
-        lower=min(max(1.0 - float(attained[x]), 0.0), upper),
-        upper=min(upper, 1.0),
+        lower=0.0 if x is None else min(max(1.0 - float(shown[x]), 0.0), max(upper, 0.0)),
+        upper=max(upper, 0.0),
         domain=domain.name,
-        element=domain.element(x),
-        smallest_context=domain.named(marginals.smallest_context[x]),
-        largest_context=domain.named(marginals.largest_context[x]),
-        useless=useless,
-        how=how,
+        element=None if x is None else domain.element(x),
+        smallest_context=() if x is None else domain.named(marginals.smallest_context[x]),
+        largest_context=() if x is None else domain.named(marginals.largest_context[x]),
+        useless=tuple(domain.element(x) for x in np.flatnonzero(~useful)),
+        near_zero=tuple(domain.element(x) for x in np.flatnonzero(doubtful)),
+        how=found.how if useful.any() else "no element ever adds anything",
+        stop=found.stop,
+        nodes=found.nodes,
     )

@@ -1,20 +1,10 @@
 """Certified brackets of the marginals of information criteria over domains too large to enumerate.
 
-Let ``x`` have information ``I = sum_k a_k u_k u_k'`` (orthonormal ``u_k``) about one target, and let the context
-have posterior information ``L``, covariance ``P = L^{-1}``, prior ``P0``.
+*Smallest marginals* of trace and log-det: branch and bound with separable minorants, always on the element whose
+ratio of smallest to largest marginal is the least certain, until the ratio that decides the curvature is known within
+the gap, or a budget is spent (:mod:`ratt_opt.setfunctions.context_search`).
 
-*Smallest marginal, from below.* Adding the rank-one terms one after the other, with
-``s_k = u_k' P u_k >= 1 / (u_k' L u_k)`` (Cauchy-Schwarz) and ``u_k' P^2 u_k >= s_k^2``, and since earlier terms do not
-change ``u_k' L u_k`` of the later ones:
-
-    trace:   marginal >= sum_k h_k(u_k' L u_k),  h_k(y) = 1/y - 1/(y + a_k)
-    log-det: marginal >= sum_k h_k(u_k' L u_k),  h_k(y) = log(1 + a_k / y)
-
-(pinching in the eigenbasis of ``I``). Each ``h_k`` is convex and ``u_k' L u_k`` is linear in the context, so a
-tangent at any relaxed context bounds all contexts, and its minimum splits into one per other robot. The tangent point
-is improved by conditional-gradient steps.
-
-*Largest marginal, from above.* ``(P^{-1} + I)^{-1}`` is concave in ``P`` (parallel sum), so the trace marginal is
+*Largest marginals*, from above. ``(P^{-1} + I)^{-1}`` is concave in ``P`` (parallel sum), so the trace marginal is
 convex in ``P`` and largest at an extreme point of ``0 <= P <= P0``: at ``P0`` (no context), or at a rank-one
 ``P = w w'`` with ``w' P0^{-1} w = 1``, where it is ``|w|^2 q / (1 + q)`` with ``q = w' I w``, at most
 ``lambda_max(P0) q_max / (1 + q_max)``, ``q_max = lambda_max(P0^{1/2} I P0^{1/2})``. An isotropic prior makes the first
@@ -24,40 +14,121 @@ elements together, and at least 0.
 
 from __future__ import annotations
 
+import time
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective, TraceObjective
+from ratt_opt.setfunctions.context_search import ContextSearch
+from ratt_opt.setfunctions.eigenvalue_search import EigenvalueSearch
+from ratt_opt.setfunctions.information import (
+    InformationObjective,
+    LogDetObjective,
+    MaxEigenvalueObjective,
+    TraceObjective,
+)
 from ratt_opt.setfunctions.marginals import Marginals
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["bracket_marginals"]
+__all__ = ["Budget", "bracket_marginals"]
 
-STEPS = 24
-SWEEPS = 2
 MARGIN = 1e-11
-"""Relative safety margin for rounding on every bound."""
+"""Relative safety margin for rounding on the largest marginals."""
 
 
-def bracket_marginals(f: InformationObjective, owners: IntArray) -> Marginals:
-    """Bracket the smallest and largest marginal of every element over sets with at most one element per owner."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Budget:
+    """When to stop: ``(1 - lower) / (1 - upper) <= 1 + gap``, ``seconds``, or ``nodes`` parts bounded."""
+
+    gap: float
+    seconds: float | None
+    nodes: int | None
+    began: float = field(default_factory=time.monotonic)
+
+    def spent(self, nodes: int) -> Stop | None:
+        """Why to stop now, if at all."""
+        if self.nodes is not None and nodes >= self.nodes:
+            return Stop.NODES
+        if self.seconds is not None and time.monotonic() - self.began >= self.seconds:
+            return Stop.TIME
+        return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BracketedMarginals:
+    """Marginals known within brackets, why the search for them stopped, and the parts it bounded."""
+
+    marginals: Marginals
+    stop: Stop
+    nodes: int
+
+
+def bracket_marginals(
+    f: InformationObjective, owners: IntArray, budget: Budget, *, against_own: bool
+) -> BracketedMarginals:
+    """Bracket the smallest and largest marginal of every element over sets with at most one element per owner.
+
+    ``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal.
+    """
     single = f.singletons()
+    largest = _largest(f, single)
+    search = _Searches(f, owners, single if against_own else largest, single, budget)
+    stop = search.run()
+    lower, upper, contexts = search.ends()
     nothing: tuple[tuple[int, ...], ...] = ((),) * f.n
-    lower = np.zeros(f.n)
-    upper = np.empty(f.n)
-    contexts: list[tuple[int, ...]] = []
-    smooth = isinstance(f, (TraceObjective, LogDetObjective))
-    for x in range(f.n):
-        search = _ContextSearch(f, owners, x, single)
-        if smooth:
-            lower[x] = search.minorant()
-        upper[x], context = search.attained()
-        contexts.append(context)
-    largest_upper = _largest(f, single)
-    return Marginals(np.minimum(lower, upper), upper, single, largest_upper, tuple(contexts), nothing)
+    found = Marginals(lower, upper, single, largest, contexts, nothing)
+    return BracketedMarginals(marginals=found, stop=stop, nodes=search.nodes)
+
+
+class _Searches:
+    """One search an element; the least certain ratio is refined first."""
+
+    def __init__(
+        self, f: InformationObjective, owners: IntArray, most: FloatArray, seen: FloatArray, budget: Budget
+    ) -> None:
+        self.f, self.owners, self.budget = f, owners, budget
+        self.most, self.seen = most, seen
+        self.searches: list[ContextSearch | EigenvalueSearch] = []
+        self._search = EigenvalueSearch if isinstance(f, MaxEigenvalueObjective) else ContextSearch
+
+    @property
+    def nodes(self) -> int:
+        """Parts bounded so far."""
+        return sum(search.nodes for search in self.searches)
+
+    def run(self) -> Stop:
+        """Search until the deciding ratio is known or the budget is spent."""
+        try:
+            for x in range(self.f.n):
+                self.searches.append(self._search(self.f, self.owners, x))
+                if stop := self.budget.spent(0):
+                    return stop
+            while True:
+                lower, upper, _ = self.ends()
+                safe = np.where(self.most > 0, lower / np.where(self.most > 0, self.most, 1.0), np.inf)
+                shown = np.where(self.seen > 0, upper / np.where(self.seen > 0, self.seen, 1.0), np.inf)
+                order = [int(x) for x in np.argsort(safe, kind="stable") if not self.searches[x].exhausted]
+                target = float(shown.min(initial=np.inf)) / (1 + self.budget.gap)
+                weak = [x for x in order if safe[x] < target]
+                if not weak:
+                    return Stop.GAP if order else Stop.CLOSED
+                if stop := self.budget.spent(self.nodes):
+                    return stop
+                self.searches[weak[0]].refine()
+        except KeyboardInterrupt:
+            return Stop.INTERRUPTED
+
+    def ends(self) -> tuple[FloatArray, FloatArray, tuple[tuple[int, ...], ...]]:
+        """Lower and upper ends of the smallest marginals and contexts; of no search yet: 0 and the value alone."""
+        lower, upper = np.zeros(self.f.n), self.f.singletons()
+        contexts: list[tuple[int, ...]] = [()] * self.f.n
+        for x, search in enumerate(self.searches):
+            lower[x], upper[x], contexts[x] = max(search.lower, 0.0), search.attained.value, search.attained.context
+        return np.minimum(lower, upper), upper, tuple(contexts)
 
 
 def _largest(f: InformationObjective, single: FloatArray) -> FloatArray:
@@ -73,71 +144,3 @@ def _largest(f: InformationObjective, single: FloatArray) -> FloatArray:
     rank_one = f.weights * values[:, -1] * q / (1 + q)
     alone = f.criterion(f.prior_information) - f.criterion(f.prior_information + f.information)
     return np.asarray(np.maximum(alone, rank_one).sum(axis=-1) * (1 + MARGIN))
-
-
-class _ContextSearch:
-    """Contexts of one element: what the others may contribute, and how small the marginal gets."""
-
-    def __init__(self, f: InformationObjective, owners: IntArray, x: int, single: FloatArray) -> None:
-        self.f, self.x = f, x
-        self.others = [np.flatnonzero(owners == i) for i in np.unique(owners) if i != owners[x]]
-        self._found: list[tuple[int, ...]] = [tuple(int(own[single[own].argmax()]) for own in self.others)]
-
-    def minorant(self) -> float:
-        """Lower bound on the marginal over all contexts, by tangents of the pinched minorant."""
-        f = self.f
-        a, u = np.linalg.eigh(f.information[self.x])
-        a = np.clip(a, 0.0, None)
-        # y[e', j, k] = u_jk' I_e'j u_jk : what each other element adds to u_k' L u_k.
-        y = np.einsum("jak,ejab,jbk->ejk", u, f.information, u, optimize=True)
-        start = np.einsum("jak,jab,jbk->jk", u, f.prior_information, u)
-        point = start.copy()
-        best = 0.0
-        for step in range(STEPS):
-            value, slope = _minorant_terms(f, point, a)
-            gain = np.einsum("jk,ejk->e", slope, y)
-            picks = tuple(int(own[gain[own].argmin()]) for own in self.others)
-            vertex = start + y[list(picks)].sum(axis=0)
-            bound = value + float((slope * (vertex - point)).sum())
-            best = max(best, bound - MARGIN * (abs(value) + abs(bound)))
-            self._found.append(picks)
-            point = point + 2 / (step + 2) * (vertex - point)
-        return best
-
-    def attained(self) -> tuple[float, tuple[int, ...]]:
-        """The smallest marginal found, and its context: the search's contexts, then coordinate descent."""
-        contexts = list(dict.fromkeys([(), *self._found]))
-        values = [self._marginal(np.array(c, dtype=np.int64)[None])[0] for c in contexts]
-        best = int(np.argmin(values))
-        value, context = float(values[best]), list(contexts[best])
-        if not context:
-            return value, ()
-        for _ in range(SWEEPS):
-            before = value
-            for i, own in enumerate(self.others):
-                trials = np.tile(np.array(context), (len(own), 1))
-                trials[:, i] = own
-                marginals = self._marginal(trials)
-                k = int(marginals.argmin())
-                if marginals[k] < value:
-                    value, context[i] = float(marginals[k]), int(own[k])
-            if value >= before:
-                break
-        return value, tuple(context)
-
-    def _marginal(self, contexts: IntArray) -> FloatArray:
-        f = self.f
-        posterior = f.prior_information + f.information[contexts].sum(axis=1)
-        return f.value(posterior + f.information[self.x]) - f.value(posterior)
-
-
-def _minorant_terms(f: InformationObjective, y: FloatArray, a: FloatArray) -> tuple[float, FloatArray]:
-    """Value and slope (M, d) of the pinched minorant at ``y = u_k' L u_k`` (M, d)."""
-    w = f.weights[:, None]
-    if isinstance(f, TraceObjective):
-        value = w * a / (y * (y + a))
-        slope = -w * a * (2 * y + a) / (y * (y + a)) ** 2
-    else:
-        value = w * np.log1p(a / y)
-        slope = -w * a / (y * (y + a))
-    return float(value.sum()), slope
