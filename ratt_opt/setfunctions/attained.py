@@ -1,4 +1,4 @@
-"""The smallest marginal of one element that was seen, and the context it was seen in."""
+"""The smallest, or the largest, marginal of one element that was seen, and the context it was seen in."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ SWEEPS = 3
 
 
 class Attained:
-    """``value`` is the marginal of ``x`` in ``context``, the smallest of those offered."""
+    """``value`` is the marginal of ``x`` in ``context``, the smallest (or ``largest``) of those offered."""
 
-    def __init__(self, f: InformationObjective, x: int, others: Others) -> None:
+    def __init__(self, f: InformationObjective, x: int, others: Others, *, largest: bool = False) -> None:
         self.f, self.x, self.others = f, x, others
-        self.value = np.inf
+        self._sign = -1.0 if largest else 1.0
+        self.value = self._sign * np.inf
         self.context: tuple[int, ...] = ()
         self._tried: set[tuple[int, ...]] = set()
         self.offer(np.empty(0, dtype=np.int64))
 
     def descend(self) -> None:
-        """Coordinate descent from the best context of the root."""
+        """Coordinate descent from the best context so far."""
         others = self.others
         for _ in range(SWEEPS):
             before = self.value
@@ -37,7 +38,7 @@ class Attained:
                 trials = np.concatenate([np.tile(rest, (len(own), 1)), own[:, None]], axis=1)
                 self._keep(trials)
                 self._keep(rest[None])
-            if self.value >= before:
+            if self.value == before:
                 return
 
     def offer(self, context: IntArray) -> None:
@@ -52,6 +53,6 @@ class Attained:
         f = self.f
         posterior = f.prior_information + f.information[contexts].sum(axis=1)
         marginals = f.value(posterior + f.information[self.x]) - f.value(posterior)
-        k = int(marginals.argmin())
-        if marginals[k] < self.value:
+        k = int((self._sign * marginals).argmin())
+        if self._sign * marginals[k] < self._sign * self.value:
             self.value, self.context = float(marginals[k]), tuple(contexts[k].tolist())

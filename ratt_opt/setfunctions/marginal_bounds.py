@@ -8,8 +8,9 @@ the gap, or a budget is spent (:mod:`ratt_opt.setfunctions.context_search`).
 convex in ``P`` and largest at an extreme point of ``0 <= P <= P0``: at ``P0`` (no context), or at a rank-one
 ``P = w w'`` with ``w' P0^{-1} w = 1``, where it is ``|w|^2 q / (1 + q)`` with ``q = w' I w``, at most
 ``lambda_max(P0) q_max / (1 + q_max)``, ``q_max = lambda_max(P0^{1/2} I P0^{1/2})``. An isotropic prior makes the first
-the larger. The log-det marginal is largest without context. The max-eigenvalue marginal is at most the value of all
-elements together, and at least 0.
+the larger. The log-det marginal is largest without context.
+
+The max-eigenvalue criterion has its own bounds, see :mod:`ratt_opt.setfunctions.eigenvalue_search`.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.setfunctions.attained import Attained
 from ratt_opt.setfunctions.context_search import ContextSearch
-from ratt_opt.setfunctions.eigenvalue_search import EigenvalueSearch
+from ratt_opt.setfunctions.eigenvalue_search import EigenvalueSearch, eigenvalue_ends
 from ratt_opt.setfunctions.information import (
     InformationObjective,
     LogDetObjective,
@@ -29,6 +31,7 @@ from ratt_opt.setfunctions.information import (
     TraceObjective,
 )
 from ratt_opt.setfunctions.marginals import Marginals
+from ratt_opt.setfunctions.minorants import others_of
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -75,36 +78,66 @@ def bracket_marginals(
     ``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal.
     """
     single = f.singletons()
-    largest = _largest(f, single)
-    search = _Searches(f, owners, single if against_own else largest, single, budget)
-    stop = search.run()
-    lower, upper, contexts = search.ends()
+    if isinstance(f, MaxEigenvalueObjective):
+        ends = eigenvalue_ends(f, owners)
+        largest, floor = ends.ceiling, ends.floor
+    else:
+        largest, floor = _largest(f, single), np.zeros(f.n)
     nothing: tuple[tuple[int, ...], ...] = ((),) * f.n
-    found = Marginals(lower, upper, single, largest, contexts, nothing)
+    seen, contexts = (single, nothing) if against_own else _seen_largest(f, owners, single, largest)
+    search = _Searches(f, owners, _Denominators(single if against_own else largest, seen), floor, budget)
+    stop = search.run()
+    lower, upper, smallest = search.ends()
+    found = Marginals(lower, upper, seen, np.maximum(largest, seen), smallest, contexts)
     return BracketedMarginals(marginals=found, stop=stop, nodes=search.nodes)
+
+
+def _seen_largest(
+    f: InformationObjective, owners: IntArray, single: FloatArray, largest: FloatArray
+) -> tuple[FloatArray, tuple[tuple[int, ...], ...]]:
+    """Attained ends of the largest marginals: the value alone where that is known to be it, else a search."""
+    seen = single.copy()
+    contexts: list[tuple[int, ...]] = [()] * f.n
+    for x in np.flatnonzero(largest > single * (1 + 1e-6)).tolist():
+        attained = Attained(f, x, others_of(f, owners, x), largest=True)
+        attained.descend()
+        seen[x], contexts[x] = attained.value, attained.context
+    return seen, tuple(contexts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Denominators:
+    """(n,) proved upper bounds and attained values of what the smallest marginals are compared with."""
+
+    most: FloatArray
+    seen: FloatArray
 
 
 class _Searches:
     """One search an element; the least certain ratio is refined first."""
 
     def __init__(
-        self, f: InformationObjective, owners: IntArray, most: FloatArray, seen: FloatArray, budget: Budget
+        self, f: InformationObjective, owners: IntArray, compared: _Denominators, floor: FloatArray, budget: Budget
     ) -> None:
         self.f, self.owners, self.budget = f, owners, budget
-        self.most, self.seen = most, seen
+        self.most, self.seen, self.floor = compared.most, compared.seen, floor
         self.searches: list[ContextSearch | EigenvalueSearch] = []
-        self._search = EigenvalueSearch if isinstance(f, MaxEigenvalueObjective) else ContextSearch
 
     @property
     def nodes(self) -> int:
         """Parts bounded so far."""
         return sum(search.nodes for search in self.searches)
 
+    def _search(self, x: int) -> ContextSearch | EigenvalueSearch:
+        if isinstance(self.f, MaxEigenvalueObjective):
+            return EigenvalueSearch(self.f, self.owners, x, float(self.floor[x]))
+        return ContextSearch(self.f, self.owners, x)
+
     def run(self) -> Stop:
         """Search until the deciding ratio is known or the budget is spent."""
         try:
             for x in range(self.f.n):
-                self.searches.append(self._search(self.f, self.owners, x))
+                self.searches.append(self._search(x))
                 if stop := self.budget.spent(0):
                     return stop
             while True:
@@ -124,7 +157,7 @@ class _Searches:
 
     def ends(self) -> tuple[FloatArray, FloatArray, tuple[tuple[int, ...], ...]]:
         """Lower and upper ends of the smallest marginals and contexts; of no search yet: 0 and the value alone."""
-        lower, upper = np.zeros(self.f.n), self.f.singletons()
+        lower, upper = self.floor.copy(), self.f.singletons()
         contexts: list[tuple[int, ...]] = [()] * self.f.n
         for x, search in enumerate(self.searches):
             lower[x], upper[x], contexts[x] = max(search.lower, 0.0), search.attained.value, search.attained.context
@@ -135,9 +168,7 @@ def _largest(f: InformationObjective, single: FloatArray) -> FloatArray:
     """(n,) upper bounds on the largest marginals."""
     if isinstance(f, LogDetObjective):
         return single * (1 + MARGIN)
-    if not isinstance(f, TraceObjective):
-        # The worst target's criterion cannot fall below that of all elements together.
-        return np.full(f.n, f(range(f.n)) * (1 + MARGIN))
+    assert isinstance(f, TraceObjective)
     values, vectors = np.linalg.eigh(f.prior)
     root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
     q = np.linalg.eigvalsh(root @ f.information @ root)[..., -1]

@@ -10,6 +10,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions import context_search
+from ratt_opt.setfunctions.eigenvalue_search import eigenvalue_ends
 from ratt_opt.setfunctions.minorants import minorant, others_of
 from ratt_opt.stopping import Stop
 from tests.setfunctions import oracle
@@ -289,3 +290,38 @@ def test_domains_too_large_say_the_memory_before_allocating():
     with pytest.raises(InputError, match="must not repeat"):
         f([1, 1])
     assert ro.curvature(f).upper == 0  # the ends of the lattice need no table
+
+
+def test_eigenvalue_ends_hold_for_every_context():
+    rng = np.random.default_rng(40)
+    for trial in range(40):
+        owners = np.array([0, 0, 1, 1, 2, 3])
+        if trial % 2:
+            prior, information = information_data(rng, 6, int(rng.integers(1, 4)), int(rng.integers(1, 4)))
+        else:
+            prior, information = range_bearing(rng, 2, 3, 3)
+        f = ro.MaxEigenvalueObjective(prior, information, rng.uniform(0.5, 2, len(prior)))
+        ends = eigenvalue_ends(f, owners)
+        values, allowed = f.table(), oracle.allowed_sets(6, owners)
+        for x in range(6):
+            found = oracle.marginals(values, x, allowed)
+            assert ends.floor[x] <= min(found) + 1e-9
+            assert max(found) <= ends.ceiling[x] + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_max_eigenvalue_bracket_says_something_on_section_six(seed):
+    problem = ro.random_scenario(10, 15, alpha_s=1, alpha_c=1, seed=seed).problem("maxeig")
+    found = ro.total_curvature(problem.objective, problem.robot)
+    assert found.lower <= found.upper < 1
+    assert ratio_shown(problem.objective, found) == pytest.approx(found.lower, abs=1e-9)
+
+
+def test_a_max_eigenvalue_marginal_that_is_truly_zero_has_a_witness(monkeypatch):
+    """Element 0 only sees across; once element 1 has seen along, the other axis is the worst, and 2 alone helps it."""
+    prior = np.eye(2)[None] * 4.0
+    information = np.array([np.diag([1.0, 0.0]), np.diag([0.0, 1.0]), np.diag([2.0, 0.5])])[:, None]
+    monkeypatch.setattr(LIMIT, 1)
+    found = ro.total_curvature(ro.MaxEigenvalueObjective(prior, information), [0, 1, 2])
+    assert found.lower == found.upper == 1
+    assert ratio_shown(ro.MaxEigenvalueObjective(prior, information), found) == 1
