@@ -40,10 +40,13 @@ class Incumbent:
         self._tried: set[bytes] = set()
 
     def start(self) -> None:
-        """Try RATT, greedy and myopic plans, and improve the best."""
-        for planner in (ratt, greedy, myopic):
-            self.offer(planner(self.problem).elements)
-        self.improve()
+        """Improve the most promising of RATT's, the greedy and the myopic plan, then try what these plans are worth."""
+        plans = [planner(self.problem).elements for planner in (ratt, greedy, myopic)]
+        for plan in plans:
+            self._quick_attack(plan)
+        self.improve(max(plans, key=self.pool.plan_value))
+        for plan in plans:
+            self.offer(plan)
 
     def offer(self, plan: IntArray) -> bool:
         """Attack a plan that is better on the known outcomes; return whether it became the incumbent."""
@@ -51,6 +54,8 @@ class Incumbent:
         if key in self._tried or self.pool.plan_value(plan) <= self.lower:
             return False
         self._tried.add(key)
+        if self._quick_attack(plan) <= self.lower:
+            return False
         result = self.attack(plan)
         if result.lower > self.lower:
             self.lower, self.elements = result.lower, plan.copy()
@@ -63,6 +68,17 @@ class Incumbent:
         self.evaluations += result.evaluations
         self.pool.add(result.attack)
         return result
+
+    def _quick_attack(self, plan: IntArray) -> float:
+        """Value that an attack found in a single node leaves, and remember its outcome.
+
+        In large teams this attack is nearly the worst one at a hundredth of the cost, so the exact attack,
+        which alone makes an incumbent, is kept for the plans that withstand this one.
+        """
+        result = worst_case_attack(self.problem, plan, max_nodes=1, time_limit=self._attack_time)
+        self.evaluations += result.evaluations
+        self.pool.add(result.attack)
+        return result.upper
 
     def attack_relaxed(self, of_robot: FloatArray) -> list[Attack]:
         """Attacks on a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d), as if it were a plan."""
@@ -79,8 +95,8 @@ class Incumbent:
     def improve(self, plan: IntArray | None = None) -> None:
         """Local search from a plan (the incumbent by default): best single-robot change, while that helps.
 
-        Steps are judged by the known outcomes and a cheap attack on each; only where no step is left the
-        plan is attacked exactly, and the search goes on against what that attack adds.
+        Steps are judged by the known outcomes and a cheap attack on each. Where no step is left the plan is
+        attacked in earnest, first quickly and then exactly, and the search goes on against what that adds.
         """
         current = self.elements if plan is None else plan
         for _ in range(LOCAL_SEARCH_ROUNDS):
@@ -90,9 +106,12 @@ class Incumbent:
                 current = candidate
                 continue
             known = len(self.pool.attacks)
-            self.offer(current)
+            self._quick_attack(current)
+            if len(self.pool.attacks) == known:
+                self.offer(current)
             if len(self.pool.attacks) == known:
                 return
+        self.offer(current)
 
     def _best_swap(self, plan: IntArray) -> IntArray | None:
         """The single-robot change with the largest value on the known outcomes, if it beats the plan's."""
