@@ -1,4 +1,4 @@
-"""Sensitivity to what the paper leaves open: sensor noise, its law, and the targets' prior.
+"""Sensitivity to what the paper leaves open: sensor noise, its law, the targets' prior and motion noise.
 
 ``python -m analysis.extended.sensitivity --trials 200 --out DIR``
 """
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 DEFAULTS: dict[str, Cell] = {
     "prior_std": 3.0,
+    "process_std": 0.5,
     "sensor.law": "variance",
     "sensor.range_noise": 0.5,
     "sensor.range_noise_slope": 0.2,
@@ -39,6 +40,7 @@ VARIANTS: dict[str, dict[str, Cell]] = {
     "default": {},
     "prior std\n÷ 3": _scaled(["prior_std"], 1 / 3),
     "prior std\n× 3": _scaled(["prior_std"], 3),
+    "motion std\n× 4": _scaled(["process_std"], 4),
     "range var.\n÷ 10": _scaled(RANGE, 0.1),
     "range var.\n× 10": _scaled(RANGE, 10),
     "bearing var.\n÷ 10": _scaled(BEARING, 0.1),
@@ -60,7 +62,7 @@ STUDY = Study(
 
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One panel per attacker: how much larger the trace of Greedy and Random is than RATT's, per cent."""
-    figure = new_figure(10, 6.4)
+    figure = new_figure(11, 6.4)
     for axes, attacker in zip(figure.subplots(2, 1, sharex=True), STUDY.attackers, strict=True):
         kept = [select(rows, case=case.name) for case in CASES.values()]
         own = [column(k, f"ratt/{attacker}/trace") for k in kept]
@@ -76,7 +78,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         axes.set_title(f"{attacker.replace('_', '-')} attack")
         axes.set_ylabel("trace above RATT's [%]")
     handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper right", ncols=2, frameon=False)
+    figure.legend(handles, labels, loc="outside upper center", ncols=2, frameon=False)
     figure.supxlabel(
         f"N=10, M=15, $\\alpha_s$=5, $\\alpha_c$=15; mean of {len(kept[0])} paired trials with 95 % interval",
         fontsize="small",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,12 +13,18 @@ import pytest
 
 from analysis.extended.budgets import LEVELS
 from analysis.extended.exact_attack import STUDY as EXACT
+from analysis.extended.guarantees import STUDY as GUARANTEES
+from analysis.extended.guarantees import shares
+from analysis.extended.sensitivity import DEFAULTS, VARIANTS
+from analysis.studies.instance import Instance
+from analysis.studies.quantities import curvature_class
 from analysis.studies.statistics import column, select
 from analysis.studies.store import read_table
-from analysis.studies.study import run_trial
+from analysis.studies.study import Case, Seeds, run_trial
+from ratt_opt import worst_case_ratio
 
 ROOT = Path(__file__).resolve().parents[2]
-STUDIES = ("graphs", "budgets", "sensitivity")
+STUDIES = ("guarantees", "graphs", "budgets", "sensitivity")
 
 
 @pytest.fixture(scope="module")
@@ -65,3 +72,36 @@ def test_more_attacks_never_help(out: Path) -> None:
 def test_large_optima_are_reproducible() -> None:
     # Searches are limited by nodes, never by seconds, so a row is a function of its seeds.
     assert run_trial(EXACT, 3, 0) == run_trial(EXACT, 3, 0)
+
+
+def test_guarantees_are_ordered_and_hold_on_every_instance(out: Path) -> None:
+    rows = read_table(out / "guarantees")
+    found = shares(rows)
+    assert (found["theorem1"] <= found["pattern_free"] * (1 + 1e-12)).all()
+    assert (found["ratio"] <= found["certified"] * (1 + 1e-12)).all()
+    assert (found["pattern_free"] <= found["certified"]).all()
+    # With both budgets at work a single robot remains in the second half of the cases: RATT is then optimal.
+    assert (column(select(rows, alpha_s=2), "ratio") == 1).all()
+
+
+@pytest.mark.parametrize("upper", [0.0, 0.5, 0.7374127301306086, 0.998765, 1 - 1e-9, 1.0])
+def test_the_class_of_a_curvature_contains_it_narrowly(upper: float) -> None:
+    bound = float(curvature_class(upper))
+    assert upper <= bound <= 1
+    assert 1 - bound >= 0.9 * (1 - upper) * (1 - 1e-6)
+
+
+def test_the_ratio_of_a_row_is_the_librarys() -> None:
+    row = run_trial(GUARANTEES, 0, 1)
+    bound = str(curvature_class(float(row["curvature/upper"])))
+    assert row["ratio"] == worst_case_ratio(4, 1, 3, curvature=bound, family="submodular", domain="feasible").lower
+
+
+def test_sensitivity_varies_around_the_librarys_defaults() -> None:
+    plain = Case(n_robots=4, n_targets=3, alpha_s=1, alpha_c=2)
+    seeds = Seeds.of(1, 0)
+    scenarios = [
+        Instance.of(replace(plain, options=tuple((DEFAULTS | change).items())), seeds) for change in VARIANTS.values()
+    ]
+    assert scenarios[0].scenario == Instance.of(plain, seeds).scenario
+    assert len({one.digest for one in scenarios}) == len(VARIANTS)

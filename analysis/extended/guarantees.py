@@ -1,0 +1,83 @@
+"""A-priori guarantee, exact worst-case ratio and certified per-instance ratio, side by side.
+
+``python -m analysis.extended.guarantees --trials 200 --out DIR``
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.studies.command import Entry, main
+from analysis.studies.plots import new_figure, save
+from analysis.studies.statistics import column, select
+from analysis.studies.study import Case, Study
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+
+    from ratt_opt._validation import FloatArray
+
+STUDY = Study(
+    name="guarantees",
+    cases=tuple(
+        Case(n_robots=4, n_targets=4, alpha_s=s, alpha_c=c, objective=objective)
+        for objective in ("logdet", "trace")
+        for s, c in ((1, 3), (1, 4), (2, 3), (2, 4))
+    ),
+    planners=("ratt",),
+    attackers=("exact",),
+    metrics=("value", "proved"),
+    quantities=("optimum", "guarantees"),
+)
+OBJECTIVES = {"logdet": "log-determinant (curvature k)", "trace": "trace (total curvature c)"}
+SHOWN = {
+    "theorem1": ("Theorem 1 of the paper", "#6c757d"),
+    "pattern_free": ("pattern-free bound", "#e8871e"),
+    "ratio": ("smallest ratio of all functions so curved", "#b5179e"),
+    "certified": ("certified on the instance", "#1f4e9c"),
+}
+
+
+def shares(rows: Sequence[Mapping[str, str]]) -> dict[str, FloatArray]:
+    """(T,) each kind of guarantee: a share of the optimum that RATT's plan keeps under any attack."""
+    certified = column(rows, "ratt/exact/proved") / column(rows, "optimum/upper")
+    return {name: certified if name == "certified" else column(rows, name) for name in SHOWN}
+
+
+def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """One panel per objective: range, quartiles and median of each kind of guarantee, over budget pairs."""
+    figure = new_figure(11, 4.6)
+    for axes, (objective, title) in zip(figure.subplots(1, 2, sharey=True), OBJECTIVES.items(), strict=True):
+        cases = [case for case in STUDY.cases if case.objective == objective]
+        for at, case in enumerate(cases):
+            for k, (name, values) in enumerate(shares(select(rows, case=case.name)).items()):
+                _strip(axes, at + 0.2 * (k - 1.5), values, *SHOWN[name])
+        axes.set_xticks(range(len(cases)), [f"$\\alpha_s$={c.alpha_s}\n$\\alpha_c$={c.alpha_c}" for c in cases])
+        axes.set(yscale="log", title=title)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(axis="y", alpha=0.3)
+    figure.axes[0].set_ylabel("guaranteed share of the optimum")
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles[: len(SHOWN)], labels[: len(SHOWN)], loc="outside upper center", ncols=4, frameon=False)
+    note = f"N=M=4, exact attack; range, quartiles and median of {len(rows) // len(STUDY.cases)} trials"
+    figure.supxlabel(note, fontsize="small")
+    save(figure, folder, STUDY.name)
+
+
+def _strip(axes: Axes, at: float, values: FloatArray, label: str, colour: str) -> None:
+    low, first, middle, third, high = np.quantile(values, [0, 0.25, 0.5, 0.75, 1])
+    axes.plot([at, at], [low, high], color=colour, linewidth=1.2)
+    axes.plot([at, at], [first, third], color=colour, linewidth=9, solid_capstyle="butt", alpha=0.55)
+    axes.plot(at, middle, "o", color=colour, markersize=5, markeredgecolor="white", label=label)
+
+
+ENTRY = Entry(STUDY, draw)
+
+if __name__ == "__main__":
+    sys.exit(main("Three kinds of guarantees side by side.", [ENTRY], trials=200))
