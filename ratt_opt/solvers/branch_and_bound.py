@@ -107,7 +107,7 @@ class BranchAndBound:
             self._current = None
             if progress is not None:
                 progress(self.nodes, self.incumbent.lower, self.upper)
-        return Stop.CLOSED if self.upper <= self.incumbent.lower * (1 + 1e-9) else Stop.GAP
+        return Stop.GAP
 
     def _explore(self, node: TreeNode, deadline: float | None) -> bool:
         """Bound one node by rounds of cuts, then close it or divide it; False when time ran out."""
@@ -129,11 +129,15 @@ class BranchAndBound:
             if self._closes(node.bound):
                 self._finished = max(self._finished, node.bound)
                 return True
-            self._round(relaxed)
+            plan = self._rounded(relaxed)
+            if self.incumbent.offer(plan):
+                self.incumbent.improve(plan)
             node = self._eliminate(node, *found)
-            remaining = node.bound - self.incumbent.lower
+            remaining = node.bound - self.incumbent.level
             stalls = stalls + 1 if before - node.bound < STALL * remaining else 0
             if not self._separate(node, relaxed) or stalls >= allowed_stalls:
+                if self.nodes & (self.nodes - 1) == 0:  # the first nodes, and ever fewer
+                    self.incumbent.improve(self._rounded(relaxed))
                 return self._divide(node, relaxed)
 
     def _seed(self, node: TreeNode) -> None:
@@ -147,7 +151,8 @@ class BranchAndBound:
                 self._use(self._cuts.tangent(outcome, winner, points[winner]))
 
     def _closes(self, bound: float) -> bool:
-        return bool(np.isfinite(bound)) and bound <= self.incumbent.lower + self.gap * abs(bound)
+        # Below the incumbent's level, proved or not, no better plan is to be found; ``upper`` keeps the bound.
+        return bool(np.isfinite(bound)) and bound <= self.incumbent.level + self.gap * abs(bound)
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one where it is better.
@@ -165,7 +170,7 @@ class BranchAndBound:
 
     def _eliminate(self, node: TreeNode, leaf: Leaf, bound: float, combined: FloatArray) -> TreeNode:
         """Split off elements whose choice would close the node by the same multipliers; return what remains."""
-        slack = self.incumbent.lower + self.gap * abs(bound) - bound
+        slack = self.incumbent.level + self.gap * abs(bound) - bound
         for i in range(self.problem.n_robots):
             choice = node.choices[i]
             gone = combined[choice] - combined[choice].max() < slack
@@ -214,7 +219,7 @@ class BranchAndBound:
         points = self.pool.group_points(self._mixed(relaxed.selection))
         groups, targets = self._cuts.groups[cuts], [self._cuts.target(k) for k in cuts.tolist()]
         gains = self._gains(relaxed, points, groups, weights, targets)
-        if gains.max() < FLAT * (node.bound - self.incumbent.lower):
+        if gains.max() < FLAT * (node.bound - self.incumbent.level):
             groups, weights = self._short(node, relaxed)
             targets = [worst_targets(self.objective, points[g], -np.inf, 1)[0] for g in groups.tolist()]
             gains = self._gains(relaxed, points, groups, weights, targets)
@@ -270,7 +275,7 @@ class BranchAndBound:
         winners = self._winners.at(node)
         lowest = float(values[winners[winners >= 0]].min(initial=np.inf))
         deepest = level - 0.5 * max(level - lowest, 0.0)
-        bounds = self._cuts.constants + self._cuts.scores @ selection
+        bounds = self._cuts.bounds(selection)
         usable = self._cuts.usable(winners) & (bounds < deepest)
         usable[self._program.in_use] = False
         candidates = np.flatnonzero(usable)
@@ -296,7 +301,7 @@ class BranchAndBound:
         return bool(cut_groups)
 
     def _use(self, k: int) -> None:
-        self._program.use(k, float(self._cuts.constants[k]), self._cuts.scores[k])
+        self._program.use(k, float(self._cuts.constants[k]), self._cuts.scores(k))
 
     def _attack_relaxed(self, of_robot: FloatArray) -> bool:
         """Attack the relaxed plan as if it were one; return whether a new outcome was found."""
@@ -305,10 +310,8 @@ class BranchAndBound:
             self.pool.add(attack)
         return len(self.pool.attacks) > known
 
-    def _round(self, relaxed: RelaxedPlan) -> None:
-        plan = np.array([choice[relaxed.selection[choice].argmax()] for choice in self._root.choices])
-        if self.incumbent.offer(plan):
-            self.incumbent.improve()
+    def _rounded(self, relaxed: RelaxedPlan) -> IntArray:
+        return np.array([choice[relaxed.selection[choice].argmax()] for choice in self._root.choices])
 
     def _mixed(self, selection: FloatArray) -> FloatArray:
         """(N, M, d, d) information of each robot under a relaxed selection."""

@@ -25,7 +25,8 @@ __all__ = ["CutStore"]
 class CutStore:
     """Cut ``k`` bounds the team value under outcome ``outcomes[k]`` where its group ``groups[k]`` wins.
 
-    ``constants`` : (K,); ``scores`` : (K, E). Cuts are never removed: leaves refer to them.
+    Cuts are never removed: leaves refer to them. Scores are stored element by element, because a
+    relaxed plan has few elements.
     """
 
     def __init__(self, problem: Problem, objective: InformationObjective, pool: OutcomePool) -> None:
@@ -33,7 +34,7 @@ class CutStore:
         self._cuts: list[GroupCut] = []
         self._origin = np.zeros((64, 2), dtype=np.int64)
         self._constants = np.zeros(64)
-        self._scores = np.zeros((64, objective.n))
+        self._scores = np.zeros((objective.n, 64))
 
     def __len__(self) -> int:
         return len(self._cuts)
@@ -53,10 +54,14 @@ class CutStore:
         """(K,) constants."""
         return self._constants[: len(self._cuts)]
 
-    @property
-    def scores(self) -> FloatArray:
-        """(K, E) scores."""
-        return self._scores[: len(self._cuts)]
+    def scores(self, cut: int) -> FloatArray:
+        """(E,) scores of one cut."""
+        return self._scores[:, cut]
+
+    def bounds(self, selection: FloatArray) -> FloatArray:
+        """(K,) what each cut bounds its group's value by under a relaxed selection (E,)."""
+        chosen = np.flatnonzero(selection)
+        return np.asarray(self.constants + selection[chosen] @ self._scores[chosen, : len(self._cuts)])
 
     def target(self, cut: int) -> int | None:
         """The target a cut of the max-eigenvalue criterion is about."""
@@ -74,10 +79,10 @@ class CutStore:
         if k == len(self._constants):
             self._origin = np.concatenate([self._origin, np.zeros_like(self._origin)])
             self._constants = np.concatenate([self._constants, np.zeros_like(self._constants)])
-            self._scores = np.concatenate([self._scores, np.zeros_like(self._scores)])
+            self._scores = np.concatenate([self._scores, np.zeros_like(self._scores)], axis=1)
         self._origin[k] = outcome, group
         self._constants[k] = cut.constant
-        self._scores[k] = cut.scores
+        self._scores[:, k] = cut.scores
         self._cuts.append(cut)
         return k
 
@@ -88,7 +93,7 @@ class CutStore:
     def leaf_bound(self, leaf: Leaf, choices: Sequence[IntArray]) -> tuple[float, FloatArray]:
         """The bound of a leaf's convex combination over plans within ``choices``, and its combined scores."""
         cuts = list(leaf.cuts)
-        return combined_bound(self._constants[cuts], self._scores[cuts], np.array(leaf.weights), choices)
+        return combined_bound(self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices)
 
     def record(self) -> tuple[Cut, ...]:
         """All cuts as part of a proof."""

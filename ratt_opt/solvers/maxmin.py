@@ -67,24 +67,31 @@ def solve_maxmin(
         return exhaustive_optimum(problem)
     deadline = None if time_limit is None else time.monotonic() + time_limit
     pool = OutcomePool(problem, objective)
-    incumbent = Incumbent(problem, pool, time_limit)
+    incumbent = Incumbent(problem, pool, deadline)
     search: BranchAndBound | None = None
     try:
         _list_outcomes(problem, pool)
         incumbent.start()
         search = BranchAndBound(problem, objective, pool, incumbent, gap)
         stop = search.run(deadline, max_nodes, progress)
+        incumbent.prove()
     except KeyboardInterrupt:
         stop = Stop.INTERRUPTED
-    return _result(problem, incumbent, search, stop)
+    return _result(problem, incumbent, search, stop, gap)
 
 
-def _result(problem: Problem, incumbent: Incumbent, search: BranchAndBound | None, stop: Stop) -> MaxMinResult:
+def _result(
+    problem: Problem, incumbent: Incumbent, search: BranchAndBound | None, stop: Stop, gap: float
+) -> MaxMinResult:
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))
     proved = search is not None and np.isfinite(search.upper)
     lower = max(incumbent.lower, problem.objective([]))
     upper = max(search.upper if search is not None and proved else everything, lower)
+    if upper <= lower * (1 + 1e-9):
+        stop = Stop.CLOSED
+    elif stop is Stop.GAP and upper - lower > max(gap, 1e-9) * abs(upper):
+        stop = incumbent.attack_stop  # no better plan is left, but this one's worst case is not proved
     return MaxMinResult(
         elements=readonly(incumbent.elements),
         lower=lower,

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["NodeProgram", "RelaxedPlan"]
 
+ROUNDING = 1e-12
+"""Weights of elements up to this are the simplex method's rounding."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RelaxedPlan:
@@ -99,7 +102,7 @@ class NodeProgram:
         for cut, dual in zip(self._rows, duals, strict=True):
             self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
         return RelaxedPlan(
-            selection=np.clip(columns[: self._n], 0, 1),
+            selection=np.where(columns[: self._n] > ROUNDING, np.minimum(columns[: self._n], 1.0), 0.0),
             cuts=np.array(self._rows, dtype=np.int64),
             duals=duals,
             level=float(columns[self._n]),

@@ -105,9 +105,9 @@ class Winners:
         members = self.pool.groups[group]
         key = (group, b"|".join(choices[i].tobytes() for i in members))
         level, proof = self._attempts.get(key, (-np.inf, None))
-        if proof is None and level < self.incumbent.lower:
+        if proof is None and level < self.incumbent.level:
             proof = close_group(self.cuts.problem, self.objective, members=members, choices=choices, closes=self.closes)
-            self._attempts[key] = (self.incumbent.lower, proof)
+            self._attempts[key] = (self.incumbent.level, proof)
         return proof
 
     def _node(self, node: TreeNode, outcome: int, group: int, proof: ClosedGroup) -> TreeNode:
@@ -136,7 +136,7 @@ class Winners:
         for group in groups:
             robot = self.pool.groups[group][0]
             choice = node.choices[robot]
-            weak = self._singles[choice] <= self.incumbent.lower
+            weak = self._singles[choice] <= self.incumbent.level
             if len(self.pool.groups[group]) == 1 and group != winner and weak.any() and not weak.all():
                 children = [node.child(with_choice(node.choices, robot, choice[part])) for part in (weak, ~weak)]
                 divide(node, robot, children, self.classes)
