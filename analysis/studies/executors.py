@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import signal
@@ -86,9 +87,16 @@ def dask_cluster(address: str) -> Iterator[Executor]:
     except (OSError, ValueError, TypeError):
         rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
         raise InputError("cluster", rule, address) from None
-    with client:
-        _check_workers(client, address)
-        yield client.get_executor(pure=False)
+    log = logging.getLogger("distributed")
+    before = log.level
+    try:
+        with client:
+            _check_workers(client, address)
+            # What it would log of a lost scheduler is said in one line by the engine.
+            log.setLevel(logging.CRITICAL)
+            yield client.get_executor(pure=False)
+    finally:
+        log.setLevel(before)
 
 
 def _check_workers(client: Client, address: str) -> None:

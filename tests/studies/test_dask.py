@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from analysis.paper.small_scale import STUDY as SMALL
 from analysis.studies.engine import run
 from analysis.studies.executors import open_executor
 from analysis.studies.progress import Progress
@@ -97,6 +98,40 @@ def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
         assert first.wait(10) != 0
     assert rows == 40
     assert table.read_bytes() == expected
+
+
+def test_the_papers_rows_are_the_same_bytes_on_a_cluster(tmp_path: Path) -> None:
+    with open_executor(None, 1) as executor:
+        expected = run(SMALL, tmp_path / "local", executor, trials=1, progress=Progress()).read_bytes()
+    with ExitStack() as stack:
+        address = stack.enter_context(_scheduler(tmp_path))
+        stack.enter_context(_worker(address, tmp_path))
+        with open_executor(address, None) as executor:
+            table = run(SMALL, tmp_path / "dask", executor, trials=1, progress=Progress())
+    assert table.read_bytes() == expected
+
+
+def test_a_lost_scheduler_is_one_line_and_the_sweep_resumes(tmp_path: Path) -> None:
+    with ExitStack() as stack:
+        scheduler = stack.enter_context(ExitStack())
+        address = scheduler.enter_context(_scheduler(tmp_path))
+        stack.enter_context(_worker(address, tmp_path, seconds=0.1))
+        command = [sys.executable, "-m", "tests.studies.run_toy", "--out", str(tmp_path / "out"), "--trials", "100"]
+        process = stack.enter_context(
+            subprocess.Popen([*command, "--cluster", address], cwd=ROOT, text=True, stderr=subprocess.PIPE)
+        )
+        journal = tmp_path / "out" / "toy" / "journal.csv"
+        until = time.monotonic() + 60
+        while (not journal.exists() or not journal.stat().st_size) and time.monotonic() < until:
+            time.sleep(0.05)
+        scheduler.close()
+        errors = process.communicate(timeout=60)[1]
+    assert process.returncode == 1
+    again = "finished rows are kept, run the same command to resume"
+    assert errors.splitlines() == [f"error: the cluster dropped the trials; {again}"]
+    with open_executor(None, 1) as executor:
+        table = run(STUDY, tmp_path / "out" / "toy", executor, trials=100, progress=Progress())
+    assert len(table.read_text().splitlines()) == 401
 
 
 def test_a_worker_without_the_package_is_one_line(tmp_path: Path) -> None:
