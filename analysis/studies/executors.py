@@ -87,16 +87,23 @@ def dask_cluster(address: str) -> Iterator[Executor]:
     except (OSError, ValueError, TypeError):
         rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
         raise InputError("cluster", rule, address) from None
-    log = logging.getLogger("distributed")
-    before = log.level
+    # The engine says in one line that a scheduler was lost.
+    with _silent("distributed", "distributed.client"), client:
+        _check_workers(client, address)
+        yield client.get_executor(pure=False)
+
+
+@contextmanager
+def _silent(*names: str) -> Iterator[None]:
+    loggers = [logging.getLogger(name) for name in names]
+    levels = [logger.level for logger in loggers]
     try:
-        with client:
-            _check_workers(client, address)
-            # What it would log of a lost scheduler is said in one line by the engine.
-            log.setLevel(logging.CRITICAL)
-            yield client.get_executor(pure=False)
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL)
+        yield
     finally:
-        log.setLevel(before)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def _check_workers(client: Client, address: str) -> None:

@@ -53,11 +53,13 @@ class Incumbent:
         self._started: set[bytes] = set()
 
     def start(self) -> None:
-        """Improve the best of RATT's, the greedy and the myopic plan by local search."""
+        """Improve the most promising of RATT's, the greedy and the myopic plan by local search, and beat all three."""
         plans = [planner(self.problem).elements for planner in (ratt, greedy, myopic)]
         for plan in plans:
             self.pool.add(self._quick_attack(self.problem, plan))
         self.improve(max(plans, key=self.pool.plan_value))
+        for plan in plans:
+            self.offer(plan)
 
     def offer(self, plan: IntArray) -> bool:
         """Attack a plan that is better on the known outcomes; return whether it became the best."""
