@@ -149,7 +149,7 @@ def test_a_bound_whose_proof_has_a_fault_fails(
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 1
     shown = capsys.readouterr()
     assert shown.out == ""
-    assert "error: upper proof: 1 cases have no leaf" in shown.err
+    assert "error: upper proof: a case has no leaf" in shown.err
     assert os.listdir(tmp_path / "o") == []
 
 

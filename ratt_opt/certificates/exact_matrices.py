@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from flint import fmpq, fmpq_mat
+from flint import ctx, fmpq, fmpq_mat, fmpz
 
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["defect_of", "definite", "total", "trace"]
+__all__ = ["defect_of", "definite", "rounded_up", "total", "trace", "trace_of_inverse"]
 
 
 def total(terms: Iterable[Any]) -> Any:
@@ -24,8 +24,21 @@ def trace(a: fmpq_mat) -> Any:
     return total(a[i, i] for i in range(a.nrows()))
 
 
+def trace_of_inverse(a: fmpq_mat) -> Any:
+    """Trace of the inverse, which must exist."""
+    return trace(a) / a.det() if a.nrows() == 2 else trace(a.inv())
+
+
+def rounded_up(x: fmpq) -> fmpq:
+    """Return the next multiple of ``2**-ctx.prec``: sums of those stay short."""
+    scale = fmpz(1) << ctx.prec
+    return fmpq((x * scale).ceil(), scale)
+
+
 def definite(matrix: fmpq_mat) -> int:
     """Return 1 for a positive definite, 0 for a singular positive semidefinite matrix, -1 otherwise (LDL')."""
+    if matrix.nrows() == 2 and matrix[0, 0] > 0 and (minor := matrix.det()) >= 0:
+        return 1 if minor > 0 else 0
     rows, strict = matrix.tolist(), 1
     for k, first in enumerate(rows):
         pivot = first[k]

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.setfunctions.information import MaxEigenvalueObjective
+
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Problem
@@ -105,6 +107,12 @@ class _Cases:
     def enough(self, posterior: FloatArray) -> bool:
         return float(self.objective.value(posterior)) >= self.threshold
 
+    def completions_enough(self, posteriors: FloatArray, missing: int) -> bool:
+        """Whether the ``missing`` smallest values are worth it on average (see the verifier's leaf -3)."""
+        values = np.sort(self.objective.value(posteriors))
+        average = values[0] if isinstance(self.objective, MaxEigenvalueObjective) else values[:missing].mean()
+        return bool(average >= self.threshold)
+
 
 class _ForcedSize:
     """Include or exclude robots until the included are worth the threshold or too many are out."""
@@ -113,7 +121,8 @@ class _ForcedSize:
         self.cases, self.size, self.max_nodes = cases, size, max_nodes
 
     def run(self) -> list[int]:
-        order = self.cases.order()
+        order = self.cases.order()[::-1]
+        own = self.cases.objective.information[self.cases.elements[order]]
         tree: list[int] = []
         stack = [(self.cases.start(), 0, 0)]
         while stack:
@@ -122,8 +131,10 @@ class _ForcedSize:
                 tree.append(-2)
             elif self.cases.enough(posterior):
                 tree.append(-1)
-            elif depth - out == self.size or len(tree) > self.max_nodes:
+            elif (missing := self.size - depth + out) == 0 or len(tree) > self.max_nodes:
                 raise _NotClosedError
+            elif self.cases.completions_enough(posterior + missing * own[depth:], missing):
+                tree.append(-3)
             else:
                 tree.append(order[depth])
                 stack.append((posterior, depth + 1, out + 1))

@@ -8,17 +8,21 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
 
 from flint import fmpq, fmpq_mat
 
-from ratt_opt.errors import FileFormatError, InputError
+from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 FORMAT = "ratt-opt certificate"
 VERSION = 1
 LARGEST_FILE = 32 * 2**20
+LARGEST_LENGTH = 2_000_000
+"""Most entries of all lists together; with the next two this bounds the memory of a check."""
+LARGEST_TABLE = 1_000_000
+DEEPEST_TREE = 2500
 
 
 def _refusal(where: str, rule: str, value: object) -> FileFormatError:
@@ -37,13 +41,51 @@ def _record(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return record
 
 
+def check_size(where: str, size: int, limit: int) -> None:
+    """Refuse what would take too much memory."""
+    if size > limit:
+        raise _refusal(f"size of {where}", f"must be at most {limit}", size)
+
+
+def need(holds: object, fault: str) -> None:
+    """Raise the fault unless it holds."""
+    if not holds:
+        raise ProofError(fault)
+
+
+def walk(name: str, tree: object, root: Any, expand: Any) -> int:
+    """Walk a tree given in preorder and count its leaves: ``expand(node, case)`` yields the child cases in order.
+
+    A leaf yields none. Cases are made as they are needed, so that one path is in memory.
+    """
+    paths, leaves = [iter([root])], 0
+    for node in array(f"{name} tree", tree):
+        check_size(f"{name} tree (depth)", len(paths), DEEPEST_TREE)
+        case = _next_case(paths)
+        need(case is not None, f"{name} proof: a node is repeated or follows the last leaf")
+        below = expand(node, case)
+        first = next(below, None)
+        leaves += first is None
+        paths.append(chain([] if first is None else [first], below))
+    need(_next_case(paths) is None, f"{name} proof: a case has no leaf")
+    return leaves
+
+
+def _next_case(paths: list[Any]) -> Any:
+    while paths:
+        if (case := next(paths[-1], None)) is not None:
+            return case
+        paths.pop()
+    return None
+
+
 def load(path: str | Path) -> dict[str, Any]:
     """Read a document of this format and version; anything else is a FileFormatError."""
     try:
         with Path(path).open("rb") as file:
             raw = file.read(LARGEST_FILE + 1)
-        if len(raw) > LARGEST_FILE:
-            raise _refusal("file", f"must be at most {LARGEST_FILE} bytes", "more")
+        check_size("file", len(raw), LARGEST_FILE)
+        check_size("lists", raw.count(b",") + raw.count(b"["), LARGEST_LENGTH)
         text = raw.decode("utf-8")
         document = json.loads(text, parse_float=_finite, parse_constant=_finite, object_pairs_hook=_record)
     except OSError as error:

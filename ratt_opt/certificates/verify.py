@@ -7,19 +7,19 @@ arithmetic, logarithms in balls (python-flint). Notation, per target: ``<A, B> =
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flint import arb, ctx, fmpq, fmpq_mat
 
-from ratt_opt.certificates.exact_matrices import defect_of, definite, total, trace
-from ratt_opt.certificates.reading import array, document_hash, exact, fields, index, indices, links, load, packed
+from ratt_opt.certificates import reading
+from ratt_opt.certificates.exact_matrices import defect_of, definite, rounded_up, total, trace, trace_of_inverse
+from ratt_opt.certificates.reading import array, exact, fields, index, indices, links, need, packed, walk
 from ratt_opt.certificates.verified import Verified
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
 __all__ = ["Checker", "verify_certificate"]
@@ -28,7 +28,6 @@ PRECISIONS = (128, 1024)
 """Bits of the balls; a comparison undecided at the last is not proved."""
 PROBLEM = "objective dimension prior information weights owners links alpha_s alpha_c protected_robots protected_links"
 LARGEST_TEAM = 1000
-LARGEST_TABLE = 4_000_000
 
 
 def verify_certificate(path: str | Path, *, expected_problem: object = None) -> Verified:
@@ -44,11 +43,11 @@ def verify_certificate(path: str | Path, *, expected_problem: object = None) -> 
     ProofError : the proof has a fault; the text names the first one found.
     """
     names = "format version problem plan claim prior_eigenvalue upper lower"
-    _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", load(path), names)
-    _need(expected_problem in (None, problem), "the certificate is about a different problem than the one given")
+    _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", reading.load(path), names)
+    need(expected_problem in (None, problem), "the certificate is about a different problem than the one given")
     low, high = fields("claim", claim, "lower upper")
     lower, upper = exact("claim lower", low), exact("claim upper", high)
-    _need(lower <= upper, "claim: lower is above upper")
+    need(lower <= upper, "claim: lower is above upper")
     checker = Checker(problem, plan, prior_range)
     upper_leaves, lower_leaves = checker.check_upper(upper_part, upper), checker.check_lower(lower_part, lower)
     return Verified(
@@ -59,7 +58,7 @@ def verify_certificate(path: str | Path, *, expected_problem: object = None) -> 
         elements=checker.plan,
         objective=checker.objective,
         arithmetic="ball arithmetic" if checker.objective == "logdet" else "exact rational arithmetic",
-        problem_hash=document_hash(problem),
+        problem_hash=reading.document_hash(problem),
         n_robots=checker.n,
         n_targets=len(checker.prior),
         n_elements=len(checker.owner),
@@ -71,25 +70,7 @@ def verify_certificate(path: str | Path, *, expected_problem: object = None) -> 
     )
 
 
-def _need(holds: object, fault: str) -> None:
-    if not holds:
-        raise ProofError(fault)
-
-
-def _walk(name: str, tree: object, root: Any, expand: Callable[[Any, Any], Iterable[Any]]) -> int:
-    """Walk a tree given in preorder: ``expand(node, case)`` returns the child cases in order; count the leaves."""
-    stack, leaves = [root], 0
-    for node in array(f"{name} tree", tree):
-        _need(stack, f"{name} proof: a node is repeated or follows the last leaf")
-        below = list(expand(node, stack.pop()))
-        stack.extend(reversed(below))
-        leaves += not below
-    _need(not stack, f"{name} proof: {len(stack)} cases have no leaf")
-    return leaves
-
-
-@dataclass(frozen=True, slots=True)
-class _Cut:
+class _Cut(NamedTuple):
     """``phi(plan restricted to group) <= constant + sum of scores[element] over the robots of the group``."""
 
     attack: int
@@ -103,7 +84,7 @@ class Checker:
 
     def __init__(self, problem: object, plan: object, prior_range: object) -> None:
         kind, d, prior, information, weights, owners, pairs, blinded, cut, *safe = fields("problem", problem, PROBLEM)
-        _need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
+        need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
         self.objective, self.d = kind, index("dimension", d, 101)
         self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(array("prior", prior))]
         m = len(self.prior)
@@ -121,20 +102,22 @@ class Checker:
         self.alpha_s, self.alpha_c = index("alpha_s", blinded, n + 1), index("alpha_c", cut, len(self.links) + 1)
         self.safe_robots = frozenset(indices("protected_robots", safe[0], n))
         self.plan = tuple(index("plan", e, len(self.owner)) for e in array("plan", plan, n))
-        _need(self.d and m and n and all(self.choices), "problem: no target, no dimension, or a robot without element")
-        _need(self.safe_links <= self.links, "problem: a protected link does not exist")
-        _need(all(self.owner[e] == i for i, e in enumerate(self.plan)), "plan: an element is not its robot's")
-        _need(all(w > 0 for w in self.weights), "problem: a weight is not positive")
-        _need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
+        need(self.d and m and n and all(self.choices), "problem: no target, no dimension, or a robot without element")
+        need(self.safe_links <= self.links, "problem: a protected link does not exist")
+        need(all(self.owner[e] == i for i, e in enumerate(self.plan)), "plan: an element is not its robot's")
+        need(all(w > 0 for w in self.weights), "problem: a weight is not positive")
+        need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
         self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
         self.inverse = [p.inv() for p in self.prior]
+        self.prior_trace = total(w * trace(p) for w, p in zip(self.weights, self.prior, strict=True))
         self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
         self.prior_low, self.prior_high = self._check_prior_range(prior_range)
         # Stored information is positive semidefinite up to rounding: with its defect added, it is. So L(S) is
-        # positive definite for all plans; twice the defects leave room for the lower proof.
+        # positive definite for all plans; n more defects leave room for the lower proof.
         for j, inverse in enumerate(self.inverse):
             worst = total(max(self.defect[e][j] for e in own) for own in self.choices)
-            _need(definite(inverse - self.identity * (2 * worst)) > 0, f"problem: information of target {j} is not PSD")
+            room = inverse - self.identity * ((n + 1) * worst)
+            need(definite(room) > 0, f"problem: information of target {j} is not positive semidefinite")
 
     def _check_prior_range(self, given: object) -> tuple[fmpq, fmpq]:
         """Check ``low <= max_j w_j lambda_max(prior_j) <= high`` (max-eigenvalue only; empty otherwise)."""
@@ -143,15 +126,15 @@ class Checker:
             return fmpq(0), fmpq(0)
         low, high = (exact("prior_eigenvalue", x) for x in array("prior_eigenvalue", given, 2))
         pairs = list(zip(self.weights, self.prior, strict=True))
-        _need(all(definite(self.identity * (high / w) - p) >= 0 for w, p in pairs), "prior_eigenvalue: upper too small")
-        _need(any(definite(self.identity * (low / w) - p) <= 0 for w, p in pairs), "prior_eigenvalue: lower too large")
+        need(all(definite(self.identity * (high / w) - p) >= 0 for w, p in pairs), "prior_eigenvalue: upper too small")
+        need(any(definite(self.identity * (low / w) - p) <= 0 for w, p in pairs), "prior_eigenvalue: lower too large")
         return low, high
 
     # --- No plan keeps more than `upper` under every attack. ---
 
     def check_upper(self, part: object, upper: fmpq) -> int:
         """Check that every plan's worst-case value is at most ``upper``; return the number of leaves."""
-        _need(upper >= 0, "claim: upper is negative")  # a group of blinded robots only is worth phi(empty set) = 0
+        need(upper >= 0, "claim: upper is negative")  # a group of blinded robots only is worth phi(empty set) = 0
         for precision in PRECISIONS:
             with ctx.workprec(precision):
                 bounds = self.upper_bounds(part)
@@ -169,7 +152,9 @@ class Checker:
         constant plus, robot by robot, the largest score among the elements left.
         """
         attacks, points, cut_list, tree = fields("upper proof", part, "attacks points cuts tree")
-        groups = [self._groups(attack) for attack in array("attacks", attacks)]
+        families = array("attacks", attacks)
+        reading.check_size("attacks", len(families) * self.n, reading.LARGEST_TABLE)
+        groups = [self._groups(attack) for attack in families]
         cuts, bounds = self._cuts(groups, points, cut_list), []
 
         def expand(node: Any, case: Any) -> Iterator[Any]:
@@ -178,17 +163,17 @@ class Checker:
                 bounds.append(self._leaf(node, cuts, groups, left, winners))
             elif isinstance(node, dict) and "attack" in node:
                 a = index("winner branch", fields("winner branch", node, "attack")[0], len(groups))
-                _need(a not in winners, "upper proof: an attack's winner is declared twice")
+                need(a not in winners, "upper proof: an attack's winner is declared twice")
                 yield from ((left, {**winners, a: group}) for group in groups[a])
             else:
                 robot, parts = fields("element branch", node, "robot parts")
                 i = index("element branch robot", robot, self.n)
                 blocks = [indices("element branch", block, len(self.owner)) for block in array("parts", parts)]
                 exact_cover = all(blocks) and sorted(chain(*blocks)) == list(left[i])
-                _need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
+                need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
                 yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
 
-        _walk("upper", tree, (self.choices, {}), expand)
+        walk("upper", tree, (self.choices, {}), expand)
         return bounds
 
     def _leaf(self, node: Any, cuts: list[_Cut], groups: list[Any], left: Any, winners: Any) -> Any:
@@ -196,9 +181,9 @@ class Checker:
         used = [cuts[index("leaf cut", k, len(cuts))] for k in array("leaf cuts", chosen)]
         weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
         mass = total(weights)
-        _need(mass > 0 and all(w >= 0 for w in weights), "upper proof: a leaf's weights are negative or all zero")
+        need(mass > 0 and all(w >= 0 for w in weights), "upper proof: a leaf's weights are negative or all zero")
         wins = all(len(groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for cut in used)
-        _need(wins, "upper proof: a leaf uses a group that is not known to win")
+        need(wins, "upper proof: a leaf uses a group that is not known to win")
         pairs = list(zip(weights, used, strict=True))
         bound = total(w * cut.constant for w, cut in pairs)
         for i, elements in enumerate(left):
@@ -210,9 +195,9 @@ class Checker:
         """Check an attack against the budgets; return the seeing robots of its groups, by lowest robot."""
         robots, pairs = fields("attack", attack, "robots links")
         blinded, cut = frozenset(indices("attack robots", robots, self.n)), links("attack links", pairs, self.n)
-        _need(len(blinded) <= self.alpha_s and len(cut) <= self.alpha_c, "upper proof: an attack exceeds its budget")
+        need(len(blinded) <= self.alpha_s and len(cut) <= self.alpha_c, "upper proof: an attack exceeds its budget")
         allowed = cut <= self.links - self.safe_links and not blinded & self.safe_robots
-        _need(allowed, "upper proof: an attack hits what does not exist or is protected")
+        need(allowed, "upper proof: an attack hits what does not exist or is protected")
         groups: list[set[int]] = []
         for start in range(self.n):
             stack, group = [start], {start}
@@ -225,9 +210,10 @@ class Checker:
         return sorted((frozenset(g) for group in groups if (g := group - blinded)), key=min) or [frozenset()]
 
     def _cuts(self, groups: list[list[frozenset[int]]], points: object, cut_list: object) -> list[_Cut]:
-        fenchel = [self._fenchel(point) for point in array("points", points)]
-        _need(len(fenchel) * len(self.owner) <= LARGEST_TABLE, "upper proof: too many points for the memory allowed")
         width = len(self.prior) * self.d**2
+        given = array("points", points)
+        reading.check_size("points", len(given) * max(width, len(self.owner)), reading.LARGEST_TABLE)
+        fenchel = [self._fenchel(point) for point in given]
         columns = [x for row in self.information for matrix in row for x in matrix.entries()]
         rows = fmpq_mat(len(fenchel), width, [x for row, _ in fenchel for x in row])
         scores = (rows * fmpq_mat(len(self.owner), width, columns).transpose()).tolist()
@@ -251,20 +237,18 @@ class Checker:
             target, size, vector = array("point", point, 3)
             j, t = index("point target", target, m), exact("point t", size)
             v = fmpq_mat(d, 1, [exact("point v", x) for x in array("point v", vector, d)])
-            _need(any(v.entries()), "upper proof: a direction v is zero")
+            need(any(v.entries()), "upper proof: a direction v is zero")
             weight = v * v.transpose() * (self.weights[j] * t * t / trace(v.transpose() * v))
             blank = [fmpq(0)] * (d * d)
-            return blank * j + weight.entries() + blank * (m - j - 1), self.prior_high - 2 * self.weights[
-                j
-            ] * t + trace(weight * self.inverse[j])
-        row: list[fmpq] = []
-        constant: Any = fmpq(0)
+            constant = self.prior_high - 2 * self.weights[j] * t + trace(weight * self.inverse[j])
+            return blank * j + weight.entries() + blank * (m - j - 1), constant
+        row, constant = [], fmpq(0)
         packs = array("point", point, m)
         for given, w, prior, inverse in zip(packs, self.weights, self.prior, self.inverse, strict=True):
             y = packed("point Y", given, d)
             weight = y * w if self.objective == "logdet" else y * y * w
             if self.objective == "logdet":
-                _need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
+                need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
                 constant -= w * d + w * arb((y * inverse).det()).log()
             else:
                 constant += w * (trace(prior) - 2 * trace(y))
@@ -290,32 +274,38 @@ class Checker:
         if kind == "attack_tree":
             return self._check_attack_tree(fields("lower proof", part, "kind tree")[1], start, lower)
         fields("lower proof", part, "kind")
-        _need(kind == "enumerated", "lower proof: the kind must be attack_tree, forced_size or enumerated")
+        need(kind == "enumerated", "lower proof: the kind must be attack_tree, forced_size or enumerated")
         return 0
 
     def _check_forced_size(self, size: int, tree: object, start: list[fmpq_mat], lower: fmpq) -> int:
         """Every attack leaves a group with ``size`` seeing robots, and every such set is worth ``lower``.
 
-        In preorder, i >= 0: robot i is in the set; or not. -1: the robots in the set are worth ``lower``.
-        -2: fewer than ``size`` robots are left.
+        In preorder, i >= 0: robot i is in the set; or not. -1: the robots I in the set are worth ``lower``.
+        -2: fewer than ``size`` robots are left. -3: r > 0 robots T are missing, of those undecided; L(I + T) is the
+        average over T of L(I) + r information[i], and phi is concave in L: it is worth the average there at least.
         """
         complete = 2 * len(self.links) == self.n * (self.n - 1)
         forced = complete and _is_forced(self.n, self.alpha_s, self.alpha_c, size)
-        _need(forced, f"lower proof: not every attack is shown to leave a group of {size}")
+        need(forced, f"lower proof: not every attack is shown to leave a group of {size}")
 
         def expand(node: Any, case: Any) -> Iterator[Any]:
             posterior, decided, out = case
             if node == -1:
-                self._require(posterior, lower)
+                self._require([posterior], 1, lower)
+            elif node == -3:
+                missing = size - len(decided) + out
+                need(missing > 0, "lower proof: no robot is missing")
+                rest = [i for i in range(self.n) if i not in decided]
+                self._require([self._with(posterior, [i], missing) for i in rest], missing, lower)
             elif node == -2:
-                _need(out > self.n - size, "lower proof: a leaf is not impossible")
+                need(out > self.n - size, "lower proof: a leaf is not impossible")
             else:
                 i = index("lower tree", node, self.n)
-                _need(i not in decided, f"lower proof: robot {i} is decided twice")
+                need(i not in decided, f"lower proof: robot {i} is decided twice")
                 yield self._with(posterior, [i]), decided | {i}, out
                 yield posterior, decided | {i}, out + 1
 
-        return _walk("lower", tree, (start, frozenset(), 0), expand)
+        return walk("lower", tree, (start, frozenset(), 0), expand)
 
     def _check_attack_tree(self, tree: object, start: list[fmpq_mat], lower: fmpq) -> int:
         """Cases over attacks; ``parts`` are pairwise in different groups, each within one.
@@ -324,27 +314,28 @@ class Checker:
         second, ..., or of none (a new part). -1: the case exceeds a budget or hits something protected.
         -2 - p: the robots of part p that are known to see are worth ``lower``.
         """
-        known: set[frozenset[int]] = set()
+        known: set[int] = set()
 
         def expand(node: Any, case: Any) -> Iterator[Any]:
             blind, see, parts = case
             if node == -1:
-                _need(self._infeasible(blind, parts), "lower proof: a case is an attack within the budgets")
+                need(self._infeasible(blind, parts), "lower proof: a case is an attack within the budgets")
             elif type(node) is int and node < 0:
                 group = parts[index("lower tree part", -2 - node, len(parts))] & see
-                if group not in known:
-                    self._require(self._with(start, sorted(group)), lower)
-                    known.add(group)
+                mask = sum(1 << i for i in group)
+                if mask not in known:
+                    self._require([self._with(start, sorted(group))], 1, lower)
+                    known.add(mask)
             else:
                 i, asks_group = divmod(index("lower tree", node, 2 * self.n), 2)
                 decided = any(i in part for part in parts) if asks_group else i in blind | see
-                _need(not decided, f"lower proof: robot {i} is decided twice")
+                need(not decided, f"lower proof: robot {i} is decided twice")
                 if asks_group:
                     yield from ((blind, see, (*parts[:p], x | {i}, *parts[p + 1 :])) for p, x in enumerate(parts))
                 yield (blind, see, (*parts, frozenset({i}))) if asks_group else (blind | {i}, see, parts)
                 yield from () if asks_group else [(blind, see | {i}, parts)]
 
-        return _walk("lower", tree, (frozenset(), frozenset(), ()), expand)
+        return walk("lower", tree, (frozenset(), frozenset(), ()), expand)
 
     def _infeasible(self, blind: frozenset[int], parts: tuple[frozenset[int], ...]) -> bool:
         """Whether blinding ``blind`` and separating ``parts`` is beyond the adversary.
@@ -359,30 +350,36 @@ class Checker:
         protected = between & self.safe_links or blind & self.safe_robots
         return lost > self.alpha_c or len(blind) > self.alpha_s or bool(protected)
 
-    def _with(self, posterior: list[fmpq_mat], robots: list[int]) -> list[fmpq_mat]:
+    def _with(self, posterior: list[fmpq_mat], robots: list[int], times: int = 1) -> list[fmpq_mat]:
         for i in robots:
-            posterior = [a + b for a, b in zip(posterior, self.information[self.plan[i]], strict=True)]
+            posterior = [a + b * times for a, b in zip(posterior, self.information[self.plan[i]], strict=True)]
         return posterior
 
-    def _require(self, posterior: list[fmpq_mat], lower: fmpq) -> None:
-        """Check that the criterion at ``posterior`` (positive definite) is worth at least ``lower``."""
+    def _require(self, cases: list[list[fmpq_mat]], count: int, lower: fmpq) -> None:
+        """Check that any ``count`` of the cases (all positive definite) are worth ``lower`` on average."""
         worth = False
         for precision in PRECISIONS:
             with ctx.workprec(precision):
-                worth = worth or self._is_worth(posterior, lower)
-        _need(worth, "lower proof: a leaf is worth less than the claim")
+                worth = worth or self._are_worth(cases, count, lower)
+        need(worth, "lower proof: a leaf is worth less than the claim")
 
-    def _is_worth(self, posterior: list[fmpq_mat], lower: fmpq) -> bool:
-        items = list(zip(self.weights, self.prior, posterior, strict=True))
-        if lower <= 0 and all(definite(m - i) >= 0 for m, i in zip(posterior, self.inverse, strict=True)):
+    def _are_worth(self, cases: list[list[fmpq_mat]], count: int, lower: fmpq) -> bool:
+        if lower <= 0 and all(definite(m - i) >= 0 for x in cases for m, i in zip(x, self.inverse, strict=True)):
             return True  # at least the prior's information is worth at least phi(empty set) = 0
-        if self.objective == "trace":
-            return bool(total(w * (trace(p) - trace(m.inv())) for w, p, m in items) >= lower)
-        if self.objective == "logdet":
-            return bool(total(w * arb((m * p).det()).log() for w, p, m in items) >= lower)
-        # lambda_max(L^{-1}) <= room / w for every target, decided as L - (w / room) I >= 0.
+        if self.objective != "maxeig":
+            return bool(total(sorted(map(self._value, cases))[:count]) >= lower * count)
+        # lambda_max(L^{-1}) <= room / w for every target of every case, decided as L - (w / room) I >= 0.
         room = self.prior_low - lower
-        return bool(room > 0) and all(definite(m - self.identity * (w / room)) >= 0 for w, _, m in items)
+        pairs = (pair for x in cases for pair in zip(self.weights, x, strict=True))
+        return bool(room > 0) and all(definite(m - self.identity * (w / room)) >= 0 for w, m in pairs)
+
+    def _value(self, posterior: list[fmpq_mat]) -> Any:
+        """Return a lower bound on the trace or log-det criterion, sharper at a higher precision."""
+        if self.objective == "trace":
+            left = (rounded_up(w * trace_of_inverse(m)) for w, m in zip(self.weights, posterior, strict=True))
+            return self.prior_trace - total(left)
+        items = zip(self.weights, self.prior, posterior, strict=True)
+        return total(w * arb((m * p).det()).log() for w, p, m in items).lower()
 
 
 def _is_forced(n: int, alpha_s: int, alpha_c: int, size: int) -> bool:

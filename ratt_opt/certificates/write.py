@@ -19,6 +19,7 @@ from ratt_opt.errors import InputError, ProofError
 from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from ratt_opt._validation import FloatArray, IntArray
@@ -137,31 +138,40 @@ def write_certificate(
     prior_range = _prior_range(problem, record, plan)
     checker = Checker(record, plan, prior_range)
     high = max(float(upper), _proved_upper(checker, upper_part), 0.0)
-    low, lower_part = _proved_lower(checker, problem, elements, float(min(lower, high)))
-    document = {
-        "format": FORMAT,
-        "version": VERSION,
-        "problem": record,
-        "plan": plan,
-        "claim": {"lower": low, "upper": high},
-        "prior_eigenvalue": prior_range,
-        "upper": upper_part,
-        "lower": lower_part,
-    }
+    for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
+        document = {
+            "format": FORMAT,
+            "version": VERSION,
+            "problem": record,
+            "plan": plan,
+            "claim": {"lower": low, "upper": high},
+            "prior_eigenvalue": prior_range,
+            "upper": upper_part,
+            "lower": lower_part,
+        }
+        try:
+            return _write_verified(document, path, lower - low, high - upper)
+        except ProofError:
+            if lower_part is ENUMERATED:
+                raise
+    raise AssertionError  # the last claim is an enumeration
+
+
+def _write_verified(document: dict[str, Any], path: str | Path, shaved: float, raised: float) -> Certificate:
     text = "{" + ",\n".join(f"{json.dumps(name)}:{_compact(value)}" for name, value in document.items()) + "}\n"
     found: list[Verified] = []
 
     def write(file: Path) -> None:
         """A file that does not stand before the verifier never gets the certificate's name."""
         file.write_text(text, encoding="utf-8")
-        found.append(verify_certificate(file, expected_problem=record))
+        found.append(verify_certificate(file, expected_problem=document["problem"]))
 
     target = write_atomically(path, write)
     return Certificate(
         path=target,
         verified=found[0],
-        lower_shaved=lower - low,
-        upper_raised=high - upper,
+        lower_shaved=shaved,
+        upper_raised=raised,
         size=len(text),
     )
 
@@ -199,14 +209,10 @@ def _round_up(bound: fmpq | arb) -> float:
     return value
 
 
-def _proved_lower(checker: Checker, problem: Problem, elements: IntArray, lower: float) -> tuple[float, dict[str, Any]]:
-    """Largest float at or a little below ``lower`` that a cover of all attacks proves, and the cover."""
+def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterator[tuple[float, dict[str, Any]]]:
+    """Floats at or a little below ``lower`` with a cover of all attacks; last ``lower`` with no more than a word."""
     scale = max(abs(lower), abs(problem.objective(elements)))
     part = lower_proof(problem, elements, lower - LARGEST_SHAVE * scale / 10)
-    for claim in (lower - shave * scale for shave in SHAVES):
-        try:
-            checker.check_lower(part, fmpq(*claim.as_integer_ratio()))
-        except ProofError:
-            continue
-        return claim, part
-    return lower, ENUMERATED
+    if part is not ENUMERATED:
+        yield from ((lower - shave * scale, part) for shave in SHAVES)
+    yield lower, ENUMERATED

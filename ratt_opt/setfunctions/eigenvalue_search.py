@@ -5,8 +5,8 @@ Write ``g_j(L) = w_j / lambda_min(L_j)``, so that the marginal of ``x`` is ``max
 *From below.* Let target ``j`` be the worst once ``x`` is added, ``t = lambda_min(L_j + X_j)`` with eigenvector ``v``,
 and ``delta_j = lambda_min(X_j)``. Then ``lambda_min(L_j) <= v'L_j v = t - v'X_j v <= t - delta_j``, and the marginal
 is at least ``w_j / (t - delta_j) - w_j / t = w_j delta_j / (t (t - delta_j))``, which falls in ``t``. As ``j`` is the
-worst target, ``t / w_j = min_i lambda_min(L_i + X_i) / w_i <= tau``, the largest such minimum over all contexts. For any
-weights ``mu_c >= 0`` with sum 1, targets ``i_c`` and unit vectors ``v_c``,
+worst target, ``t / w_j = min_i lambda_min(L_i + X_i) / w_i <= tau``, the largest such minimum over all contexts. For
+any weights ``mu_c >= 0`` with sum 1, targets ``i_c`` and unit vectors ``v_c``,
 
     tau <= sum_c mu_c v_c' L_{i_c} v_c / w_{i_c},
 

@@ -71,7 +71,7 @@ def test_unreadable_and_endless_files(tmp_path, monkeypatch, good):
     with pytest.raises(FileFormatError, match="can be read"):
         verify_certificate(tmp_path)
     monkeypatch.setattr(reading, "LARGEST_FILE", 1000)
-    assert "at most 1000 bytes" in fault(good, tmp_path, FileFormatError)
+    assert "size of file must be at most 1000; got 1001" in fault(good, tmp_path, FileFormatError)
 
 
 def negative_weight(d):
@@ -82,7 +82,7 @@ def negative_weight(d):
 PROOFS = {
     "weights are negative or all zero": negative_weight,
     "all zero": lambda d: first(d, "weights").update(weights=[0.0]),
-    "branches have no leaf|cases have no leaf": lambda d: d["upper"]["tree"].pop(),
+    "branches have no leaf|a case has no leaf": lambda d: d["upper"]["tree"].pop(),
     "repeated or follows": lambda d: d["upper"]["tree"].append(first(d, "weights")),
     "do not partition": lambda d: first(d, "robot")["parts"].pop(),
     "partition its elements": lambda d: first(d, "robot")["parts"].append([0]),
@@ -92,8 +92,9 @@ PROOFS = {
     "worth less than the claim": lambda d: d["claim"].update(lower=d["claim"]["lower"] * 1.000001, upper=1e9),
     "claim: upper is negative": lambda d: d["claim"].update(lower=-2.0, upper=-1.0),
     "shown to leave a group": lambda d: d["lower"].update(size=d["lower"]["size"] + 1),
-    "lower proof: 1 cases have no leaf": lambda d: d["lower"]["tree"].pop(),
+    "lower proof: a case has no leaf": lambda d: d["lower"]["tree"].pop(),
     "lower proof: a node is repeated": lambda d: d["lower"]["tree"].append(-1),
+    "no robot is missing": lambda d: d["lower"].update(tree=[0, 1, -3, -3, 1, -3, -2]),
     "a leaf is not impossible": lambda d: d["lower"].update(tree=[-2]),
     "decided twice": lambda d: d["lower"].update(tree=[0, 0, -1, -1, -1]),
     "kind must be": lambda d: d.update(lower={"kind": "trust me"}),

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 import ratt_opt
 from ratt_opt import (
@@ -23,9 +24,9 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates.lower import forced_size
-from ratt_opt.certificates.verify import _is_forced
-from ratt_opt.certificates.write import certify, problem_document
+from ratt_opt.certificates.lower import forced_size, lower_proof
+from ratt_opt.certificates.verify import Checker, _is_forced
+from ratt_opt.certificates.write import _prior_range, certify, problem_document
 from tests.certificates.cases import certified
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_problem
@@ -131,6 +132,32 @@ def test_large_teams_by_forced_size(tmp_path):
     verified = certify(problem, result, tmp_path / "c.json").verified
     assert verified.lower_proved
     assert verified.lower_method == "forced_size"
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_leaves_that_average_over_the_robots_missing_prove_no_more_than_the_worst_case(seed):
+    """With the lower end at the worst case they suffice; a relative 1e-9 above it no tree of theirs is accepted."""
+    problem = random_scenario(9, 4, alpha_s=2, alpha_c=0, seed=seed).problem(KINDS[seed % 3])
+    elements = ratt_opt.ratt(problem).elements
+    worst = brute_force_worst_case(problem, elements)
+    part = lower_proof(problem, elements, worst * (1 - 1e-12))
+    assert part["kind"] == "forced_size"
+    assert -3 in part["tree"]
+    prior_range = _prior_range(problem, problem_document(problem), elements.tolist())
+    checker = Checker(problem_document(problem), elements.tolist(), prior_range)
+    assert checker.check_lower(part, fmpq(*float(worst * (1 - 1e-11)).as_integer_ratio())) == len(
+        [node for node in part["tree"] if node < 0]
+    )
+    with pytest.raises(ProofError, match="worth less"):
+        checker.check_lower(part, fmpq(*float(worst * (1 + 1e-9)).as_integer_ratio()))
+    crude = {**part, "tree": [-3]}
+    singles = problem.objective.prior_information + part["size"] * problem.objective.information[elements]
+    values = np.sort(problem.objective.value(singles))[: part["size"]]
+    level = values[0] if KINDS[seed % 3] == "maxeig" else values.mean()
+    assert checker.check_lower(crude, fmpq(*float(level - 1e-9 * abs(level)).as_integer_ratio())) == 1
+    with pytest.raises(ProofError, match="worth less"):
+        checker.check_lower(crude, fmpq(*float(level + 1e-9 * abs(level)).as_integer_ratio()))
+    assert level <= worst
 
 
 def test_rank_deficient_and_slightly_indefinite_information(tmp_path):
