@@ -10,10 +10,12 @@ from analysis.studies.store import open_journal
 from analysis.studies.study import run_trial
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from concurrent.futures import Executor
     from pathlib import Path
 
     from analysis.studies.progress import Progress
+    from analysis.studies.store import Journal
     from analysis.studies.study import Cell, Study
 
 __all__ = ["SweepError", "run"]
@@ -41,9 +43,22 @@ def run(study: Study, folder: Path, executor: Executor, *, trials: int, progress
         futures = {executor.submit(run_trial, study, case, trial): (case, trial) for case, trial in missing}
         with progress.task(study.name, total=len(every), done=len(every) - len(missing)) as advance:
             for future in as_completed(futures):
-                journal.append(_result(future, study, *futures[future]))
+                try:
+                    row = _result(future, study, *futures[future])
+                except SweepError:
+                    _keep_finished(journal, futures, study)
+                    raise
+                journal.append(row)
                 advance()
         return journal.write_table()
+
+
+def _keep_finished(journal: Journal, futures: Mapping[Future[dict[str, Cell]], tuple[int, int]], study: Study) -> None:
+    """Append what else has finished by now: futures that end together are met in any order."""
+    for future, (case, trial) in futures.items():
+        finished = future.done() and not future.cancelled() and future.exception() is None
+        if finished and (study.cases[case].name, trial) not in journal.done:
+            journal.append(future.result())
 
 
 def _result(future: Future[dict[str, Cell]], study: Study, case: int, trial: int) -> dict[str, Cell]:

@@ -87,23 +87,24 @@ def dask_cluster(address: str) -> Iterator[Executor]:
     except (OSError, ValueError, TypeError):
         rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
         raise InputError("cluster", rule, address) from None
-    # The engine says in one line that a scheduler was lost.
-    with _silent("distributed", "distributed.client"), client:
+    # What it would log of a lost scheduler is said in one line by the engine.
+    with _silenced("distributed", "tornado"), client:
         _check_workers(client, address)
         yield client.get_executor(pure=False)
 
 
 @contextmanager
-def _silent(*names: str) -> Iterator[None]:
-    loggers = [logging.getLogger(name) for name in names]
-    levels = [logger.level for logger in loggers]
+def _silenced(*packages: str) -> Iterator[None]:
+    """Let packages log only what is critical; their loggers may each have a level of their own."""
+    logs = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.split(".")[0] in packages]
+    before = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
     try:
-        for logger in loggers:
-            logger.setLevel(logging.CRITICAL)
         yield
     finally:
-        for logger, level in zip(loggers, levels, strict=True):
-            logger.setLevel(level)
+        for log, level in zip(logs, before, strict=True):
+            log.setLevel(level)
 
 
 def _check_workers(client: Client, address: str) -> None:
