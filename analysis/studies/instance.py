@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import networkx as nx
-import numpy as np
 
 from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.exact import worst_case_attack
@@ -17,7 +16,7 @@ from ratt_opt.problem import Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
-from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.information import InformationObjective, TraceObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin import solve_maxmin
@@ -93,8 +92,8 @@ class Instance:
     def trace(self, plan: IntArray, attack: Attack) -> float:
         """Trace of the posterior covariance per target [m^2], of the best group left by the attack."""
         group = sorted(self.problem.best_group(plan, attack))
-        covariance = np.linalg.inv(self.objective.posterior_information(plan[group]))
-        return float(np.trace(covariance, axis1=-2, axis2=-1).mean())
+        traces = TraceObjective(self.objective.prior, self.objective.information)
+        return float(traces.criterion(self.objective.posterior_information(plan[group])).mean())
 
     def track(self, plan: IntArray, attack: Attack, *, draws: int) -> Tracking:
         """Simulate what the best group left by the attack measures and estimates."""
