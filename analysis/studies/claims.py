@@ -7,6 +7,8 @@ import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from analysis.studies.statistics import Estimate, Verdict, column, estimate, judge, select
 from analysis.studies.store import read_table
 from ratt_opt._files import write_atomically
@@ -15,9 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from ratt_opt._validation import FloatArray
+
 __all__ = ["Claim", "write_claims"]
 
 HEAD = ["| figure | command `python -m` | claim | our result | verdict |", "| --- | --- | --- | --- | --- |"]
+AVERAGE = "average over cases"
 COLUMNS = ("figure", "claim", "case", "mean", "low", "high", "trials", "verdict of the claim")
 
 
@@ -42,13 +47,13 @@ class Claim:
         """Folder of the results."""
         return self.command.rpartition(".")[2]
 
-    def estimates(self, rows: Sequence[Mapping[str, str]]) -> dict[str, Estimate]:
-        """Return the mean paired difference (or excess share) of every case."""
+    def measured(self, rows: Sequence[Mapping[str, str]]) -> dict[str, FloatArray]:
+        """(T,) per case: the paired differences (or excess shares), trial by trial."""
         found = {}
         for case in dict.fromkeys(row["case"] for row in rows):
             kept = select(rows, case=case)
             left, right = column(kept, self.left), column(kept, self.right)
-            found[case] = estimate(left - right if self.share is None else left / right - 1)
+            found[case] = left - right if self.share is None else left / right - 1
         return found
 
 
@@ -59,10 +64,13 @@ def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = ()) 
     """
     lines, table = [*HEAD, *first], [COLUMNS]
     for claim in claims:
-        estimates = claim.estimates(read_table(out / claim.study))
-        verdict = judge(estimates.values(), below=claim.share or 0.0)
-        lines.append(_line(claim, estimates, verdict))
-        for case, e in estimates.items():
+        measured = claim.measured(read_table(out / claim.study))
+        cases = {case: estimate(values) for case, values in measured.items()}
+        # Trials are paired over cases, so the mean over cases is one independent number per trial.
+        average = estimate(np.mean(list(measured.values()), axis=0))
+        verdict = judge(cases.values(), average, below=claim.share or 0.0)
+        lines.append(_line(claim, list(cases.values()), average, verdict))
+        for case, e in {**cases, AVERAGE: average}.items():
             numbers = (repr(e.mean), repr(e.low), repr(e.high), str(e.n))
             table.append((claim.figure, claim.statement, case, *numbers, verdict.value))
     stream = io.StringIO()
@@ -73,12 +81,13 @@ def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = ()) 
     print(text, end="")
 
 
-def _line(claim: Claim, estimates: Mapping[str, Estimate], verdict: Verdict) -> str:
-    ordered = sorted(estimates.values(), key=lambda e: e.mean)
+def _line(claim: Claim, cases: Sequence[Estimate], average: Estimate, verdict: Verdict) -> str:
+    scale, unit = (1.0, claim.unit) if claim.share is None else (100.0, "%")
+    least, most = min(cases, key=lambda e: e.mean), max(cases, key=lambda e: e.mean)
+    result = f"{'difference' if claim.share is None else 'excess'} {average.show(scale)} {unit} on average"
+    if least.show() != most.show():
+        result += f", {least.show(scale)} to {most.show(scale)} by case"
     limit = claim.share or 0.0
-    holds = sum(e.high < limit for e in ordered)
-    scale = 1.0 if claim.share is None else 100.0
-    shown = " to ".join(dict.fromkeys(e.show(scale) for e in (ordered[0], ordered[-1])))
-    what, unit = ("difference", claim.unit) if claim.share is None else ("excess", "%")
-    result = f"{what} per case {shown} {unit}; holds in {holds} of {len(ordered)} cases, {ordered[0].n} trials each"
+    holds, fails = sum(e.high < limit for e in cases), sum(e.among(len(cases)).low > limit for e in cases)
+    result += f"; holds in {holds} of {len(cases)} cases, fails in {fails}; {average.n} trials"
     return f"| {claim.figure} | `{claim.command}` | {claim.statement} | {result} | {verdict.value} |"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -30,6 +30,15 @@ class Estimate:
     high: float
     n: int
 
+    def among(self, m: int) -> Estimate:
+        """Return the wider interval that holds together with those of ``m - 1`` others (Bonferroni)."""
+        from scipy.stats import t
+
+        if self.n < 2 or m < 2:
+            return self
+        wider = (self.high - self.mean) * float(t.ppf(1 - (1 - LEVEL) / (2 * m), self.n - 1)) / _quantile(self.n)
+        return Estimate(self.mean, self.mean - wider, self.mean + wider, self.n)
+
     def show(self, scale: float = 1.0) -> str:
         """Return ``mean [low, high]``, times ``scale``, to three digits."""
         return f"{scale * self.mean:+.3g} [{scale * self.low:+.3g}, {scale * self.high:+.3g}]"
@@ -40,32 +49,37 @@ class Verdict(Enum):
 
     CONFIRMED = "confirmed"
     """Every case's interval is on the claimed side (an intersection-union test: no correction is needed)."""
+    ON_AVERAGE = "confirmed on average"
+    """The interval of the mean over cases is on the claimed side, and no case contradicts."""
     NOT_CONFIRMED = "not confirmed"
-    """Some interval reaches the other side."""
+    """Neither."""
     CONTRADICTED = "contradicted"
-    """Some interval lies wholly on the other side."""
+    """Some case's interval lies wholly on the other side, also when corrected for the number of cases."""
 
 
 def estimate(values: ArrayLike) -> Estimate:
     """Mean of independent trials, with its interval; for a paired difference pass the differences."""
-    from scipy.stats import t
-
     array = np.asarray(values, dtype=np.float64)
     mean, n = float(array.mean()), len(array)
     if n < 2:
         return Estimate(mean, -np.inf, np.inf, n)
-    half = float(t.ppf((1 + LEVEL) / 2, n - 1)) * float(array.std(ddof=1)) / n**0.5
+    half = _quantile(n) * float(array.std(ddof=1)) / n**0.5
     return Estimate(mean, mean - half, mean + half, n)
 
 
-def judge(estimates: Iterable[Estimate], *, below: float = 0.0) -> Verdict:
-    """Judge the claim that every estimated mean is below ``below``."""
-    kept = list(estimates)
-    if all(e.high < below for e in kept):
+def _quantile(n: int) -> float:
+    from scipy.stats import t
+
+    return float(t.ppf((1 + LEVEL) / 2, n - 1))
+
+
+def judge(cases: Collection[Estimate], average: Estimate, *, below: float = 0.0) -> Verdict:
+    """Judge the claim that the mean of every case is below ``below``; ``average`` is of the mean over cases."""
+    if all(e.high < below for e in cases):
         return Verdict.CONFIRMED
-    if any(e.low > below for e in kept):
+    if any(e.among(len(cases)).low > below for e in cases):
         return Verdict.CONTRADICTED
-    return Verdict.NOT_CONFIRMED
+    return Verdict.ON_AVERAGE if average.high < below else Verdict.NOT_CONFIRMED
 
 
 def select(rows: Iterable[Mapping[str, str]], **factors: object) -> list[Mapping[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 import os
 import subprocess
@@ -92,7 +93,19 @@ def test_a_claim_is_a_paired_difference() -> None:
         for case, shift in (("x", 1), ("y", 2))
         for t in range(3)
     ]
-    estimates = Claim(figure="", command="", statement="", left="a", right="b").estimates(rows)
-    assert {case: (e.mean, e.low, e.high) for case, e in estimates.items()} == {"x": (-1, -1, -1), "y": (-2, -2, -2)}
+    measured = Claim(figure="", command="", statement="", left="a", right="b").measured(rows)
+    assert {case: values.tolist() for case, values in measured.items()} == {"x": [-1, -1, -1], "y": [-2, -2, -2]}
     share = Claim(figure="", command="", statement="", left="b", right="a", share=0.5)
-    assert math.isclose(share.estimates([row | {"a": "2", "b": "3"} for row in rows])["x"].mean, 0.5)
+    assert math.isclose(share.measured([row | {"a": "2", "b": "3"} for row in rows])["x"].mean(), 0.5)
+
+
+def test_a_table_of_claims_says_what_each_row_rests_on(out: Path) -> None:
+    with (out / "claims.csv").open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["claim"] == "RATT's MSE is below that of Random"]
+    for figure, cases in (("small_comp", 4), ("large_comp", 9)):
+        found = [row for row in rows if row["figure"] == figure]
+        assert len(found) == cases + 1
+        means = [float(row["mean"]) for row in found]
+        assert found[-1]["case"] == "average over cases"
+        assert means[-1] == pytest.approx(sum(means[:-1]) / cases)
+        assert all(float(row["low"]) <= float(row["mean"]) <= float(row["high"]) for row in found)

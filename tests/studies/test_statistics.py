@@ -26,20 +26,35 @@ def test_interval_covers_the_mean_as_often_as_it_says() -> None:
 
 
 def test_one_trial_proves_nothing() -> None:
-    assert judge([estimate([-5.0])]) is Verdict.NOT_CONFIRMED
+    alone = estimate([-5.0])
+    assert judge([alone], alone) is Verdict.NOT_CONFIRMED
+    assert judge([alone, estimate([5.0])], alone) is Verdict.NOT_CONFIRMED
+
+
+def test_intervals_of_many_cases_are_wider() -> None:
+    one = estimate([1, 2, 3, 4])
+    assert one.among(1) == one
+    # The quantile t(1 - 0.025 / 5, 3) is 5.840909.
+    assert (one.among(5).high - 2.5) / (one.high - 2.5) == pytest.approx(5.840909 / 3.182446, rel=1e-6)
+    assert one.among(5).low + one.among(5).high == pytest.approx(5)
 
 
 @pytest.mark.parametrize(
-    ("intervals", "verdict"),
+    ("intervals", "average", "verdict"),
     [
-        ([(-2, -1), (-3, -0.1)], Verdict.CONFIRMED),
-        ([(-2, -1), (-1, 1)], Verdict.NOT_CONFIRMED),
-        ([(-2, -1), (0, 0)], Verdict.NOT_CONFIRMED),
-        ([(-2, -1), (0.1, 1)], Verdict.CONTRADICTED),
+        ([(-2, -1), (-3, -0.1)], (-2, -1), Verdict.CONFIRMED),
+        ([(-2, -1), (-1, 1)], (-1, -0.5), Verdict.ON_AVERAGE),
+        ([(-2, -1), (-1, 1)], (-1, 0.5), Verdict.NOT_CONFIRMED),
+        ([(-2, -1), (0, 0)], (-1, 0), Verdict.NOT_CONFIRMED),
+        ([(-2, -1), (0.9, 1)], (-2, -1), Verdict.CONTRADICTED),
+        ([(-2, -1), (0.001, 1)], (-2, -1), Verdict.ON_AVERAGE),  # one of two cases: not yet a contradiction
     ],
 )
-def test_verdict_needs_every_case(intervals: list[tuple[float, float]], verdict: Verdict) -> None:
-    assert judge([Estimate((low + high) / 2, low, high, 10) for low, high in intervals]) is verdict
+def test_verdict_weighs_every_case(
+    intervals: list[tuple[float, float]], average: tuple[float, float], verdict: Verdict
+) -> None:
+    cases = [Estimate((low + high) / 2, low, high, 10) for low, high in intervals]
+    assert judge(cases, Estimate(sum(average) / 2, *average, 10)) is verdict
 
 
 def test_select_and_column_keep_the_order() -> None:
