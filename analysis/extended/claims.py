@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 __all__ = ["CLAIMS", "write_claims"]
 
 
+CERTIFIED = 0.01
+"""An optimum counts as certified when its mean trace exceeds the proved bound by less than this share."""
+
+
 def _exact_attack() -> Iterator[Claim]:
     command = "analysis.extended.exact_attack"
     for other in ("greedy", "random"):
@@ -32,10 +36,18 @@ def _exact_attack() -> Iterator[Claim]:
     yield Claim(
         figure="exact_attack",
         command=command,
-        statement=f"RATT's trace is less than {CLOSE:.0%} above the certified plan's",
+        statement=f"RATT's trace is less than {CLOSE:.0%} above what is proved of every plan",
         left="ratt/exact/trace",
-        right="optimum/exact/trace",
+        right="optimum/trace_bound",
         share=CLOSE,
+    )
+    yield Claim(
+        figure="exact_attack",
+        command=command,
+        statement=f"the optimum is certified: the plan found is less than {CERTIFIED:.0%} above that bound",
+        left="optimum/exact/trace",
+        right="optimum/trace_bound",
+        share=CERTIFIED,
     )
     yield Claim(
         figure="exact_attack",

@@ -1,10 +1,10 @@
-"""Bars of the share of the certified optimum that planners keep under the exact attack."""
+"""The share of the certified optimum that planners keep under the exact attack."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from analysis.studies.plots import bars, new_figure, save
+from analysis.studies.plots import new_figure, points, save
 from analysis.studies.statistics import column, estimate, select
 
 if TYPE_CHECKING:
@@ -24,10 +24,10 @@ def draw_ratios(
     panels: Mapping[str, Mapping[str, Case]],
     planners: Sequence[str],
 ) -> None:
-    """Draw one panel per entry of ``panels`` with one group of bars per case, labelled by the inner key.
+    """Draw one panel per entry of ``panels`` with one group of points per case, labelled by the inner key.
 
-    A bar is the mean of proved worst case over upper bound of the optimum: what is certified trial by trial. The
-    optimum's own bar is its lower bound over its upper bound: what is missing to 100 % is not decided.
+    A point is the mean of proved worst case over upper bound of the optimum: what is certified trial by trial. The
+    optimum's own point is its lower bound over its upper bound: what is missing to 100 % is not decided.
     """
     groups = max(map(len, panels.values()))
     figure = new_figure(1.6 + max(3.2, 0.85 * groups) * len(panels), 3.9)
@@ -39,10 +39,9 @@ def draw_ratios(
             planner: [estimate(100 * column(k, name) / column(k, "optimum/upper")) for k in kept]
             for planner, name in proved.items()
         }
-        bars(panel, list(cases), ratios)
+        points(panel, list(cases), ratios)
+        panel.axhline(100, color="black", linewidth=0.8, zorder=0)
         panel.set_title(title)
-    lowest = min(bar.get_height() for panel in axes for bar in panel.patches)
-    axes[0].set_ylim(max(0.0, 5 * (lowest // 5) - 5), 100.5)
     axes[0].set_ylabel("certified share of the optimum [%]")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=len(planners) + 1, frameon=False)

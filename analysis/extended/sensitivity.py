@@ -74,7 +74,6 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
             for planner in ("greedy", "random")
         }
         bars(axes, list(CASES), series)
-        axes.axhline(0, color="black", linewidth=0.8)
         axes.set_title(f"{attacker.replace('_', '-')} attack")
         axes.set_ylabel("trace above RATT's [%]")
     handles, labels = figure.axes[0].get_legend_handles_labels()

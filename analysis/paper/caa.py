@@ -53,7 +53,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         axes.set(xlim=(-1.4, 1.4), ylim=(-1.3, 1.35), aspect="equal", title=f"$\\overline{{e}}_{n}$ = {kept},  n = {n}")
         axes.set_axis_off()
     answer = next(row for row in rows if int(row["alpha_c"]) == 7)
-    text = f"7 links cut: 3 are left, so $n_{{max}}$ = {answer['n_max']} and $\\alpha_{{c,s}}$ = {answer['alpha_cs']}"
+    text = f"7 links cut: 3 are left, so $n_{{\\max}}$ = {answer['n_max']} and $\\alpha_{{c,s}}$ = {answer['alpha_cs']}"
     figure.supxlabel(text)
     save(figure, folder, "caa")
 

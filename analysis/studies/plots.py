@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from analysis.studies.statistics import Estimate
+    from ratt_opt._validation import FloatArray
 
-__all__ = ["COLOURS", "LABELS", "bands", "bars", "new_figure", "save"]
+__all__ = ["COLOURS", "LABELS", "bands", "bars", "new_figure", "points", "save"]
 
 COLOURS = {
     "optimum": "#c1121f",
@@ -44,26 +45,39 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:
-    """Draw one group of bars per entry of ``groups``, one bar per planner of ``series``, with intervals."""
-    centres = np.arange(len(groups))
-    width = 0.8 / len(series)
-    for k, (planner, estimates) in enumerate(series.items()):
-        means = np.array([e.mean for e in estimates])
-        spread = np.array([[e.mean - e.low for e in estimates], [e.high - e.mean for e in estimates]])
-        axes.bar(
-            centres + (k - (len(series) - 1) / 2) * width,
-            means,
-            0.9 * width,
-            color=COLOURS[planner],
-            label=LABELS[planner],
-            yerr=np.where(np.isfinite(spread), spread, 0),
-            capsize=2,
-            error_kw={"elinewidth": 0.9, "ecolor": "#222222"},
-        )
+    """Draw one group of bars per entry of ``groups``, one bar per planner of ``series``, with intervals.
+
+    Bars start at zero, which belongs to the picture.
+    """
+    error = {"elinewidth": 0.9, "ecolor": "#222222"}
+    for at, width, planner, means, spread in _side_by_side(axes, groups, series):
+        colour, label = COLOURS[planner], LABELS[planner]
+        axes.bar(at, means, 0.9 * width, color=colour, label=label, yerr=spread, capsize=2, error_kw=error)
+    if min(e.mean for estimates in series.values() for e in estimates) < 0:
+        axes.axhline(0, color="black", linewidth=0.8)
+
+
+def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:
+    """Draw what :func:`bars` draws, as points: for numbers far from zero that differ little."""
+    for at, _, planner, means, spread in _side_by_side(axes, groups, series):
+        axes.errorbar(at, means, spread, color=COLOURS[planner], label=LABELS[planner], fmt="o", ms=5, capsize=3)
+
+
+def _side_by_side(
+    axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]
+) -> Iterator[tuple[FloatArray, float, str, FloatArray, FloatArray]]:
+    """Prepare the axes; yield position, width, name, mean and (2, G) interval of every planner's marks."""
+    centres, width = np.arange(len(groups), dtype=np.float64), 0.8 / len(series)
     axes.set_xticks(centres, groups)
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(axis="y", alpha=0.3)
     axes.set_axisbelow(True)
+    for k, (planner, estimates) in enumerate(series.items()):
+        means = np.array([e.mean for e in estimates])
+        spread = np.array([[e.mean - e.low for e in estimates], [e.high - e.mean for e in estimates]])
+        at = centres + (k - (len(series) - 1) / 2) * width
+        spread[~np.isfinite(spread)] = 0
+        yield at, width, planner, means, spread
 
 
 def bands(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, colour: str, label: str) -> None:

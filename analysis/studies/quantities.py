@@ -6,10 +6,12 @@ from decimal import ROUND_FLOOR, Context, Decimal
 from functools import cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.audit.ratio import worst_case_ratio
 from ratt_opt.bounds.guarantees import pattern_free_bound, theorem1_bound
 from ratt_opt.setfunctions.curvature import curvature, total_curvature
-from ratt_opt.setfunctions.information import LogDetObjective
+from ratt_opt.setfunctions.information import LogDetObjective, TraceObjective
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 
 if TYPE_CHECKING:
@@ -25,6 +27,14 @@ def _optimum(instance: Instance) -> dict[str, Cell]:
     """Return the certified bracket of the optimum, and why the search stopped."""
     result = instance.optimum
     return {"optimum/lower": result.lower, "optimum/upper": result.upper, "optimum/stop": result.stop.value}
+
+
+def _trace_bound(instance: Instance) -> dict[str, Cell]:
+    """Return what no plan's trace per target [m^2] can fall below under its worst attack; trace objective only."""
+    objective = instance.objective
+    assert isinstance(objective, TraceObjective)
+    left = objective.criterion(objective.posterior_information(np.array([], dtype=np.int64))).sum()
+    return {"optimum/trace_bound": float(left - instance.optimum.upper) / len(objective.prior)}
 
 
 def _guarantees(instance: Instance) -> dict[str, Cell]:
@@ -65,4 +75,8 @@ def _smallest_ratio(n_robots: int, alpha_s: int, alpha_c: int, bound: str, famil
     return worst_case_ratio(n_robots, alpha_s, alpha_c, curvature=bound, family=family, domain="feasible").lower
 
 
-QUANTITIES: dict[str, Callable[[Instance], dict[str, Cell]]] = {"optimum": _optimum, "guarantees": _guarantees}
+QUANTITIES: dict[str, Callable[[Instance], dict[str, Cell]]] = {
+    "optimum": _optimum,
+    "trace_bound": _trace_bound,
+    "guarantees": _guarantees,
+}

@@ -69,9 +69,17 @@ def test_more_attacks_never_help(out: Path) -> None:
         assert all((more >= less * (1 - 1e-12)).all() for less, more in pairwise(traces))
 
 
-def test_large_optima_are_reproducible() -> None:
+def test_large_optima_are_reproducible_and_no_trace_is_below_their_bound() -> None:
     # Searches are limited by nodes, never by seconds, so a row is a function of its seeds.
-    assert run_trial(EXACT, 3, 0) == run_trial(EXACT, 3, 0)
+    row = run_trial(EXACT, 3, 0)
+    assert row == run_trial(EXACT, 3, 0)
+    bound = float(row["optimum/trace_bound"])
+    assert bound < float(row["optimum/exact/trace"]) < 1.02 * bound
+    for planner in EXACT.planners:
+        trace, value = (float(row[f"{planner}/exact/{name}"]) for name in ("trace", "value"))
+        assert trace >= bound * (1 - 1e-12)
+        # Trace and value are two readings of one number.
+        assert trace - bound == pytest.approx((float(row["optimum/upper"]) - value) / 20)
 
 
 def test_guarantees_are_ordered_and_hold_on_every_instance(out: Path) -> None:
