@@ -23,15 +23,17 @@ def draw_ratios(
     name: str,
     panels: Mapping[str, Mapping[str, Case]],
     planners: Sequence[str],
+    one_scale: bool = True,
 ) -> None:
     """Draw one panel per entry of ``panels`` with one group of points per case, labelled by the inner key.
 
     A point is the mean of proved worst case over upper bound of the optimum: what is certified trial by trial. The
     optimum's own point is its lower bound over its upper bound: what is missing to 100 % is not decided.
+    ``one_scale`` : all panels have the same vertical axis.
     """
     groups = max(map(len, panels.values()))
     figure = new_figure(1.6 + max(3.2, 0.85 * groups) * len(panels), 3.9)
-    axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
+    axes = figure.subplots(1, len(panels), squeeze=False, sharey=one_scale)[0]
     for panel, (title, cases) in zip(axes, panels.items(), strict=True):
         kept = [select(rows, case=case.name) for case in cases.values()]
         proved = {"optimum": "optimum/lower", **{planner: f"{planner}/exact/proved" for planner in planners}}

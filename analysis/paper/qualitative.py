@@ -78,10 +78,12 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         shown = next((row for row in kept if row["ratt/exact/value"] != row["nonrobust_optimum/exact/value"]), kept[0])
         cells = [f"{planner}/{attacker}" for attacker in STUDY.attackers for planner in STUDY.planners]
         pictures = [json.loads(shown[f"{cell}/picture"]) for cell in cells]
-        figure = new_figure(11, 11.4)
+        window = common_limits(pictures)
+        (left, right), (bottom, top) = window["xlim"], window["ylim"]
+        figure = new_figure(11, 2.4 + 2 * min(4.6, 4.9 * (top - bottom) / (right - left)))
         for axes, cell, picture in zip(figure.subplots(2, 2).flat, cells, pictures, strict=True):
             draw_scene(axes, picture)
-            axes.set(**common_limits(pictures))
+            axes.set(**window)
             planner, attacker = cell.split("/")
             trace, error = float(shown[f"{cell}/trace"]), squared_error(picture)
             numbers = f"trace {trace:.3g} m², squared error {error:.3g} m² per target"

@@ -54,13 +54,14 @@ def draw_scene(axes: Axes, picture: dict[str, Any]) -> None:
 
 
 def common_limits(pictures: Sequence[dict[str, Any]]) -> dict[str, tuple[float, float]]:
-    """Return one square window [m] that holds every picture, so that they can be compared."""
+    """Return one window [m] that holds every picture, so that they can be compared; at most twice as wide as high."""
     points = [np.array(p[name])[:, :2] for p in pictures for name in ("now", "next", "truth", "estimate")]
     shapes = [pair for p in pictures for pair in zip(p["estimate"], p["covariance"], strict=True)]
     ellipses = [_ellipse(np.array(centre), np.array(covariance)).T for centre, covariance in shapes]
     low, high = (f(np.concatenate([*points, *ellipses]), axis=0) for f in (np.min, np.max))
-    middle, half = (low + high) / 2, float((high - low).max()) / 2 + 4
-    return {name: (m - half, m + half) for name, m in zip(("xlim", "ylim"), middle.tolist(), strict=True)}
+    middle, half = (low + high) / 2, (high - low) / 2 + 4
+    half = np.maximum(half, half.max() / 2)
+    return {name: (m - h, m + h) for name, m, h in zip(("xlim", "ylim"), middle, half, strict=True)}
 
 
 def squared_error(picture: dict[str, Any]) -> float:
