@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["print_table", "write_csv"]
+__all__ = ["append_csv", "print_table", "write_csv"]
 
 
 def write_csv(path: str | Path, rows: Sequence[Mapping[str, object]]) -> None:
@@ -20,6 +20,17 @@ def write_csv(path: str | Path, rows: Sequence[Mapping[str, object]]) -> None:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
+
+
+def append_csv(path: str | Path, row: Mapping[str, object]) -> None:
+    """Add one row, with a first line of names where the file is new: what a long study has so far is never lost."""
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with target.open("a", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(row))
+        if not file.tell():
+            writer.writeheader()
+        writer.writerow(row)
 
 
 def print_table(title: str, rows: Sequence[Mapping[str, object]]) -> None:

@@ -1,6 +1,7 @@
 """The exact attacker against plainer ones, on RATT's plan for the paper's scenarios.
 
-Run as ``python -m analysis.benchmarks.attack [--robots 10 20 30] [--seeds K] [--seconds S]``.
+Run as ``python -m analysis.benchmarks.attack [--robots 10 20 30] [--objectives trace] [--budgets 0]
+[--seeds K] [--first-seed S] [--seconds S] [--log FILE] [--attacks-only]``: any part of the table.
 Times are processor time; "plain" is the named slower way to the same answer, in the same run.
 """
 
@@ -8,14 +9,16 @@ from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import dataclass
 from itertools import combinations
 from math import comb
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
 
-from analysis.tables import print_table
+from analysis.tables import append_csv, print_table
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.graph.largest_group import smallest_largest_group
 from ratt_opt.graph.outcomes import non_dominated_outcomes
@@ -23,7 +26,7 @@ from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.ratt import ratt
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from ratt_opt.problem import Problem
 
@@ -45,34 +48,56 @@ def processor_seconds(run: Callable[[], object]) -> float:
     return time.process_time() - began
 
 
-def exact_attacks(robots: list[int], seeds: int, seconds: float) -> list[dict[str, object]]:
-    """Time and gap of the exact attacker, worst over the seeds."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cases:
+    """Which attacks to time: every budget of each team size, each objective and seed."""
+
+    robots: tuple[int, ...]
+    objectives: tuple[str, ...]
+    seeds: tuple[int, ...]
+    budgets: tuple[int, ...]
+    """Positions in the list of budgets of a team size."""
+
+    def __iter__(self) -> Iterator[tuple[int, tuple[int, int], str, int]]:
+        """Yield (robots, budgets, objective, seed)."""
+        for n_robots in self.robots:
+            for k, budget in enumerate(SETTINGS[n_robots][1]):
+                if k in self.budgets:
+                    yield from ((n_robots, budget, name, seed) for name in self.objectives for seed in self.seeds)
+
+
+def exact_attack(
+    n_robots: int, budget: tuple[int, int], objective: str, seed: int, seconds: float
+) -> dict[str, object]:
+    """Processor time and bracket of one exact attack on RATT's plan."""
+    alpha_s, alpha_c = budget
+    scenario = random_scenario(n_robots, SETTINGS[n_robots][0], alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
+    problem = scenario.problem(objective)
+    plan = ratt(problem).elements
+    began = time.process_time()
+    result = worst_case_attack(problem, plan, time_limit=seconds)
+    spent = time.process_time() - began
+    case = {"robots": n_robots, "alpha_s": alpha_s, "alpha_c": alpha_c, "objective": objective, "seed": seed}
+    gap = (result.upper - result.lower) / result.upper
+    answer = {"lower": result.lower, "upper": result.upper, "gap": gap, "stop": result.stop.value}
+    return case | answer | {"nodes": result.nodes, "seconds": spent}
+
+
+def exact_attacks(cases: Cases, seconds: float, log: Path | None = None) -> list[dict[str, object]]:
+    """Time and gap of the exact attacker, worst over the seeds; every attack is appended to ``log`` as it ends."""
+    runs = []
+    for case in cases:
+        runs.append(exact_attack(*case, seconds))
+        if log is not None:
+            append_csv(log, runs[-1])
     rows: list[dict[str, object]] = []
-    for n_robots in robots:
-        n_targets, budgets = SETTINGS[n_robots]
-        for alpha_s, alpha_c in budgets:
-            for objective in ("trace", "logdet", "maxeig"):
-                times, gaps = [], []
-                for seed in range(seeds):
-                    scenario = random_scenario(n_robots, n_targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
-                    problem = scenario.problem(objective)
-                    plan = ratt(problem).elements
-                    began = time.process_time()
-                    result = worst_case_attack(problem, plan, time_limit=seconds)
-                    times.append(time.process_time() - began)
-                    gaps.append((result.upper - result.lower) / result.upper)
-                rows.append(
-                    {
-                        "robots": n_robots,
-                        "alpha_s": alpha_s,
-                        "alpha_c": alpha_c,
-                        "objective": objective,
-                        "seeds": seeds,
-                        "median_s": float(np.median(times)),
-                        "worst_s": max(times),
-                        "worst_gap": max(gaps),
-                    }
-                )
+    keys = ("robots", "alpha_s", "alpha_c", "objective")
+    for key in dict.fromkeys(tuple(run[k] for k in keys) for run in runs):
+        chosen = [run for run in runs if tuple(run[k] for k in keys) == key]
+        times, gaps = (np.array([float(str(run[name])) for run in chosen]) for name in ("seconds", "gap"))
+        row: dict[str, object] = dict(zip(keys, key, strict=True))
+        row |= {"seeds": len(chosen), "median_s": float(np.median(times)), "worst_s": float(times.max())}
+        rows.append(row | {"median_gap": float(np.median(gaps)), "worst_gap": float(gaps.max())})
     return rows
 
 
@@ -148,17 +173,35 @@ def largest_groups(seconds: float) -> list[dict[str, object]]:
     return rows
 
 
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    names = ("trace", "logdet", "maxeig")
+    parser.add_argument("--robots", type=int, nargs="*", default=[10, 20, 30], choices=sorted(SETTINGS))
+    parser.add_argument("--objectives", nargs="*", default=names, choices=names)
+    parser.add_argument("--budgets", type=int, nargs="*", default=[0, 1, 2], help="which budgets of each team size")
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one attack")
+    parser.add_argument("--log", type=Path, help="CSV file to which every attack is appended as it ends")
+    parser.add_argument("--attacks-only", action="store_true", help="leave out the comparisons with plain ways")
+    return parser.parse_args()
+
+
 def main() -> None:
     """Print every table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", type=int, nargs="*", default=[10, 20, 30], choices=sorted(SETTINGS))
-    parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one attack")
-    options = parser.parse_args()
+    options = _options()
     small = random_scenario(13, 3, alpha_s=2, alpha_c=12, seed=0).problem("trace")
     compiled = processor_seconds(lambda: worst_case_attack(small, ratt(small).elements))
     print(f"First attack on a large team, with loading or compiling: {compiled:.2f} s")
-    print_table("Exact attack on RATT's plan", exact_attacks(options.robots, options.seeds, options.seconds))
+    cases = Cases(
+        robots=tuple(options.robots),
+        objectives=tuple(options.objectives),
+        seeds=tuple(range(options.first_seed, options.first_seed + options.seeds)),
+        budgets=tuple(options.budgets),
+    )
+    print_table("Exact attack on RATT's plan", exact_attacks(cases, options.seconds, options.log))
+    if options.attacks_only:
+        return
     print_table("Against the plain way", against_plain())
     print_table("Evaluations against raw attacks", evaluations())
     print_table("Smallest largest group by the integer program", largest_groups(30.0))
