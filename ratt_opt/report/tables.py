@@ -57,9 +57,10 @@ def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
 
 
 def bracket_text(lower: float, upper: float) -> str:
-    """The bracket as text: one number where both ends agree to ten digits."""
-    if lower == upper or f"{lower:.10g}" == f"{upper:.10g}":
-        return f"{upper:.10g}"
+    """The bracket as text: one number where both ends agree to eight digits, with up to ten of them."""
+    for digits in (10, 9, 8):
+        if f"{lower:.{digits}g}" == f"{upper:.{digits}g}":
+            return f"{upper:.{digits}g}"
     return f"[{lower:.8g}, {upper:.8g}]"
 
 
