@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.graph.survivor_sizes import forced_group_size
 from ratt_opt.setfunctions.information import MaxEigenvalueObjective
 
 if TYPE_CHECKING:
@@ -22,12 +23,16 @@ __all__ = ["ENUMERATED", "lower_proof"]
 
 LARGEST_TREE = 200_000
 """Most nodes of a tree."""
+MOST_CRITERIA = 20_000_000
+"""Most criteria of single targets looked at; the verifier looks at half of them, some microseconds each."""
+NODES_TIMES_PAIRS = 20_000_000
+"""Most nodes of an attack tree, times pairs of robots."""
 ENUMERATED: dict[str, Any] = {"kind": "enumerated"}
 """Says that the outcomes were enumerated in floating point: not a proof."""
 
 
 class _NotClosedError(Exception):
-    """The tree is too large, or one of its cases is worth less than the threshold."""
+    """The proof is too large, or one of its cases is worth less than the threshold."""
 
 
 def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE) -> Any:
@@ -43,36 +48,14 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     -------
     A ``forced_size`` proof where the complete graph allows one, else an ``attack_tree``, else ``ENUMERATED``.
     """
-    cases = _Cases(problem, elements, threshold)
     if problem.communication.is_complete:
-        size = forced_size(problem.n_robots, problem.alpha_s, problem.alpha_c)
-        tree = _attempt(_ForcedSize(cases, size, max_nodes))
+        size = forced_group_size(problem.n_robots, problem.alpha_s, problem.alpha_c)
+        tree = _attempt(_ForcedSize(_Cases(problem, elements, threshold), size, max_nodes))
         if tree is not None:
             return {"kind": "forced_size", "size": size, "tree": tree}
-    tree = _attempt(_AttackTree(cases, max_nodes))
+    fewer = min(max_nodes, NODES_TIMES_PAIRS // problem.n_robots**2)
+    tree = _attempt(_AttackTree(_Cases(problem, elements, threshold), fewer))
     return ENUMERATED if tree is None else {"kind": "attack_tree", "tree": tree}
-
-
-def forced_size(n_robots: int, alpha_s: int, alpha_c: int) -> int:
-    """Return the smallest largest number of seeing robots in one group over attacks on the complete graph.
-
-    Enumerates the group sizes within the link budget; blinding then levels the largest groups.
-    """
-
-    def level(sizes: list[int]) -> int:
-        return next(k for k in range(n_robots + 1) if sum(max(0, n - k) for n in sizes) <= alpha_s)
-
-    best = level([n_robots])
-    stack = [([k], n_robots - k, 0) for k in range(1, n_robots + 1)]
-    while stack:
-        sizes, rest, cut = stack.pop()
-        cut += sizes[-1] * rest
-        if cut > alpha_c:
-            continue
-        if rest == 0:
-            best = min(best, level(sizes))
-        stack.extend(([*sizes, k], rest - k, cut) for k in range(1, min(rest, sizes[-1]) + 1))
-    return best
 
 
 def _attempt(search: _ForcedSize | _AttackTree) -> list[int] | None:
@@ -84,11 +67,15 @@ def _attempt(search: _ForcedSize | _AttackTree) -> list[int] | None:
 
 @dataclass(slots=True)
 class _Cases:
-    """The plan's robots, strongest first, and whether a set of them is worth the threshold."""
+    """The plan's robots, strongest first, and whether a set of them is worth the threshold.
+
+    ``looked_at`` : criteria of single targets so far
+    """
 
     problem: Problem
     elements: IntArray
     threshold: float
+    looked_at: int = 0
 
     @property
     def objective(self) -> InformationObjective:
@@ -105,13 +92,20 @@ class _Cases:
         return np.asarray(posterior + self.objective.information[self.elements[robot]])
 
     def enough(self, posterior: FloatArray) -> bool:
+        self._count(1)
         return float(self.objective.value(posterior)) >= self.threshold
 
     def completions_enough(self, posteriors: FloatArray, missing: int) -> bool:
         """Whether the ``missing`` smallest values are worth it on average (see the verifier's leaf -3)."""
+        self._count(len(posteriors))
         values = np.sort(self.objective.value(posteriors))
         average = values[0] if isinstance(self.objective, MaxEigenvalueObjective) else values[:missing].mean()
         return bool(average >= self.threshold)
+
+    def _count(self, sets: int) -> None:
+        self.looked_at += sets * self.objective.n_targets
+        if self.looked_at > MOST_CRITERIA:
+            raise _NotClosedError
 
 
 class _ForcedSize:

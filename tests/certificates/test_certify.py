@@ -24,9 +24,10 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates.lower import forced_size, lower_proof
+from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.verify import Checker, _is_forced
 from ratt_opt.certificates.write import _prior_range, certify, problem_document
+from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_problem
@@ -117,10 +118,10 @@ def test_refuses_what_cannot_be_certified(tmp_path):
 
 
 @pytest.mark.parametrize("n", range(1, 9))
-def test_forced_size_agrees_with_the_verifier_s_own_argument(n):
+def test_the_forced_group_size_agrees_with_the_verifier_s_own_argument(n):
     for alpha_s in range(n + 1):
         for alpha_c in range(n * (n - 1) // 2 + 1):
-            size = forced_size(n, alpha_s, alpha_c)
+            size = forced_group_size(n, alpha_s, alpha_c)
             assert _is_forced(n, alpha_s, alpha_c, size)
             assert size == n or not _is_forced(n, alpha_s, alpha_c, size + 1)
 
