@@ -11,7 +11,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.polynomial import ONE, ZERO, Polynomial, constant
+from ratt_opt.audit.polynomial import ONE, ZERO, Polynomial, constant, signed_sum
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -124,9 +124,11 @@ class Linear:
         for key in sorted(self.terms, key=lambda k: (isinstance(k, str), str(k) if isinstance(k, str) else k)):
             name = key if isinstance(key, str) else ground.text(key)
             coefficient = self.terms[key].text(symbol)
+            if " " in coefficient:
+                coefficient = f"[{coefficient}]"
             plain = {"1": name, "-1": f"-{name}"}
-            parts.append(plain.get(coefficient, f"[{coefficient}]*{name}"))
-        return " + ".join(parts).replace("+ -", "- ") or "0"
+            parts.append(plain.get(coefficient, f"{coefficient}*{name}"))
+        return signed_sum(parts)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
 from math import comb
+from typing import TYPE_CHECKING
 
-__all__ = ["ONE", "ZERO", "Polynomial", "T", "constant"]
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["LARGEST_FORM", "ONE", "ZERO", "Polynomial", "T", "constant", "signed_sum"]
+
+LARGEST_FORM = 8
+"""Degree up to which a form with non-negative coefficients is looked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,15 +87,37 @@ class Polynomial:
 
     def text(self, symbol: str) -> str:
         """Readable form in ``t``, written ``(1-symbol)``; for example ``1/2*(1-c)^2 + 1``."""
-        terms = [_term(a, j, symbol) for j, a in enumerate(self.coefficients) if a]
-        return " + ".join(reversed(terms)) or "0"
+        powers = [(a, _power(f"(1-{symbol})", j)) for j, a in enumerate(self.coefficients) if a]
+        return signed_sum([_term(*power) for power in reversed(powers)])
+
+    def form_text(self, symbol: str) -> str:
+        """Like ``text``, as a form whose terms show that it is not negative on [0, 1]: ``c*(1-c) + (1-c)^2``.
+
+        Falls back on ``text`` where no form of degree at most ``LARGEST_FORM`` has non-negative coefficients.
+        """
+        for degree in range(self.degree, max(self.degree, LARGEST_FORM) + 1):
+            form = self.form(degree)
+            if min(form) >= 0:
+                kept, lost = f"(1-{symbol})", symbol
+                bases = ["*".join(filter(None, (_power(lost, degree - a), _power(kept, a)))) for a in range(degree + 1)]
+                return signed_sum([_term(h, base) for h, base in zip(form, bases, strict=True) if h])
+        return self.text(symbol)
 
 
-def _term(coefficient: Fraction, power: int, symbol: str) -> str:
-    if power == 0:
+def signed_sum(terms: Sequence[str]) -> str:
+    """Terms joined by their signs; ``0`` when there are none."""
+    return " + ".join(terms).replace("+ -", "- ") or "0"
+
+
+def _power(base: str, power: int) -> str:
+    """``base^power``, nothing for the power 0."""
+    return f"{base}^{power}" if power > 1 else base * power
+
+
+def _term(coefficient: Fraction, base: str) -> str:
+    if not base:
         return str(coefficient)
-    base = f"(1-{symbol})" + (f"^{power}" if power > 1 else "")
-    return base if coefficient == 1 else f"{coefficient}*{base}"
+    return {"1": base, "-1": f"-{base}"}.get(str(coefficient), f"{coefficient}*{base}")
 
 
 def constant(value: Fraction | int) -> Polynomial:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.cone import Elementary, elementary
 from ratt_opt.audit.language import Claim, FunctionClass, Ground, Inequality, Linear
+from ratt_opt.audit.polynomial import LARGEST_FORM
 from ratt_opt.errors import ProofError
 from ratt_opt.setfunctions.table import TableFunction
 
@@ -102,7 +103,7 @@ def check_proof(claim: Claim, proof: Proof) -> None:
 
 
 def _check_multiplier(number: int, multiplier: Polynomial, t: Fraction | None) -> None:
-    values = multiplier.form(max(multiplier.degree, 8)) if t is None else (multiplier(t),)
+    values = multiplier.form(max(multiplier.degree, LARGEST_FORM)) if t is None else (multiplier(t),)
     if any(value < 0 for value in values):
         raise ProofError(f"the multiplier of step {number} may be negative")
 
