@@ -29,6 +29,7 @@ SETTINGS = {2: (6, 1, 9), 3: (7, 2, 12)}
 """Distribution -> (N, alpha_s, alpha_c): CAA gives n_max = 3 and 4, so groups (3, 3) and (4, 3)."""
 SURVIVORS = ("b1", "b2", "b3")
 RIVALS = ("g1", "g2")
+WORST = "A* is the worst attack"
 
 
 def _team(distribution: int) -> Team:
@@ -59,7 +60,7 @@ def dominance_entries() -> Iterator[Entry]:
             )
             worst = f"RATT's choices, and A* is the worst attack on its plan; {kind.value}"
             claims = tuple(_cases(distribution, kind))
-            yield _entry(distribution, kind, "A* is the worst attack", worst, claims)
+            yield _entry(distribution, kind, WORST, worst, claims)
 
 
 def _cases(distribution: int, kind: FunctionClass) -> Iterator[SizedClaim]:
@@ -90,13 +91,16 @@ def _sized(distribution: int, kind: FunctionClass, premises: tuple[Inequality, .
 def _entry(
     distribution: int, kind: FunctionClass, reading: str, hypotheses: str, claims: tuple[SizedClaim, ...]
 ) -> Entry:
+    family = "total curvature" if kind is FunctionClass.TOTAL_CURVATURE else "submodular"
+    label = f"nd_p2d{distribution}v2_dominance"
     return Entry(
-        label=f"nd_p2d{distribution}v2_dominance",
+        label=label,
         kind="claim",
         chain="dominance",
         statement="f(u on V1\\A*) >= f(u on V2\\A*) when only greedy robots of V2 survive",
         hypotheses=hypotheses,
         claims=claims,
-        reading=f"{reading}; {'total curvature' if kind is FunctionClass.TOTAL_CURVATURE else 'submodular'}",
+        reading=f"{reading}; {family}",
         survives_by=f"nd_p2d{distribution}v2/cumulative",
+        serves_by="" if reading == WORST else f"{label}/claim/{WORST}; {family}",
     )

@@ -39,8 +39,8 @@ class Entry:
 
     ``label`` : the paper's without ``eq:``; ours where it has none.
     ``kind`` : ``step``, ``step as equality``, ``cumulative``, ``lemma``, ``reading``, ``claim`` or ``theorem``.
-    ``survives_by`` : label and kind of the entry that shows the conclusion without this step.
-    ``serves_by`` : label and kind of a weaker statement that the proof could use in its place.
+    ``survives_by`` : the entry (label/kind or label/kind/reading) that shows the conclusion without this step.
+    ``serves_by`` : the entry of a weaker statement that the proof could use in its place.
     ``detours`` : the same line from earlier ones: (label, claims), the latest first.
     """
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.entry import Case, Chain, Detour, Entry, SizedClaim
+from ratt_opt.audit.entry import Case, Chain, Detour, Entry, Line, SizedClaim
 from ratt_opt.audit.language import Claim, FunctionClass, Inequality, Linear
 from ratt_opt.audit.polynomial import ONE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["entries_of"]
+__all__ = ["AS_WRITTEN", "entries_of"]
 
 AS_WRITTEN = "step as equality"
 
@@ -41,13 +41,26 @@ def _entry(chain: Chain, number: int, kind: str, reading: str) -> Entry:
         kind=kind,
         chain=chain.name,
         statement=f"from {origin}: {relation} {line.statement}",
-        hypotheses=chain.hypotheses,
+        hypotheses=_hypotheses(chain, line, kind),
         claims=claims,
         reading=reading,
         survives_by="" if kind == "cumulative" else f"{last}/cumulative",
-        serves_by=f"{line.label}/step" if kind == AS_WRITTEN else "",
+        serves_by=_serves_by(line, kind, reading),
         detours=partial(_detours, chain, number, reading) if kind == "step" and number > 1 else None,
     )
+
+
+def _hypotheses(chain: Chain, line: Line, kind: str) -> str:
+    if kind == "cumulative" or line.cited is None:
+        return chain.hypotheses
+    return f"only what the stated reason uses: {'; '.join(premise.reason for premise in line.cited)}"
+
+
+def _serves_by(line: Line, kind: str, reading: str) -> str:
+    """A paper's "=" may serve as ">="; a line with too few premises follows from all of RATT's choices."""
+    if kind == AS_WRITTEN:
+        return f"{line.label}/step"
+    return f"{line.label}/cumulative/{reading}" if kind == "step" and line.cited is not None else ""
 
 
 def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:

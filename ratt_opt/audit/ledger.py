@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from ratt_opt._files import output_directory, write_atomically, write_json
 from ratt_opt.audit import pattern1, pattern2, submodular
 from ratt_opt.audit.arrangements import arrangement_entries
+from ratt_opt.audit.counts import count_entries
 from ratt_opt.audit.decide import CURVATURE_GRID, Decision, Verdict, decide
 from ratt_opt.audit.dominance import dominance_entries
 from ratt_opt.audit.entry import Entry, EnumeratedEntry
-from ratt_opt.audit.expand import entries_of
+from ratt_opt.audit.expand import AS_WRITTEN, entries_of
+from ratt_opt.audit.occurrence import occurrence_entries
 from ratt_opt.audit.realistic import realistic_search
 from ratt_opt.audit.records import claim_record, enumerated_record, factor_records
 from ratt_opt.audit.report_html import html_report
@@ -79,6 +81,8 @@ def all_entries() -> Iterator[Entry | EnumeratedEntry]:
         yield from entries_of(one)
     yield from chain(special_entries(), summaries(), closing_lines(), dominance_entries(), theorems(), lemmas())
     yield from arrangement_entries()
+    yield from occurrence_entries()
+    yield from count_entries()
     yield from tightness_entries()
     yield from running_time_entries()
 
@@ -103,7 +107,7 @@ def decide_entry(entry: Entry | EnumeratedEntry, *, quick: bool = False) -> dict
     record = claim_record(entry, claims, decisions, verdict)
     if not quick:
         broken = [sized for sized, decision in zip(claims, decisions, strict=True) if decision.witness is not None]
-        record["best_factors"] = factor_records(() if entry.serves_by else weaken(broken))
+        record["best_factors"] = factor_records(() if entry.kind == AS_WRITTEN else weaken(broken))
         record["realistic"] = realistic_search(claims, refuted=bool(broken))
         if broken and entry.detours is not None:
             record["follows_from"] = _latest_detour(entry.detours())
@@ -170,12 +174,13 @@ def _add_survival(records: list[dict[str, object]]) -> None:
     """For each refuted entry: does the conclusion hold without it, and which weaker step serves (entries' verdicts)?"""
     verdicts: dict[str, set[str]] = {}
     for record in records:
-        verdicts.setdefault(f"{record['label']}/{record['kind']}", set()).add(str(record["verdict"]))
+        name, verdict = f"{record['label']}/{record['kind']}", str(record["verdict"])
+        verdicts.setdefault(name, set()).add(verdict)
+        verdicts.setdefault(f"{name}/{record['reading']}", set()).add(verdict)
     for record in records:
         named = {"conclusion_without_it": "survives_by", "weaker_step_that_serves": "serves_by"}
         for field, source in named.items():
             name = str(record.pop(source, ""))
             if record["verdict"] == Verdict.REFUTED.value and name:
                 found = verdicts.get(name, set())
-                verdict = next(iter(found)) if len(found) == 1 else None
-                record[field] = {"entry": name, "verdict": verdict}
+                record[field] = {"entry": name, "verdict": next(iter(found)) if len(found) == 1 else None}

@@ -107,7 +107,7 @@ def _proof(claim: Claim, proof: Proof) -> Record:
         inequality = step_inequality(claim, step)
         steps.append(
             [
-                step.multiplier.text(claim.kind.symbol),
+                step.multiplier.form_text(claim.kind.symbol),
                 inequality.reason,
                 f"{inequality.expression.text(claim.ground, claim.kind.symbol)} >= 0",
             ]
@@ -130,12 +130,19 @@ def _witness(sized: SizedClaim, witness: Witness) -> Record:
         "elements": list(witness.names),
         "robot": list(claim.ground.owner),
         "values": list(witness.values),
+        "values_in_play": {claim.ground.text(mask): witness.values[mask] for mask in _sets_in_play(claim)},
         "auxiliary": {name: str(value) for name, value in witness.auxiliary.items()},
         "curvature": None if witness.curvature is None else str(witness.curvature),
         "violation": str(witness.violation),
         "premises": [premise.reason for premise in claim.premises],
         "ratt_chooses_the_roles": None if sized.team is None else replays(sized.team, witness),
     }
+
+
+def _sets_in_play(claim: Claim) -> list[int]:
+    """Sets whose values the claim or its premises speak of, by bit mask."""
+    expressions = [claim.conclusion, *(premise.expression for premise in claim.premises)]
+    return sorted({key for expression in expressions for key in expression.terms if isinstance(key, int)})
 
 
 def replays(team: Team, witness: Witness) -> bool:

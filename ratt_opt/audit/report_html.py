@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ratt_opt.audit.findings import findings
 from ratt_opt.audit.summary import evidence, per_chain, proof_lines, shown_claim, title
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt.audit.findings import Finding
 
 __all__ = ["html_report"]
 
@@ -30,21 +36,32 @@ def html_report(document: dict[str, Any]) -> str:
         "<p>A proof is a sum of elementary inequalities with multipliers that are never negative; a "
         "counterexample is an explicit function. Both were checked in rational arithmetic. Every claim and "
         "proof is in <code>audit.json</code>; this page prints one claim per entry.</p>",
-        _table(document),
+        *(_finding(finding) for finding in findings(document)),
+        "<h2>Verdicts per chain</h2>",
+        _verdicts(document),
+        "<h2>All entries</h2>",
         *(_entry(record) for record in document["entries"]),
     ]
     head = f'<meta charset="utf-8"><title>Proof ledger</title><style>{_STYLE}</style>'
     return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>\n' + "\n".join(body) + "\n</body></html>\n"
 
 
-def _table(document: dict[str, Any]) -> str:
+def _finding(finding: Finding) -> str:
+    sentences = f"<p>{escape(' '.join(finding.sentences))}</p>" if finding.sentences else ""
+    return f"<h2>{escape(finding.heading)}</h2>{sentences}{_table(finding.table)}"
+
+
+def _verdicts(document: dict[str, Any]) -> str:
     columns = list(document["counts"])
-    head = "".join(f"<th>{escape(name)}</th>" for name in ("chain", *columns))
-    rows = [
-        "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in (name, *(counts[c] for c in columns))) + "</tr>"
-        for name, counts in per_chain(document).items()
-    ]
-    return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
+    rows = [(name, *(str(cell) for cell in counts.values())) for name, counts in per_chain(document).items()]
+    return _table([("chain", *columns), *rows])
+
+
+def _table(rows: Sequence[Sequence[str]]) -> str:
+    head, *rest = rows
+    cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest]
+    body = "".join(f"<tr>{row}</tr>" for row in cells)
+    return f"<table><tr>{''.join(f'<th>{escape(name)}</th>' for name in head)}</tr>{body}</table>"
 
 
 def _entry(record: dict[str, Any]) -> str:

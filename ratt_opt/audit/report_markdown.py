@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ratt_opt.audit.findings import findings
 from ratt_opt.audit.summary import evidence, per_chain, title
 
-__all__ = ["markdown_report"]
+if TYPE_CHECKING:
+    from ratt_opt.audit.findings import Finding
+
+__all__ = ["finding_lines", "markdown_report"]
 
 
 def markdown_report(document: dict[str, Any]) -> str:
     """Return the report as text; every cell is escaped."""
-    lines = ["# Proof ledger", "", _opening(document), "", "## Verdicts per chain", ""]
+    lines = ["# Proof ledger", "", _opening(document), ""]
+    for finding in findings(document):
+        lines += finding_lines(finding)
+    lines += ["## Verdicts per chain", ""]
     columns = list(document["counts"])
     lines += [_row(["chain", *columns]), _row(["---"] * (len(columns) + 1))]
     lines += [_row([name, *(str(counts[c]) for c in columns)]) for name, counts in per_chain(document).items()]
@@ -26,6 +33,13 @@ def markdown_report(document: dict[str, Any]) -> str:
     return "\n".join([*lines, ""])
 
 
+def finding_lines(finding: Finding) -> list[str]:
+    """One section of the summary: heading, sentences, table."""
+    head, *rows = finding.table
+    lines = [f"## {finding.heading}", "", *([_escape(" ".join(finding.sentences)), ""] if finding.sentences else [])]
+    return [*lines, _row(list(head)), _row(["---"] * len(head)), *(_row(list(row)) for row in rows), ""]
+
+
 def _opening(document: dict[str, Any]) -> str:
     state = "" if document["complete"] else " The run was interrupted: entries are missing."
     counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
@@ -34,6 +48,7 @@ def _opening(document: dict[str, Any]) -> str:
 
 def _refuted(record: dict[str, Any]) -> list[str]:
     lines = [f"### {_escape(title(record))}", "", _escape(record["statement"]), ""]
+    lines += [_escape(f"Given: {record['hypotheses']}."), ""]
     return [*lines, *(f"- {_escape(line)}" for line in evidence(record)), ""]
 
 

@@ -42,6 +42,7 @@ def _substitution() -> Iterator[Entry]:
             claims=tuple(_swaps(own=reading == "RATT's plan")),
             reading=reading,
             survives_by="nd_p2d1v1/cumulative",
+            serves_by="nd_p2d1v1/cumulative",
         )
 
 
@@ -71,7 +72,8 @@ def _every_subset() -> Iterator[Entry]:
             hypotheses=roles,
             claims=tuple(_claims(from_start=kind == "cumulative")),
             reading=READING,
-            survives_by="" if kind == "cumulative" else "sub_p2d1v1_10/cumulative",
+            survives_by="sub_p2d1v1_10/cumulative",
+            serves_by=f"sub_p2d1v1_9/{kind}/",
         )
 
 

@@ -23,8 +23,6 @@ KIND = FunctionClass.CURVATURE
 ROLES = "f normalised, non-decreasing, submodular, curvature <= k; baits and greedy robots as RATT chooses them"
 ONE_PLUS_K = constant(2) - T
 """``1 + k`` with ``t = 1 - k``."""
-ALL_SETS = "for every W of |Vg| robots of V1, as the line says"
-GREEDY_ONLY = "for W = Vg only, as the symbol says"
 
 
 def chains() -> tuple[Chain, ...]:

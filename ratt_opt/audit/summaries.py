@@ -86,6 +86,7 @@ def _distribution(label: str, kind: FunctionClass, cases: tuple[Grouping, ...], 
                 claims=claims,
                 reading=reading,
                 survives_by="" if form == "cumulative" else f"{label}/cumulative",
+                serves_by=f"{label}/step/{PLAN}" if form == "step" and reading == OPTIMUM else "",
             )
 
 

@@ -6,7 +6,8 @@ from typing import Any
 
 __all__ = ["evidence", "per_chain", "proof_lines", "shown_claim", "title"]
 
-SHOWN_SETS = 40
+SHOWN_SETS = 60
+"""Most values of a counterexample that a report prints."""
 
 
 def title(record: dict[str, Any]) -> str:
@@ -93,16 +94,11 @@ def _realistic_lines(found: dict[str, Any]) -> list[str]:
 
 
 def _values(witness: dict[str, Any]) -> str:
-    names = witness["elements"]
-    shown = []
-    for mask, value in enumerate(witness["values"]):
-        owners = [witness["robot"][e] for e in range(len(names)) if mask >> e & 1]
-        if mask and len(set(owners)) == len(owners):
-            shown.append(f"f({','.join(n for e, n in enumerate(names) if mask >> e & 1)}) = {value}")
+    """The values that the claim and its premises speak of."""
+    shown = [f"{name} = {value}" for name, value in witness["values_in_play"].items()]
     if len(shown) > SHOWN_SETS:
-        rest = f"... ({len(shown) - SHOWN_SETS} more sets with one element per robot in audit.json)"
-        return ", ".join([*shown[:SHOWN_SETS], rest])
-    return ", ".join(shown)
+        shown[SHOWN_SETS:] = [f"... ({len(shown) - SHOWN_SETS} more sets)"]
+    return f"{', '.join(shown)} (all {len(witness['values'])} values are in audit.json)"
 
 
 def proof_lines(claim: dict[str, Any]) -> list[str]:

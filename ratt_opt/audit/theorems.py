@@ -34,7 +34,12 @@ SURVIVES_BY = {
     "subadditivity_as_used": "nd_p1d2v1_9/cumulative",
     "tzoumas2018_lemma9": "nd_p1d1v1_8/cumulative",
 }
-SERVES_BY = {"subadditivity_as_used": "weak_subadditivity/lemma"}
+SERVES_BY = {
+    "team_subgroup": "pattern_free_nd/theorem",
+    "opt_team_subgroup": "opt_team_subgroup/step",
+    "subadditivity_as_used": "weak_subadditivity/lemma",
+    "tzoumas2018_lemma9": "nd_p1d1v1_8/cumulative",
+}
 
 
 def _entry(
@@ -76,6 +81,12 @@ def closing_lines() -> Iterator[Entry]:
     for label in ("nd1", "nd"):
         text = "f(u on S) >= (1-c)^3 f(u* on S), which gives min[(1-c)^3, (1-c)^2/alpha_cs] for the team"
         yield _entry(label, "cumulative", text, every_group(ND, T3, ONE, largest=LARGEST_TEAM), GROUPS)
+    three = tuple((T3, ONE) for _ in range(3))
+    given = "the bounds of Patterns 1 and 2 and of the patterns left out"
+    names = ("Pattern 1", "Pattern 2", "any other pattern")
+    yield _entry(
+        "nd1", "step", "all patterns together", _joined(ND, three, names), given, reading="with the omitted patterns"
+    )
     text = "in every other pattern too, f(u on S) >= (1-c)^3 f(u* on S): 'the same approximation bound or a better one'"
     yield _entry("nd_other_patterns", "claim", text, every_group(ND, T3, ONE, largest=LARGEST_TEAM), GROUPS)
     for form in ("step", "cumulative"):
@@ -85,18 +96,21 @@ def closing_lines() -> Iterator[Entry]:
     claims = tuple(every_group(SUB, T, ONE_PLUS_K, largest=LARGEST_TEAM))
     yield _entry("sub_other_patterns", "claim", other, claims, GROUPS)
     yield _entry("sub", "cumulative", text, claims, GROUPS)
+    both = ("N > alpha", "N <= alpha")
     for label, kind, bounds in (("nd", ND, ((T3, ONE), (T2, ONE))), ("sub", SUB, ((T, ONE_PLUS_K), (T, ONE)))):
         yield _entry(
-            label, "step", "both cases together", _joined(kind, bounds), "the bounds of N > alpha and N <= alpha"
+            label, "step", "both cases together", _joined(kind, bounds, both), "the bounds of N > alpha and N <= alpha"
         )
 
 
-def _joined(kind: FunctionClass, bounds: tuple[tuple[Polynomial, Polynomial], ...]) -> Iterator[SizedClaim]:
-    """The weaker of the two cases' bounds follows from either (opt >= 0)."""
+def _joined(
+    kind: FunctionClass, bounds: tuple[tuple[Polynomial, Polynomial], ...], names: tuple[str, ...]
+) -> Iterator[SizedClaim]:
+    """The first case's bound follows from each case's (opt >= 0)."""
     ground, team, opt = Ground(("u",), (0,)), Linear.of("team"), Linear.of("opt")
     weak_above, weak_below = bounds[0]
     positive = Inequality("opt >= 0", opt)
-    for (above, below), name in zip(bounds, ("N > alpha", "N <= alpha"), strict=True):
+    for (above, below), name in zip(bounds, names, strict=True):
         given = Inequality(f"the bound for {name}", team * below - opt * above)
         conclusion = team * weak_below - opt * weak_above
         claim = Claim(kind=kind, ground=ground, premises=(given, positive), conclusion=conclusion)

@@ -1,0 +1,155 @@
+"""What the ledger settles, worked out from its records: the theorem, the numbered lines, the readings, the repairs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["Finding", "findings"]
+
+Record = dict[str, Any]
+
+STEP = "step"
+PLAN, OPTIMUM, TEAM = "the plan's", "the optimum's", "the team's only"
+REFUTED, PROVED = "refuted", "proved"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One section of the summary: a heading, sentences, and a table whose first row is its head (empty: no table)."""
+
+    heading: str
+    sentences: tuple[str, ...]
+    table: tuple[tuple[str, ...], ...] = ()
+
+
+def findings(document: dict[str, Any]) -> tuple[Finding, ...]:
+    """Return the sections in reading order; sections without anything to say are left out."""
+    records: list[Record] = document["entries"]
+    sections = (_theorems(records), _lines(records), _readings(records), _repairs(records), _own_claims(records))
+    return tuple(section for section in sections if len(section.table) > 1)
+
+
+def _theorems(records: list[Record]) -> Finding:
+    rows = [r for r in records if r["kind"] == "theorem"]
+    first = [r for r in rows if r["label"] in ("eqn:appro_non_descrease", "eqn:appro_submodular")]
+    sentences = []
+    if _all_proved(first):
+        sentences.append(
+            "Both bounds of Theorem 1 hold: each is proved from RATT's choices alone, without the appendix."
+        )
+    if _all_proved([r for r in rows if r["label"].startswith("pattern_free")]):
+        sentences.append(
+            "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger. "
+            "The machine decides teams up to the size shown; a written proof for any number of robots is in the "
+            "documentation of `pattern_free_bound`."
+        )
+    table = [("entry", "statement", "verdict", "for which sizes")]
+    table += [(r["label"], r["statement"], r["verdict"], r["sizes"]) for r in rows]
+    return Finding(heading="Does the theorem survive?", sentences=tuple(sentences), table=tuple(table))
+
+
+def _lines(records: list[Record]) -> Finding:
+    """Numbered lines of the paper by what becomes of them as steps."""
+    steps = _grouped([r for r in records if r["kind"] == STEP])
+    equalities = [r for r in records if r["kind"] == "step as equality" and r["verdict"] == REFUTED]
+    outcome: dict[str, list[str]] = {"holds": [], "depends on the reading": [], "fails": []}
+    for label, group in steps.items():
+        refuted = sum(r["verdict"] == REFUTED for r in group)
+        name = "holds" if not refuted else "fails" if refuted == len(group) else "depends on the reading"
+        outcome[name].append(label)
+    cumulative = _grouped([r for r in records if r["kind"] == "cumulative"])
+    lost = [label for label, group in cumulative.items() if all(r["verdict"] == REFUTED for r in group)]
+    table = [("numbered lines whose step ...", "how many", "which")]
+    for name, labels in outcome.items():
+        table.append((name, str(len(labels)), "all others" if name == "holds" else ", ".join(labels) or "none"))
+    names = list(dict.fromkeys(r["label"] for r in equalities))
+    table.append(("is printed as = but holds as >= only", str(len(names)), ", ".join(names) or "none"))
+    text = f"Of {len(steps)} numbered lines, {len(outcome['holds'])} follow from the line before under every reading."
+    end = f"From the start of its chain, every line is proved in some reading ({len(cumulative)} lines)."
+    if lost:
+        end = f"From the start of its chain, these lines fail in every reading: {', '.join(lost)}."
+    return Finding(heading="Which steps hold?", sentences=(text, end), table=tuple(table))
+
+
+def _readings(records: list[Record]) -> Finding:
+    """Lines decided under several readings of whose worst attack A* is."""
+    table = [("step", *(f"A* is {who} worst attack" for who in (PLAN, OPTIMUM)), "A* is worst for the team only")]
+    fails: dict[str, list[str]] = {PLAN: [], OPTIMUM: []}
+    for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
+        found = {who: r["verdict"] for r in group if (who := _whose(r["reading"]))}
+        if len(found) > 1:
+            table.append((label, *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
+            for who, labels in fails.items():
+                labels.extend([label] * (found.get(who) == REFUTED))
+    sentences = [f"If A* is {who} worst attack, {len(labels)} steps fail." for who, labels in fails.items()]
+    if all(fails.values()):
+        sentences.append("So no single reading of A* makes every step hold.")
+    return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
+
+
+def _whose(reading: str) -> str | None:
+    if not reading.startswith("A*"):
+        return None
+    return TEAM if "team only" in reading else OPTIMUM if "optimum" in reading else PLAN
+
+
+def _repairs(records: list[Record]) -> Finding:
+    table = [("refuted", "smallest counterexample", "what is left of it, or serves instead", "conclusion without it")]
+    for record in records:
+        if record["verdict"] == REFUTED and record["chain"] != "tightness" and record["kind"] != "cumulative":
+            reading = f" ({record['reading']})" if record["reading"] else ""
+            without = record.get("conclusion_without_it", {}).get("verdict") or "-"
+            table.append((f"{record['label']}, {record['kind']}{reading}", _size(record), _left(record), without))
+    whole = sum(row[3] == PROVED for row in table[1:])
+    text = (
+        f"{len(table) - 1} statements are refuted; for {whole} of them the conclusion is proved without the statement."
+    )
+    return Finding(heading="Refuted, and what serves instead", sentences=(text,), table=tuple(table))
+
+
+def _size(record: Record) -> str:
+    refuted = next((claim for claim in record["claims"] if claim["witness"] is not None), None)
+    if refuted is None:
+        return str(next(iter(record.get("counterexamples", [])), "-"))
+    return f"{refuted['size']}; {refuted['scope']}"
+
+
+def _left(record: Record) -> str:
+    """Best factors, a direct way from an earlier line, or a repaired claim, each with the ledger's verdict."""
+    parts = []
+    factors = record.get("best_factors", [])
+    if any(item["factor"] != "0" for item in factors):
+        parts.append("; ".join(f"factor {item['factor']} at curvature {item['curvature']}" for item in factors))
+    elif factors:
+        parts.append("no positive factor")
+    if record.get("follows_from"):
+        parts.append(f"follows directly from {record['follows_from']} (proved)")
+    serves = record.get("weaker_step_that_serves")
+    if serves:
+        label, kind, *reading = serves["entry"].split("/", 2)
+        other = [text for text in reading if text and text != record["reading"]]
+        parts.append(f"{', '.join([label, kind, *other])} ({serves['verdict']})")
+    searched = "best_factors" in record or not record["claims"]
+    return "; ".join(parts) or ("nothing weaker found" if searched else "not looked for in a quick run")
+
+
+def _own_claims(records: list[Record]) -> Finding:
+    """How tight the bounds are."""
+    table = [("entry", "statement", "verdict", "evidence")]
+    for r in records:
+        if r["chain"] == "tightness":
+            cases = r.get("counterexamples") or [r["detail"]]
+            table.append((r["label"], r["statement"], r["verdict"], cases[0]))
+    return Finding(heading="How tight are the bounds?", sentences=(), table=tuple(table))
+
+
+def _all_proved(records: list[Record]) -> bool:
+    return bool(records) and all(r["verdict"] == PROVED for r in records)
+
+
+def _grouped(records: list[Record]) -> dict[str, list[Record]]:
+    groups: dict[str, list[Record]] = {}
+    for record in records:
+        groups.setdefault(record["label"], []).append(record)
+    return groups
