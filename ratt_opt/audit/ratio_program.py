@@ -4,22 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["ClaimedOptimum", "Program", "Row"]
+__all__ = ["ClaimedOptimum", "Program", "Row", "solve_square"]
 
 ROUNDING = 1e-9
 """How far a proved bound may stay behind the claimed one before better rationals are tried."""
 
 DENOMINATORS = (60, 10_000, 1_000_000)
 """Denominators tried when a float is read as a rational; whatever comes out is checked exactly."""
+
+
+MANY_COLUMNS = 1000
+"""From here on an interior-point method with crossover, from scratch, beats simplex from the last basis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +37,15 @@ class Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClaimedOptimum:
-    """What HiGHS returned: ``x`` (columns,) and multipliers ``y`` (rows,); not trusted."""
+    """What HiGHS returned: ``x`` (columns,) and multipliers ``y`` (rows,), and its basis; not trusted.
+
+    ``basic_columns``, ``tight_rows`` : columns that are basic and rows that are not, equally many.
+    """
 
     x: FloatArray
     y: FloatArray
+    basic_columns: tuple[int, ...]
+    tight_rows: tuple[int, ...]
 
 
 class Program:
@@ -50,8 +60,11 @@ class Program:
         self._highs: Any = highspy.Highs()  # type: ignore[no-untyped-call]
         for name, value in (("output_flag", False), ("threads", 1), ("random_seed", 0)):
             self._highs.setOptionValue(name, value)
+        if n_columns >= MANY_COLUMNS:
+            self._highs.setOptionValue("solver", "ipm")
         self._infinity = highspy.kHighsInf
         self._optimal = highspy.HighsModelStatus.kOptimal
+        self._basic = highspy.HighsBasisStatus.kBasic
         for column in range(n_columns):
             self._highs.addCol(float(column == 0), 0.0, self._infinity, 0, [], [])
         self.rows: list[Row] = []
@@ -86,18 +99,33 @@ class Program:
         self._highs.run()
         if self._highs.getModelStatus() != self._optimal:
             return None
-        solution = self._highs.getSolution()
-        return ClaimedOptimum(x=np.array(solution.col_value), y=np.array(solution.row_dual))
+        solution, basis = self._highs.getSolution(), self._highs.getBasis()
+        return ClaimedOptimum(
+            x=np.array(solution.col_value),
+            y=np.array(solution.row_dual),
+            basic_columns=tuple(j for j, status in enumerate(basis.col_status) if status == self._basic),
+            tight_rows=tuple(i for i, status in enumerate(basis.row_status) if status != self._basic),
+        )
 
     def proved_bound(self, claimed: ClaimedOptimum) -> Fraction:
         """Return a lower bound on the minimum, proved by rational multipliers; 0 (``x_0 >= 0``) where none verifies."""
         best = Fraction(0)
-        for denominator in DENOMINATORS:
-            used = {i: Fraction(float(claimed.y[i])).limit_denominator(denominator) for i in self._support(claimed)}
-            best = max(best, self._check_multipliers(used) or best)
+        for multipliers in self._candidates(claimed):
+            best = max(best, self._check_multipliers(multipliers) or best)
             if best > claimed.x[0] - ROUNDING:
-                return best
-        return max(best, self._check_multipliers(self._exact_multipliers(claimed)) or best)
+                break
+        return best
+
+    def _candidates(self, claimed: ClaimedOptimum) -> Iterator[dict[int, Fraction]]:
+        """Yield rational multipliers, cheap ones first."""
+        for denominator in DENOMINATORS:
+            yield {i: Fraction(float(claimed.y[i])).limit_denominator(denominator) for i in self._support(claimed)}
+        yield self._basic_multipliers(claimed)
+        self._highs.clearSolver()
+        again = self.solve(inf)
+        if again is not None:
+            yield self._basic_multipliers(again)
+        yield self._exact_multipliers(claimed)
 
     def _support(self, claimed: ClaimedOptimum) -> list[int]:
         return [int(i) for i in np.flatnonzero(claimed.y > 1e-9) if self.on[i]]
@@ -128,6 +156,15 @@ class Program:
         )
         return dict(zip(rows, solved, strict=True))
 
+    def _basic_multipliers(self, claimed: ClaimedOptimum) -> dict[int, Fraction]:
+        """The multipliers of the basis without rounding; this decides where many multipliers solve the equations."""
+        rows = {i: k for k, i in enumerate(claimed.tight_rows)}
+        position = {j: k for k, j in enumerate(claimed.basic_columns)}
+        entries = [(position[j], rows[i], v) for i in rows for j, v in self.rows[i].terms.items() if j in position]
+        right = [Fraction(int(j == 0)) for j in claimed.basic_columns]
+        solved = solve_square(entries, right, len(rows))
+        return {i: value for i, value in zip(rows, solved, strict=True) if value}
+
     def exact_point(self, claimed: ClaimedOptimum) -> list[Fraction]:
         """Solve the rows with a positive multiplier as equations, together with near-tight ones; not checked here."""
         columns = [int(j) for j in np.flatnonzero(claimed.x > 1e-9)]
@@ -144,6 +181,29 @@ class Program:
         return point
 
 
+def solve_square(
+    entries: Iterable[tuple[int, int, Fraction]], right: Sequence[Fraction], n_unknowns: int
+) -> list[Fraction]:
+    """Solve a square rational system exactly; all zero where it is singular, not square or too large."""
+    import flint
+
+    answer = [Fraction(0)] * n_unknowns
+    if len(right) != n_unknowns or not 0 < n_unknowns <= LARGEST_SQUARE:
+        return answer
+    matrix, target = flint.fmpq_mat(n_unknowns, n_unknowns), flint.fmpq_mat(n_unknowns, 1)
+    for row, column, value in entries:
+        matrix[row, column] = flint.fmpq(value.numerator, value.denominator)
+    for row, value in enumerate(right):
+        target[row, 0] = flint.fmpq(value.numerator, value.denominator)
+    try:
+        solved = matrix.solve(target)
+    except ZeroDivisionError:
+        return answer
+    return [Fraction(int(solved[k, 0].p), int(solved[k, 0].q)) for k in range(n_unknowns)]
+
+
+LARGEST_SQUARE = 1_500
+"""Most unknowns of a square rational system that is solved (a few seconds)."""
 LARGEST_SYSTEM = 2_000_000
 """Most entries of a rational system that is reduced (a few seconds)."""
 

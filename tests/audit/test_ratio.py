@@ -10,7 +10,7 @@ import pytest
 
 from ratt_opt import InputError, Problem, ProofError, Stop, TableFunction, exhaustive_optimum, ratt, worst_case_attack
 from ratt_opt.audit.ratio import pattern_free_bound, worst_case_ratio
-from ratt_opt.audit.ratio_program import Program, Row
+from ratt_opt.audit.ratio_program import Program, Row, solve_square
 from ratt_opt.audit.ratio_witness import replay
 
 
@@ -137,7 +137,28 @@ def test_wrong_multipliers_prove_nothing():
     claimed = program.solve(10.0)
     assert program.proved_bound(claimed) == 1
     claimed.y[:] = [5.0, 5.0]
-    assert program.proved_bound(claimed) <= 1
+    assert program.proved_bound(claimed) == 1, "the basis still gives the right ones"
+    wrong = replace(claimed, basic_columns=(1,), tight_rows=(1,))
+    assert program._check_multipliers(program._basic_multipliers(wrong)) != 1
+
+
+def test_square_systems_are_solved_exactly():
+    rng = np.random.default_rng(3)
+    size = 12
+    matrix = rng.integers(-2, 3, (size, size)) + 5 * np.eye(size, dtype=np.int64)
+    solution = [Fraction(int(a), int(b)) for a, b in rng.integers(1, 9, (size, 2))]
+    entries = [(i, j, Fraction(int(matrix[i, j]))) for i in range(size) for j in range(size)]
+    right = [sum((Fraction(int(matrix[i, j])) * solution[j] for j in range(size)), Fraction(0)) for i in range(size)]
+    assert solve_square(entries, right, size) == solution
+    assert solve_square([(0, 0, Fraction(1)), (1, 0, Fraction(1))], [Fraction(1), Fraction(2)], 2) == [0, 0]
+    assert solve_square([(0, 0, Fraction(1))], [Fraction(1)], 2) == [0, 0]
+
+
+@pytest.mark.slow
+def test_five_robots_close_where_rounded_multipliers_prove_nothing():
+    result = worst_case_ratio(5, 0, 7, curvature=0.5, family="submodular")
+    assert result.exact_lower == result.exact_upper == Fraction(6, 11)
+    assert result.stop is Stop.CLOSED
 
 
 @pytest.mark.parametrize(
