@@ -197,6 +197,9 @@ def audit(
         print(json.dumps({**ledger.document(), "entries": len(ledger.records)}, indent=1, allow_nan=False))
     else:
         _console().print(audit_table(ledger.per_chain()))
+        print(
+            "\n".join(f"{found.heading} {' '.join(found.sentences)}" for found in ledger.findings() if found.sentences)
+        )
         print("written: " + ", ".join(str(out / name) for name in ("audit.json", "audit.html", "audit.md")))
     return 0 if ledger.complete else _fail(f"interrupted after {len(ledger.records)} entries, which were written", 130)
 

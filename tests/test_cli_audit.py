@@ -35,6 +35,7 @@ def test_audit_writes_three_files_and_prints_counts(tmp_path: Path, capsys: pyte
     assert document["complete"]
     assert {entry["label"] for entry in document["entries"]} == set(LABELS)
     assert "refuted" in shown.out
+    assert "Whose worst attack is A*? If A* is the plan's worst attack, 1 step fails." in shown.out
     assert f"1/{len(document['entries'])} {LABELS[0]}" in shown.err.splitlines()
     assert "\x1b" not in shown.out + shown.err
 

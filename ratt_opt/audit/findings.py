@@ -82,10 +82,14 @@ def _readings(records: list[Record]) -> Finding:
             table.append((label, *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
             for who, labels in fails.items():
                 labels.extend([label] * (found.get(who) == REFUTED))
-    sentences = [f"If A* is {who} worst attack, {len(labels)} steps fail." for who, labels in fails.items()]
+    sentences = [f"If A* is {who} worst attack, {_steps(len(labels))}." for who, labels in fails.items()]
     if all(fails.values()):
         sentences.append("So no single reading of A* makes every step hold.")
     return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
+
+
+def _steps(count: int) -> str:
+    return "1 step fails" if count == 1 else f"{count} steps fail"
 
 
 def _whose(reading: str) -> str | None:

@@ -15,6 +15,7 @@ from ratt_opt.audit.decide import CURVATURE_GRID, Decision, Verdict, decide
 from ratt_opt.audit.dominance import dominance_entries
 from ratt_opt.audit.entry import Entry, EnumeratedEntry
 from ratt_opt.audit.expand import AS_WRITTEN, entries_of
+from ratt_opt.audit.findings import findings
 from ratt_opt.audit.occurrence import occurrence_entries
 from ratt_opt.audit.realistic import realistic_search
 from ratt_opt.audit.records import claim_record, enumerated_record, factor_records
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.audit.entry import Detour
+    from ratt_opt.audit.findings import Finding
 
 __all__ = ["Ledger", "all_entries", "decide_entry", "run_audit"]
 
@@ -59,6 +61,10 @@ class Ledger:
     def per_chain(self) -> dict[str, dict[str, int]]:
         """Entries per verdict of each chain, in order of appearance, then of all."""
         return per_chain(self.document())
+
+    def findings(self) -> tuple[Finding, ...]:
+        """What the records settle, section by section."""
+        return findings(self.document())
 
     def document(self) -> dict[str, object]:
         """The ledger as strict JSON data."""
