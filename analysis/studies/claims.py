@@ -57,8 +57,8 @@ class Claim:
         return found
 
 
-def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = ()) -> None:
-    """Write and print ``claims.md``, and write ``claims.csv`` with every interval behind it.
+def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = (), *, name: str = "claims") -> None:
+    """Write and print ``name.md``, and write ``name.csv`` with every interval behind it.
 
     ``first`` : Markdown rows that come before those of ``claims``.
     """
@@ -76,8 +76,8 @@ def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = ()) 
     stream = io.StringIO()
     csv.writer(stream, lineterminator="\n").writerows(table)
     text = "\n".join(lines) + "\n"
-    write_atomically(out / "claims.csv", lambda file: file.write_bytes(stream.getvalue().encode()))
-    write_atomically(out / "claims.md", lambda file: file.write_text(text, encoding="utf-8"))
+    write_atomically(out / f"{name}.csv", lambda file: file.write_bytes(stream.getvalue().encode()))
+    write_atomically(out / f"{name}.md", lambda file: file.write_text(text, encoding="utf-8"))
     print(text, end="")
 
 

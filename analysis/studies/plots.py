@@ -53,8 +53,7 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
     for at, width, planner, means, spread in _side_by_side(axes, groups, series):
         colour, label = COLOURS[planner], LABELS[planner]
         axes.bar(at, means, 0.9 * width, color=colour, label=label, yerr=spread, capsize=2, error_kw=error)
-    if min(e.mean for estimates in series.values() for e in estimates) < 0:
-        axes.axhline(0, color="black", linewidth=0.8)
+    axes.axhline(0, color="black", linewidth=0.8)
 
 
 def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:

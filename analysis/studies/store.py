@@ -114,8 +114,9 @@ def _claim(study: Study, folder: Path) -> None:
     }
     path = folder / MANIFEST
     if not path.exists():
-        if (folder / JOURNAL).exists() or (folder / TABLE).exists():
-            raise InputError("out", f"must be an empty folder or hold a {MANIFEST} beside its results", folder)
+        # A killed run may have left a hidden temporary file, nothing else.
+        if any(not file.name.startswith(".") for file in folder.iterdir()):
+            raise InputError("out", f"must be an empty folder or hold the {MANIFEST} of this study", folder)
         write_json(path, manifest)
         return
     try:

@@ -81,16 +81,16 @@ def _wait_for(condition: Callable[[], bool]) -> None:
 
 @contextmanager
 def _workers(
-    n: int, address: str, folder: Path, *, path: str = str(ROOT), seconds: float = 0.0
+    n: int, address: str, folder: Path, *, path: str = str(ROOT), seconds: float = 0.0, before: int = 0
 ) -> Iterator[list[subprocess.Popen[str]]]:
-    """``n`` workers that have all reported to the scheduler."""
+    """``n`` workers that have all reported to the scheduler, where ``before`` others had."""
     arguments = ("dask_worker", address, "--no-nanny", "--nthreads", "1", "--no-dashboard")
     with ExitStack() as stack:
         processes = [
             stack.enter_context(_process(*arguments, path=path, folder=folder, seconds=seconds)) for _ in range(n)
         ]
         with distributed.Client(address, timeout=SLOW, set_as_default=False) as client:
-            client.wait_for_workers(n, timeout=SLOW)
+            client.wait_for_workers(before + n, timeout=SLOW)
         yield processes
 
 
@@ -166,6 +166,18 @@ def test_a_worker_without_the_package_is_one_line(tmp_path: Path) -> None:
         stack.enter_context(_workers(1, address, tmp_path, path=""))
         with pytest.raises(InputError, match=r"worker tcp\S+ must import the same package .*; got ModuleNotFoundError"):
             stack.enter_context(open_executor(address, None))
+
+
+def test_a_worker_without_the_package_that_joins_later_changes_nothing(tmp_path: Path) -> None:
+    # It cannot even read a trial: Dask drops it and runs the trial elsewhere.
+    with ExitStack() as stack:
+        address = stack.enter_context(_scheduler(tmp_path))
+        stack.enter_context(_workers(1, address, tmp_path, seconds=0.05))
+        executor = stack.enter_context(open_executor(address, None))
+        stack.enter_context(_workers(1, address, tmp_path, path="", before=1))
+        table = run(STUDY, tmp_path / "dask", executor, trials=5, progress=Progress()).read_bytes()
+    with open_executor(None, 1) as executor:
+        assert run(STUDY, tmp_path / "local", executor, trials=5, progress=Progress()).read_bytes() == table
 
 
 def test_unreachable_cluster_exits_2_with_one_line(tmp_path: Path) -> None:

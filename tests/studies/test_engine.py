@@ -184,6 +184,19 @@ def test_results_of_other_versions_or_formats_are_refused(tmp_path: Path) -> Non
         _threads(tmp_path)
 
 
+def test_a_folder_with_anything_else_in_it_is_refused_and_kept(tmp_path: Path) -> None:
+    (tmp_path / "toy.png").write_text("mine")
+    with pytest.raises(InputError, match=r"must be an empty folder or hold the study\.json of this study"):
+        _threads(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["toy.png"]
+    assert (tmp_path / "toy.png").read_text() == "mine"
+
+
+def test_a_run_killed_while_it_wrote_its_first_file_resumes(tmp_path: Path) -> None:
+    (tmp_path / ".study-abc.json").write_text("{")
+    assert _threads(tmp_path) == _threads(tmp_path / "other")
+
+
 @pytest.mark.parametrize("damage", ["a,b\n", "REPEAT"])
 def test_damaged_rows_are_refused_by_line(tmp_path: Path, damage: str) -> None:
     _threads(tmp_path, 1)

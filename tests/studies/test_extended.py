@@ -40,7 +40,7 @@ def test_every_figure_is_there(out: Path) -> None:
     for name in STUDIES:
         assert (out / name / f"{name}.png").stat().st_size > 10_000
         assert (out / name / f"{name}.svg").exists()
-    assert not (out / "claims.md").exists()  # only some of the studies were asked for
+    assert not (out / "extended_claims.md").exists()  # only some of the studies were asked for
 
 
 def test_no_plan_is_proved_better_than_the_upper_bound(out: Path) -> None:
