@@ -2,8 +2,8 @@
 
 Run as ``python -m analysis.readme``. A block is ``<!-- output: COMMAND -->`` (or ``<!-- output of the last
 N lines: COMMAND -->``) followed by a ``text`` code fence; commands that use a ``$VARIABLE`` which is not set, or a
-file that such a command would have written, are left as they are. ``<!-- figure: FILE -->`` before an image
-copies ``FILE`` to the image's path.
+file that such a command would have written, are left as they are. ``<!-- table: COMMAND -->`` is followed by a
+Markdown table that the command prints. ``<!-- figure: FILE -->`` before an image copies ``FILE`` to the image's path.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ __all__ = ["main", "refreshed"]
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = re.compile(r"<!-- output(?: of the last (?P<last>\d+) lines)?: (?P<command>.*?) -->\n```text\n.*?```\n", re.S)
+TABLE = re.compile(r"<!-- table: (?P<command>.*?) -->\n(?:\|.*\n)*")
 FIGURE = re.compile(r"<!-- figure: (?P<file>\S+) -->\n!\[.*?\]\((?P<path>\S+?)\)", re.S)
 
 
@@ -31,14 +32,15 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         text = refreshed(readme.read_text(encoding="utf-8"), Path(folder))
         for figure in FIGURE.finditer(text):
-            if (Path(folder) / figure["file"]).exists():
+            source = Path(folder) / os.path.expandvars(figure["file"])
+            if source.exists():
                 (ROOT / figure["path"]).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(Path(folder) / figure["file"], ROOT / figure["path"])
+                shutil.copyfile(source, ROOT / figure["path"])
     readme.write_text(text, encoding="utf-8")
 
 
 def refreshed(text: str, folder: Path) -> str:
-    """Return ``text`` with every output block replaced by what its command prints in ``folder``."""
+    """Return ``text`` with every output block and table replaced by what its command prints in ``folder``."""
 
     def replaced(block: re.Match[str]) -> str:
         if missing := _missing(block["command"], folder):
@@ -47,7 +49,13 @@ def refreshed(text: str, folder: Path) -> str:
         head = block[0][: block[0].index("```text\n")]
         return f"{head}```text\n{_printed(block['command'], folder, block['last'])}```\n"
 
-    return OUTPUT.sub(replaced, text)
+    def retabled(table: re.Match[str]) -> str:
+        if missing := _missing(table["command"], folder):
+            print(f"left as it is (no {missing}): {table['command']}")
+            return table[0]
+        return f"<!-- table: {table['command']} -->\n{_printed(table['command'], folder, None)}"
+
+    return TABLE.sub(retabled, OUTPUT.sub(replaced, text))
 
 
 def _missing(command: str, folder: Path) -> str | None:

@@ -83,11 +83,8 @@ def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = (), 
 
 def _line(claim: Claim, cases: Sequence[Estimate], average: Estimate, verdict: Verdict) -> str:
     scale, unit = (1.0, claim.unit) if claim.share is None else (100.0, "%")
-    least, most = min(cases, key=lambda e: e.mean), max(cases, key=lambda e: e.mean)
-    result = f"{'difference' if claim.share is None else 'excess'} {average.show(scale)} {unit} on average"
-    if least.show() != most.show():
-        result += f", {least.show(scale)} to {most.show(scale)} by case"
-    limit = claim.share or 0.0
+    what, limit = "difference" if claim.share is None else "excess", claim.share or 0.0
     holds, fails = sum(e.high < limit for e in cases), sum(e.among(len(cases)).low > limit for e in cases)
-    result += f"; holds in {holds} of {len(cases)} cases, fails in {fails}; {average.n} trials"
+    count = f"holds in {holds} of {len(cases)} cases" + (f", fails in {fails}" if fails else "")
+    result = f"{what} {average.show(scale)} {unit} on average; {count}; {average.n} trials"
     return f"| {claim.figure} | `{claim.command}` | {claim.statement} | {result} | {verdict.value} |"
