@@ -126,7 +126,11 @@ def _claim(study: Study, folder: Path) -> None:
         checks = [
             (found["format"] == FORMAT, f"results of format {FORMAT}", f"format {found['format']}"),
             (same_study, f"results of study {study.name!r} version {study.version}", shown),
-            (found["fingerprint"] == study.fingerprint(), "results of this definition and seed", f"another {shown}"),
+            (
+                found["fingerprint"] == study.fingerprint(),
+                "results of this definition and seed",
+                f"{shown} with another definition or seed",
+            ),
             (found["made_with"] == VERSIONS, f"results made with {VERSIONS}", found["made_with"]),
         ]
     except (OSError, ValueError, KeyError, TypeError) as error:
