@@ -34,6 +34,9 @@ def worst_case_attack(
     - Larger teams with two-dimensional targets on a complete graph without protected links: branch
       and bound (``large_team.py``; a node is a branch or a partial set). Relies on a non-decreasing
       objective, which the three criteria are.
+    - Two-dimensional targets on other graphs that an attack can split in few ways, 21 to 60 robots:
+      partitions into groups and who is blinded in each (``split_search.py``; a node is a group tried or a
+      partial set). Relies on a non-decreasing objective, which the three criteria are.
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 
@@ -95,4 +98,11 @@ def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budg
     bracket.offer(better.attack, better.upper)
     if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
         return threshold_search(problem, values, bracket, budget)
+    if team is not None:
+        from ratt_opt.attackers.split_search import MOST_GROUPS, SplitSearch  # compiles
+        from ratt_opt.graph.separable_groups import separable_groups
+
+        groups = separable_groups(problem.threat, MOST_GROUPS)
+        if groups is not None:
+            return SplitSearch(problem, team, groups, values, bracket, budget).run()
     return forced_group_bound(problem, values, team, bracket, budget)

@@ -59,13 +59,25 @@ class SizeSearch:
     Parameters
     ----------
     offer : is given each set below the threshold and returns the new threshold
+    floor : no set is worth less
+    inside, outside : only sets that contain the first and avoid the second
     """
 
-    def __init__(self, team: CompactTeam, size: int, offer: Callable[[frozenset[int]], float], floor: float) -> None:
+    def __init__(
+        self,
+        team: CompactTeam,
+        size: int,
+        offer: Callable[[frozenset[int]], float],
+        floor: float,
+        *,
+        inside: frozenset[int] = frozenset(),
+        outside: frozenset[int] = frozenset(),
+    ) -> None:
         self.team, self.size, self.offer = team, size, offer
         self._serial = 0
+        self._inside, self._among = inside, frozenset(range(len(team.single))) - outside
         self._limit = FIRST_ENUMERATION
-        self.open = [SizeNode(floor, 0, frozenset(), frozenset())]
+        self.open = [SizeNode(floor, 0, inside, outside)]
 
     @property
     def lower(self) -> float:
@@ -128,7 +140,7 @@ class SizeSearch:
     def _try(self, node: SizeNode, others: IntArray, threshold: float) -> float:
         """Offer the set that the bound suggests, improved by exchanges."""
         candidate = node.inside | frozenset(others.tolist())
-        for one in (candidate, swap_search(self.team, candidate)):
+        for one in (candidate, swap_search(self.team, candidate, among=self._among, fixed=self._inside)):
             if self.team.value(one) < threshold:
                 threshold = self.offer(one)
         return threshold

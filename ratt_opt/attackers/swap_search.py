@@ -7,24 +7,37 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ratt_opt.attackers.compact import CompactTeam
 
 __all__ = ["swap_search"]
 
 
-def swap_search(team: CompactTeam, start: frozenset[int]) -> frozenset[int]:
-    """Exchange one robot inside for one outside while that lowers the value; ties to the lowest robots."""
-    inside = np.array(sorted(start), dtype=np.int64)
-    outside = np.setdiff1d(np.arange(len(team.single)), inside)
+def swap_search(
+    team: CompactTeam,
+    start: frozenset[int],
+    *,
+    among: Iterable[int] | None = None,
+    fixed: frozenset[int] = frozenset(),
+) -> frozenset[int]:
+    """Exchange one robot inside for one outside while that lowers the value; ties to the lowest robots.
+
+    ``among`` : robots that may be in the set (all by default); ``fixed`` : robots that stay in it
+    """
+    inside = np.array(sorted(start - fixed), dtype=np.int64)
+    allowed = range(len(team.single)) if among is None else among
+    outside = np.array(sorted(set(allowed) - start), dtype=np.int64)
     if not len(inside) or not len(outside):
         return start
-    sums, value = team.sums(inside), team.value(inside)
+    kept_robots = sorted(fixed)
+    sums, value = team.sums([*inside, *kept_robots]), team.value(start)
     while True:
         kept = sums - team.information[inside]
         values = np.stack([team.values(rest + team.information[outside]) for rest in kept])
         i, e = np.unravel_index(int(values.argmin()), values.shape)
         if values[i, e] >= value - 1e-12 * abs(value):
-            return frozenset(inside.tolist())
+            return frozenset(inside.tolist()) | fixed
         inside[i], outside[e] = outside[e], inside[i]
-        sums = team.sums(inside)
-        value = team.value(inside)
+        sums = team.sums([*inside, *kept_robots])
+        value = float(team.values(sums))

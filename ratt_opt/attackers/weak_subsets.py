@@ -1,0 +1,105 @@
+"""Which robots of one group can an attacker leave seeing below a threshold?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.compact import MAX_EIGENVALUE
+from ratt_opt.attackers.low_sets import AffineBound, LowSets
+from ratt_opt.attackers.size_search import SizeSearch
+from ratt_opt.attackers.swap_search import swap_search
+from ratt_opt.attackers.weakest_axis import weakest_axis
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.bracket import Budget
+    from ratt_opt.attackers.compact import CompactTeam
+    from ratt_opt.attackers.minorant import Minorant
+
+__all__ = ["WeakSubsets"]
+
+PLAIN_NODES = 300_000
+"""Compiled nodes before a question is handed to the branch and bound, which bounds it afresh."""
+
+UNINTERRUPTED = 100_000
+
+
+@dataclass(slots=True)
+class WeakSubsets:
+    """Decides, for groups of one team, whether some subset of a given size is worth less than a threshold.
+
+    ``must`` : robots that cannot be blinded; ``minorants`` : by size, over all robots
+    """
+
+    team: CompactTeam
+    must: frozenset[int]
+    minorants: dict[int, Minorant] = field(default_factory=dict)
+
+    def weak(self, group: frozenset[int], size: int) -> frozenset[int] | None:
+        """A weak subset by local search: no claim; ``None`` where the size leaves no room for protected robots."""
+        fixed = self.must & group
+        if not len(fixed) <= size <= len(group):
+            return None
+        order = sorted(group - fixed, key=lambda i: (self.team.single[i], i))
+        start = fixed | frozenset(order[: size - len(fixed)])
+        return swap_search(self.team, start, among=group, fixed=fixed)
+
+    def below(self, group: frozenset[int], size: int, threshold: float, budget: Budget) -> frozenset[int] | None:
+        """A subset of ``size`` robots of ``group`` worth less than ``threshold``; ``None`` proves there is none.
+
+        Spends nodes of ``budget``.
+        """
+        budget.spend()
+        quick = self.weak(group, size)
+        if quick is None or self.team.value(quick) < threshold:
+            return quick
+        fixed = self.must & group
+        free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
+        if size in {len(fixed), len(group)}:
+            return None  # only one subset, looked at already
+        if self.team.kind == MAX_EIGENVALUE:
+            axis = weakest_axis(self.team, self.team.sums(fixed), self.team.information[free], size - len(fixed))
+            if axis.bound >= threshold:
+                return None
+        return self._search(fixed, free, size, threshold, budget)
+
+    def _search(
+        self, fixed: frozenset[int], free: np.ndarray, size: int, threshold: float, budget: Budget
+    ) -> frozenset[int] | None:
+        low = self._enumeration(fixed, free, size)
+        while not low.finished and low.nodes < PLAIN_NODES:
+            before = low.nodes
+            allowed = budget.nodes_left(min(PLAIN_NODES - before, UNINTERRUPTED))
+            found = low.next_below(threshold, before + allowed)
+            budget.nodes += low.nodes - before
+            if found is not None:
+                return found
+        return None if low.finished else self._branch(fixed, free, size, threshold, budget)
+
+    def _enumeration(self, fixed: frozenset[int], free: np.ndarray, size: int) -> LowSets:
+        """The team's minorant of this size holds for the subsets of every group; surest robots first."""
+        left = size - len(fixed)
+        minorant = self.minorants.get(size)
+        if minorant is None:
+            return LowSets(self.team, free, fixed, left)
+        scores = minorant.scores[free]
+        middle = np.partition(scores, left - 1)[left - 1]
+        order = np.argsort(-np.abs(scores - middle), kind="stable")
+        constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
+        return LowSets(self.team, free[order], fixed, left, AffineBound(constant, scores[order]))
+
+    def _branch(
+        self, fixed: frozenset[int], free: np.ndarray, size: int, threshold: float, budget: Budget
+    ) -> frozenset[int] | None:
+        found: list[frozenset[int]] = []
+
+        def first(subset: frozenset[int]) -> float:
+            found.append(subset)
+            return -np.inf
+
+        outside = frozenset(range(len(self.team.single))) - fixed - frozenset(free.tolist())
+        search = SizeSearch(self.team, size, first, -np.inf, inside=fixed, outside=outside)
+        search.run(threshold, budget, lambda _: None)
+        return found[0] if found else None

@@ -1,0 +1,234 @@
+"""Every group that an attack may leave on a sparse graph, and partitions into such groups, in compiled code.
+
+A connected set of robots can only be split off when its links to all others are within the budget and none is
+protected. On sparse graphs such *separable* groups are few (thousands for thirty robots with six links each),
+so every attack is a choice of disjoint ones that cover the team. Imported only where needed: compiling takes
+seconds, once per machine (cached).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numba
+import numpy as np
+
+from ratt_opt.graph.connected_partitions import neighbour_masks
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
+
+LARGEST_MASK = 60
+"""Most robots: a group is a bit mask of 64."""
+
+FINISHED, PAUSED, FOUND = 0, 1, 2
+IMPOSSIBLE = 10_000
+"""Blinded robots that no budget holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeparableGroups:
+    """All separable groups of a threat.
+
+    ``masks`` : (G,) groups by bit mask over *places*, sorted by lowest place; ``start`` : (N + 1,) first group of each
+    lowest place; ``robots`` : (N,) robot at each place; ``neighbours`` : (N,) bit mask of each place's neighbours
+    """
+
+    threat: Threat
+    masks: IntArray
+    start: IntArray
+    robots: IntArray
+    neighbours: IntArray
+
+    def members(self, group: int) -> IntArray:
+        """Robots of one group, ascending."""
+        mask = int(self.masks[group])
+        return np.sort(self.robots[[p for p in range(len(self.robots)) if mask >> p & 1]])
+
+
+def separable_groups(threat: Threat, most: int) -> SeparableGroups | None:
+    """Tabulate the separable groups; ``None`` where there are more than ``most``, or more robots than a mask holds.
+
+    The places are the robots in the order in which :class:`PartitionSearch` covers them: those in the most groups
+    first, so that what is left afterwards are few small groups.
+    """
+    n_robots = threat.graph.n_robots
+    if n_robots > LARGEST_MASK:
+        return None
+    neighbours = np.array(neighbour_masks(threat), dtype=np.int64)
+    locked = np.zeros(n_robots, dtype=np.int64)
+    for i, j in threat.protected_links:
+        locked[i] |= 1 << j
+        locked[j] |= 1 << i
+    masks, complete = _enumerate(neighbours, locked, threat.alpha_c, most)
+    if not complete:
+        return None
+    bits = [masks >> i & 1 for i in range(n_robots)]
+    robots = np.argsort([-int(bit.sum()) for bit in bits], kind="stable")
+    place = np.argsort(robots).tolist()
+    moved = np.bitwise_or.reduce([bits[i] << place[i] for i in range(n_robots)])
+    near = np.array([sum(1 << int(place[j]) for j in range(n_robots) if neighbours[i] >> j & 1) for i in robots])
+    lowest = np.bitwise_count((moved & -moved) - 1).astype(np.int64)
+    order = np.lexsort((moved, lowest))
+    start = np.searchsorted(lowest[order], np.arange(n_robots + 1))
+    return SeparableGroups(threat, moved[order], start, robots, near.astype(np.int64))
+
+
+@numba.njit(cache=True)
+def _count(mask: int) -> int:
+    ones = 0
+    while mask:
+        mask &= mask - 1
+        ones += 1
+    return ones
+
+
+@numba.njit(cache=True)
+def _enumerate(neighbours: Any, locked: Any, budget: int, most: int) -> Any:
+    """Connected sets with at most ``budget`` outgoing links, none ``locked``: (masks, whether that is all of them).
+
+    Each set grows from its lowest robot; a robot next to it is taken in or left out, and what is left out
+    already costs its links.
+    """
+    n_robots = len(neighbours)
+    found = np.zeros(1024, dtype=np.int64)
+    count = 0
+    stack = np.zeros((2 * n_robots + 2, 3), dtype=np.int64)  # inside, outside, links between them
+    for first in range(n_robots):
+        below = (1 << first) - 1
+        stack[0, 0], stack[0, 1], stack[0, 2] = 1 << first, below, _count(neighbours[first] & below)
+        top = 1 if locked[first] & below == 0 else 0
+        while top:
+            top -= 1
+            inside, outside, cost = stack[top, 0], stack[top, 1], stack[top, 2]
+            if cost > budget:
+                continue
+            pick, most_links = -1, -1
+            for i in range(n_robots):
+                links = _count(neighbours[i] & inside)
+                if (inside | outside) >> i & 1 or links == 0:
+                    continue
+                links += _count(neighbours[i] & outside)
+                if links > most_links:
+                    pick, most_links = i, links
+            if pick < 0:
+                if count == most:
+                    return found[:count], False
+                if count == len(found):
+                    found = np.concatenate((found, np.zeros(count, dtype=np.int64)))
+                found[count] = inside
+                count += 1
+                continue
+            if locked[pick] & inside == 0:
+                stack[top, 0], stack[top, 1] = inside, outside | (1 << pick)
+                stack[top, 2] = cost + _count(neighbours[pick] & inside)
+                top += 1
+            if locked[pick] & outside == 0:
+                stack[top, 0], stack[top, 1] = inside | (1 << pick), outside
+                stack[top, 2] = cost + _count(neighbours[pick] & outside)
+                top += 1
+    return found[:count], True
+
+
+@numba.njit(cache=True)
+def _links_between(group: int, others: int, neighbours: Any) -> int:
+    links = 0
+    while group:
+        lowest = group & -group
+        links += _count(neighbours[_count(lowest - 1)] & others)
+        group ^= lowest
+    return links
+
+
+@numba.njit(cache=True)
+def _still_within(need: Any, budget: int, state: Any, depth: int) -> int:
+    """Depth up to which the groups chosen, which may need more than they did, are within the budget."""
+    for d in range(depth):
+        state[d + 1, 2] = state[d, 2] + need[state[d, 4]]
+        if state[d + 1, 2] > budget:
+            return d
+    return depth
+
+
+@numba.njit(cache=True)
+def _search(  # noqa: PLR0917  (compiled code takes arrays, not records)
+    masks: Any, start: Any, neighbours: Any, need: Any, budgets: Any, limit: int, state: Any, counters: Any
+) -> int:
+    """Continue to the next partition within both budgets.
+
+    ``state`` : (N + 1, 5) robots left, links cut, robots blinded, next position, group chosen, at each depth;
+    ``counters`` : depth, nodes. ``need`` may have risen since the last call.
+    """
+    depth = _still_within(need, budgets[0], state, counters[0])
+    while depth >= 0:
+        left = state[depth, 0]
+        lowest = _count((left & -left) - 1)
+        position, end = max(state[depth, 3], start[lowest]), start[lowest + 1]
+        chosen, others, links = -1, 0, 0
+        while position < end:
+            group = position
+            position += 1
+            mask = masks[group]
+            if mask & ~left or state[depth, 2] + need[group] > budgets[0]:
+                continue
+            if counters[1] >= limit:
+                state[depth, 3], counters[0] = group, depth
+                return 1
+            counters[1] += 1
+            others = left & ~mask
+            links = state[depth, 1] + _links_between(mask, others, neighbours)
+            if links <= budgets[1]:
+                chosen = group
+                break
+        state[depth, 3] = position
+        if chosen < 0:
+            depth -= 1
+            continue
+        state[depth, 4] = chosen
+        state[depth + 1, 0], state[depth + 1, 1] = others, links
+        state[depth + 1, 2], state[depth + 1, 3] = state[depth, 2] + need[chosen], -1
+        if others == 0:
+            counters[0] = depth
+            state[depth + 1, 0] = 0
+            return 2
+        depth += 1
+    counters[0] = -1
+    return 0
+
+
+class PartitionSearch:
+    """All partitions of the team into separable groups within both budgets, one after the other; resumable.
+
+    Parameters
+    ----------
+    need : (G,) robots to blind in each group, at least; may be raised between calls, never lowered
+    """
+
+    def __init__(self, groups: SeparableGroups, need: IntArray) -> None:
+        self._groups, self.need = groups, need
+        n_robots = len(groups.robots)
+        self._state = np.zeros((n_robots + 1, 5), dtype=np.int64)
+        self._state[0] = (1 << n_robots) - 1, 0, 0, -1, -1
+        self._counters = np.zeros(2, dtype=np.int64)
+        self._budgets = np.array([groups.threat.n_blinded, groups.threat.alpha_c])
+        self.finished = False
+
+    @property
+    def nodes(self) -> int:
+        """Groups tried."""
+        return int(self._counters[1])
+
+    def next(self, limit: int) -> list[int] | None:
+        """Groups of the next partition; ``None`` once ``finished`` or at ``limit`` nodes in all."""
+        groups = self._groups
+        answer = _search(
+            groups.masks, groups.start, groups.neighbours, self.need, self._budgets, limit, self._state, self._counters
+        )
+        if answer == FOUND:
+            return [int(group) for group in self._state[: int(self._counters[0]) + 1, 4]]
+        self.finished = answer == FINISHED
+        return None

@@ -1,0 +1,160 @@
+"""The exact attacker of larger teams on sparse graphs, run on teams small enough for the definition."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers import size_search, split_search, weak_subsets
+from ratt_opt.attackers.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
+from ratt_opt.attackers.compact import CompactTeam
+from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.split_search import SplitSearch
+from ratt_opt.graph.separable_groups import separable_groups
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
+
+
+def team_problem(seed, n_robots, *, density=None):
+    """Random team on a random graph, connected or not, with protected robots and links now and then."""
+    rng = np.random.default_rng(seed)
+    name = list(OBJECTIVES)[seed % 3]
+    data = range_bearing(rng, n_robots, 4, 3) if seed % 2 else information_data(rng, 3 * n_robots, 3)
+    graph = random_graph(rng, n_robots) if density is None else nx.gnp_random_graph(n_robots, density, seed=seed)
+    links = sorted((min(link), max(link)) for link in graph.edges)
+    held = rng.random() < 0.4
+    problem = ro.Problem(
+        OBJECTIVES[name](*data, rng.uniform(0.2, 3, len(data[0])) if seed % 4 == 0 else None),
+        np.repeat(np.arange(n_robots), 3),
+        graph,
+        int(rng.integers(0, n_robots + 1)),
+        int(rng.integers(0, len(links) + 1)),
+        frozenset(i for i in range(n_robots) if held and rng.random() < 0.3),
+        frozenset(link for link in links if held and rng.random() < 0.2),
+    )
+    return problem, random_elements(rng, problem)
+
+
+def run_split(problem, elements, max_nodes=None):
+    """The search itself, whatever ``worst_case_attack`` would choose for this team."""
+    values = PlanValues(problem, elements)
+    first = bounded_rational_attack(problem, elements)
+    bracket, budget = Bracket(first.attack, first.upper, 0.0), Budget(max_nodes, None)
+    team = CompactTeam.of(problem.objective, values.plan)
+    groups = separable_groups(problem.threat, split_search.MOST_GROUPS)
+    try:
+        stop = SplitSearch(problem, team, groups, values, bracket, budget).run()
+    except OutOfBudget as out:
+        stop = out.stop
+    return bracket, budget.nodes, stop
+
+
+def check(problem, elements, bracket, stop, expected):
+    assert stop is ro.Stop.CLOSED
+    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
+    assert bracket.lower <= expected * (1 + 1e-12) + 1e-12
+    assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
+    assert problem.team_value(elements, bracket.attack) == bracket.upper
+
+
+@pytest.mark.parametrize("seed", range(120))
+def test_value_is_the_definition_s(seed):
+    problem, elements = team_problem(seed, 1 + seed % 5)
+    bracket, _, stop = run_split(problem, elements)
+    check(problem, elements, bracket, stop, brute_force_worst_case(problem, elements))
+
+
+@pytest.mark.parametrize(
+    ("seed", "plain"), [*((seed, 300_000) for seed in range(45)), *((seed, 0) for seed in range(9))]
+)
+def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
+    """Nine and ten robots: subsets found by plain enumeration, then all by branch and bound."""
+    monkeypatch.setattr(weak_subsets, "PLAIN_NODES", plain)
+    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 10)
+    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 10)
+    problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
+    bracket, _, stop = run_split(problem, elements)
+    check(problem, elements, bracket, stop, ro.worst_case_attack(problem, elements).upper)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_bracket_is_valid_at_every_node_count(seed, monkeypatch):
+    monkeypatch.setattr(weak_subsets, "PLAIN_NODES", 20)
+    problem, elements = team_problem(seed, 7, density=0.4)
+    problem = ro.Problem(problem.objective, problem.robot, problem.graph, 2, min(5, len(problem.communication.links)))
+    expected = ro.worst_case_attack(problem, elements).upper
+    _, nodes, _ = run_split(problem, elements)
+    previous = 0.0
+    for limit in [*range(min(nodes, 200)), nodes, nodes + 1]:
+        bracket, used, stop = run_split(problem, elements, limit)
+        assert used <= limit
+        assert previous <= bracket.lower <= expected * (1 + 1e-12) + 1e-12
+        assert bracket.upper >= expected * (1 - 2e-10)
+        assert problem.team_value(elements, bracket.attack) == bracket.upper
+        assert (stop is ro.Stop.NODES) == (limit < nodes)
+        previous = bracket.lower
+
+
+def disk_graph(seed, n_robots, degree):
+    position = np.random.default_rng(seed).random((n_robots, 2))
+    distance = np.linalg.norm(position[:, None] - position, axis=-1)
+    pairs = np.argwhere(np.triu(np.ones_like(distance), 1))
+    nearest = pairs[np.argsort(distance[pairs[:, 0], pairs[:, 1]])][: n_robots * degree // 2]
+    graph = nx.empty_graph(n_robots)
+    graph.add_edges_from(nearest.tolist())
+    return graph
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_thirty_robots_on_a_disk_graph_close(name):
+    rng = np.random.default_rng(3)
+    objective = OBJECTIVES[name](*range_bearing(rng, 30, 20, 1))
+    problem = ro.Problem(objective, np.arange(30), disk_graph(3, 30, 6), 5, 10, frozenset({4}), frozenset())
+    plan = np.arange(30)
+    result = ro.worst_case_attack(problem, plan)
+    assert result.stop is ro.Stop.CLOSED
+    assert result.upper - result.lower <= 1.1e-10 * result.upper
+    assert result.upper == problem.team_value(plan, result.attack)
+    assert result.upper <= min(ro.greedy_attack(problem, plan).upper, ro.bounded_rational_attack(problem, plan).upper)
+    assert all(result.lower <= ro.random_attack(problem, plan, seed=seed).upper for seed in range(100))
+    again = ro.worst_case_attack(problem, plan)
+    assert (again.attack, again.nodes) == (result.attack, result.nodes)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_relabelling_changes_nothing(seed):
+    rng = np.random.default_rng(seed)
+    prior, information = range_bearing(rng, 24, 6, 1)
+    graph, order = disk_graph(seed, 24, 5), rng.permutation(24)
+    moved = np.empty_like(information)
+    moved[order] = information
+    renamed = nx.relabel_nodes(graph, dict(enumerate(order.tolist())))
+    values = [
+        ro.worst_case_attack(ro.Problem(ro.LogDetObjective(prior, data), np.arange(24), g, 4, 8), np.arange(24)).upper
+        for data, g in ((information, graph), (moved, renamed))
+    ]
+    assert values[0] == pytest.approx(values[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("batches", [1, 2, 5, 20])
+def test_an_interrupt_returns_the_bracket_reached(batches, monkeypatch):
+    rng = np.random.default_rng(2)
+    problem = ro.Problem(ro.TraceObjective(*range_bearing(rng, 24, 4, 1)), np.arange(24), disk_graph(2, 24, 5), 4, 9)
+    expected = ro.worst_case_attack(problem, np.arange(24))
+    left = [batches]
+    settle = SplitSearch._settle
+
+    def interrupted(*arguments):
+        left[0] -= 1
+        if left[0] == 0:
+            raise KeyboardInterrupt
+        return settle(*arguments)
+
+    monkeypatch.setattr(SplitSearch, "_settle", interrupted)
+    result = ro.worst_case_attack(problem, np.arange(24))
+    assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
+    assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
+    assert problem.team_value(np.arange(24), result.attack) == result.upper

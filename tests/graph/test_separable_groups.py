@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+from itertools import combinations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.connected_partitions import connected_partitions
+from ratt_opt.graph.separable_groups import PartitionSearch, separable_groups
+from ratt_opt.graph.threat import Threat
+from tests.strategies import random_problem
+
+
+def by_definition(threat):
+    graph = nx.Graph(sorted(threat.graph.links))
+    graph.add_nodes_from(range(threat.graph.n_robots))
+    for size in range(1, threat.graph.n_robots + 1):
+        for group in combinations(range(threat.graph.n_robots), size):
+            out = {(min(e), max(e)) for e in nx.edge_boundary(graph, group)}
+            allowed = len(out) <= threat.alpha_c and not out & threat.protected_links
+            if allowed and nx.is_connected(graph.subgraph(group)):
+                yield group
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_groups_are_those_of_the_definition(seed):
+    threat = random_problem(np.random.default_rng(seed), 1 + seed % 8, kind="logdet", controls=1).threat
+    groups = separable_groups(threat, 10_000)
+    found = [tuple(groups.members(k).tolist()) for k in range(len(groups.masks))]
+    assert len(found) == len(set(found))
+    assert set(found) == set(by_definition(threat))
+    if len(found) > 1:
+        assert separable_groups(threat, len(found) - 1) is None
+    assert separable_groups(threat, len(found)) is not None
+
+
+@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("limit", [1, 10**6])
+def test_partitions_are_all_those_within_both_budgets(seed, limit):
+    """Also when the search is paused after every node."""
+    rng = np.random.default_rng(seed)
+    threat = random_problem(rng, 1 + seed % 7, kind="logdet", controls=1).threat
+    groups = separable_groups(threat, 10_000)
+    need = rng.integers(0, 3, len(groups.masks))
+    search, found = PartitionSearch(groups, need.copy()), []
+    while not search.finished:
+        before = search.nodes
+        chosen = search.next(before + limit)
+        assert search.nodes <= before + limit
+        if chosen is not None:
+            found.append(frozenset(tuple(groups.members(k).tolist()) for k in chosen))
+    needs = {tuple(groups.members(k).tolist()): int(need[k]) for k in range(len(need))}
+    expected = set()
+    for partition in connected_partitions(threat):
+        parts = frozenset(tuple(i for i in range(threat.graph.n_robots) if mask >> i & 1) for mask in partition)
+        if sum(needs[part] for part in parts) <= threat.n_blinded:
+            expected.add(parts)
+    assert len(found) == len(set(found))
+    assert set(found) == expected
+
+
+def test_needs_that_rise_on_the_way_only_shorten_the_search():
+    threat = Threat(CommunicationGraph.from_networkx(nx.cycle_graph(7), 7), 2, 4)
+    groups = separable_groups(threat, 10_000)
+    need = np.zeros(len(groups.masks), dtype=np.int64)
+    search, seen = PartitionSearch(groups, need), []
+    while not search.finished:
+        chosen = search.next(10**6)
+        if chosen is not None:
+            assert need[chosen].sum() <= 2
+            seen.append(chosen)
+            need[chosen[0]] += 1
+    assert 1 < len(seen) < len(list(connected_partitions(threat)))
+
+
+def test_too_many_robots_for_a_mask():
+    assert separable_groups(Threat(CommunicationGraph.from_networkx(nx.path_graph(61), 61), 1, 1), 10_000) is None
