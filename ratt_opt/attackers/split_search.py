@@ -19,7 +19,7 @@ from ratt_opt.attackers.minorant import affine_minorant
 from ratt_opt.attackers.outer_points import SetFamily
 from ratt_opt.attackers.weak_subsets import WeakSubsets
 from ratt_opt.attackers.weakest_axis import weakest_axis
-from ratt_opt.graph.separable_groups import PartitionSearch
+from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
@@ -43,7 +43,6 @@ BISECTED = 2e-3
 """Relative width below which the incumbent is tested instead of the middle."""
 
 UNINTERRUPTED = 20_000
-IMPOSSIBLE = 10_000
 CHUNK = 4096
 
 

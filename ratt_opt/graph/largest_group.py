@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 from ratt_opt.graph.caa import caa, links_within
 from ratt_opt.graph.communication import CommunicationGraph
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
 
 __all__ = ["LARGEST_MILP", "LargestGroup", "counting_bound", "smallest_largest_group"]
+
+AUTOMATIC_NODES = 20_000_000
+"""Groups that ``method="auto"`` tries before it turns to the integer program (some ten seconds)."""
 
 LARGEST_MILP = 40
 """Most robots ``method="auto"`` gives to the integer program."""
@@ -73,10 +77,11 @@ def smallest_largest_group(
     ----------
     graph : on robots ``0..N-1``
     method : ``"caa"`` (Algorithm 2; complete graphs), ``"partitions"`` (integer partitions; complete graphs),
-        ``"enumeration"`` (partitions into connected groups; at most 14 robots), ``"milp"`` (any graph),
-        ``"counting"`` (any size; a bound and a heuristic cut only), or ``"auto"``
+        ``"enumeration"`` (partitions into connected groups; any graph up to 14 robots, and up to 60 where a link
+        budget allows few groups, as on sparse graphs), ``"milp"`` (any graph), ``"counting"`` (any size; a bound
+        and a heuristic cut only), or ``"auto"``: the first of caa, enumeration, milp, counting that is exact
     protected_links : links that cannot be cut
-    time_limit, max_nodes : seconds and nodes for the integer program
+    time_limit, max_nodes : seconds and nodes for the enumeration beyond 14 robots, and for the integer program
 
     Raises
     ------
@@ -89,25 +94,52 @@ def smallest_largest_group(
         n_robots = graph.number_of_nodes() if hasattr(graph, "number_of_nodes") else 1
         graph = CommunicationGraph.from_networkx(graph, n_robots)
     threat = Threat(graph, 0, alpha_c, protected_links=frozenset(protected_links))
-    if method == "milp" or (method == "auto" and _automatic(threat) == "milp"):
-        from ratt_opt.graph.largest_group_milp import by_milp  # imports highspy
-
-        return by_milp(threat, time_limit, max_nodes)
-    chosen = _automatic(threat) if method == "auto" else method
-    if chosen not in METHODS:
+    if time_limit is not None and not time_limit >= 0:
+        raise InputError("time_limit", "must be a number of seconds >= 0", time_limit)
+    if max_nodes is not None:
+        max_nodes = check_integer("max_nodes", max_nodes, low=0)
+    if method == "auto":
+        return _automatic(threat, time_limit, max_nodes)
+    if method == "milp":
+        return _by_milp(threat, time_limit, max_nodes)
+    if method not in METHODS:
         raise InputError("method", f"must be one of auto, milp, {', '.join(METHODS)}", method)
-    if chosen in {"caa", "partitions"} and not threat.links_alike:
-        rule = 'must be "enumeration" (at most 14 robots) or "milp" unless the graph is complete and nothing protected'
-        raise InputError("method", rule, method)
-    return METHODS[chosen](threat)
+    if method in {"caa", "partitions"} and not threat.links_alike:
+        rule = 'must be "enumeration" (sparse graphs or at most 14 robots) or "milp" unless the graph is complete'
+        raise InputError("method", f"{rule} and nothing protected", method)
+    if method == "enumeration" and graph.n_robots > LARGEST_LATTICE:
+        found = _by_groups(threat, time_limit, max_nodes)
+        if found is None:
+            rule = f'must be "milp" (or "caa" on a complete graph) for more than {LARGEST_LATTICE} robots'
+            raise InputError("method", f"{rule} with so many links", f"enumeration of {graph.n_robots} robots")
+        return found
+    return METHODS[method](threat)
 
 
-def _automatic(threat: Threat) -> str:
+def _automatic(threat: Threat, time_limit: float | None, max_nodes: int | None) -> LargestGroup:
+    n_robots = threat.graph.n_robots
     if threat.links_alike:
-        return "caa"
-    if threat.graph.n_robots <= LARGEST_LATTICE:
-        return "enumeration"
-    return "milp" if threat.graph.n_robots <= LARGEST_MILP else "counting"
+        return _by_caa(threat)
+    if n_robots <= LARGEST_LATTICE:
+        return _by_enumeration(threat)
+    found = _by_groups(threat, time_limit, AUTOMATIC_NODES)
+    if found is not None and found.is_exact:
+        return found
+    if n_robots <= LARGEST_MILP:
+        return _by_milp(threat, time_limit, max_nodes)
+    return found or _by_counting(threat)
+
+
+def _by_milp(threat: Threat, time_limit: float | None, max_nodes: int | None) -> LargestGroup:
+    from ratt_opt.graph.largest_group_milp import by_milp  # imports highspy
+
+    return by_milp(threat, time_limit, max_nodes)
+
+
+def _by_groups(threat: Threat, time_limit: float | None, max_nodes: int | None) -> LargestGroup | None:
+    from ratt_opt.graph.largest_group_separable import by_separable_groups  # compiles
+
+    return by_separable_groups(threat, time_limit, max_nodes)
 
 
 def largest_left(graph: CommunicationGraph, cut: Iterable[Link]) -> int:
@@ -156,9 +188,6 @@ def _by_partitions(threat: Threat) -> LargestGroup:
 def _by_enumeration(threat: Threat) -> LargestGroup:
     """Fewest links that split the graph into connected groups of at most p robots, over all set partitions."""
     n_robots = threat.graph.n_robots
-    if n_robots > LARGEST_LATTICE:
-        rule = f'must be "milp" (or "caa" on a complete graph) for more than {LARGEST_LATTICE} robots'
-        raise InputError("method", rule, f"enumeration of {n_robots} robots")
     sizes = np.bitwise_count(np.arange(2**n_robots)).astype(np.float64)
     test = ThresholdTest(threat, sizes)
     largest, split = next((p, s) for p in range(1, n_robots + 1) if (s := test.split(float(p))) is not None)

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.errors import InputError
 from ratt_opt.graph.largest_group import LargestGroup, counting_bound, heuristic_cut, largest_left
 
 if TYPE_CHECKING:
@@ -36,14 +35,7 @@ LARGEST_ROUND = 400
 
 
 def by_milp(threat: Threat, time_limit: float | None, max_nodes: int | None) -> LargestGroup:
-    """Smallest largest group of any graph; the incumbent is recomputed on the graph, the bound from the multipliers.
-
-    Raises
-    ------
-    InputError : ``time_limit`` is not a number >= 0.
-    """
-    if time_limit is not None and not time_limit >= 0:
-        raise InputError("time_limit", "must be a number of seconds >= 0", time_limit)
+    """Smallest largest group of any graph; the incumbent is recomputed on the graph, the bound from the multipliers."""
     deadline = np.inf if time_limit is None else monotonic() + time_limit
     program = _Program(threat)
     best = heuristic_cut(threat)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
+__all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
 
 LARGEST_MASK = 60
 """Most robots: a group is a bit mask of 64."""

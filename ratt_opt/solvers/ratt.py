@@ -18,8 +18,9 @@ MILP_NODES = 1_000
 def equivalent_sensing_attacks(problem: Problem) -> int:
     """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``.
 
-    Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots, the
-    integer program's up to 40, and a valid lower bound on it beyond that or where the program did not finish.
+    Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots and, where an
+    attack can split off few groups, up to 60; else the integer program's up to 40 robots, and a valid lower bound
+    on it beyond that or where the program did not finish.
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """

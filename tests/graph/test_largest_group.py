@@ -90,6 +90,36 @@ def test_enumeration_and_milp_agree_on_larger_graphs(seed):
     assert found.n_max == exact.n_max
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_enumeration_by_groups_agrees_with_both_others(seed):
+    """Where all subsets still fit, and beyond, against the integer program."""
+    from ratt_opt.graph.largest_group_separable import by_separable_groups
+
+    rng = np.random.default_rng(seed)
+    threat = random_problem(rng, 9, kind="logdet", controls=1).threat
+    graph = nx.Graph(sorted(threat.graph.links))
+    graph.add_nodes_from(range(9))
+    found = by_separable_groups(threat, None, None)
+    check(found, graph, threat.alpha_c, threat.protected_links)
+    exact = smallest_largest_group(graph, threat.alpha_c, method="enumeration", protected_links=threat.protected_links)
+    assert (found.n_max, found.is_exact) == (exact.n_max, True)
+    larger = nx.gnp_random_graph(18, 0.2, seed=seed)
+    alpha_c = int(rng.integers(0, 9))
+    found = smallest_largest_group(larger, alpha_c, method="enumeration")
+    check(found, larger, alpha_c)
+    assert found.is_exact
+    assert found.n_max == smallest_largest_group(larger, alpha_c, method="milp").n_max
+
+
+@pytest.mark.parametrize("max_nodes", [0, 1, 10, 100, 1000])
+def test_enumeration_within_a_node_budget_returns_a_bracket(max_nodes):
+    graph = nx.gnp_random_graph(22, 0.2, seed=3)
+    exact = smallest_largest_group(graph, 12, method="enumeration").n_max
+    found = smallest_largest_group(graph, 12, method="enumeration", max_nodes=max_nodes)
+    check(found, graph, 12)
+    assert found.lower <= exact <= found.upper
+
+
 def test_known_graphs():
     path = nx.path_graph(30)
     assert smallest_largest_group(path, 2).n_max == 10
@@ -107,13 +137,15 @@ def test_a_method_that_does_not_apply_names_one_that_would():
     with pytest.raises(InputError, match="milp"):
         smallest_largest_group(nx.path_graph(5), 1, method="partitions")
     with pytest.raises(InputError, match="milp"):
-        smallest_largest_group(nx.path_graph(20), 1, method="enumeration")
+        smallest_largest_group(nx.complete_graph(24), 150, method="enumeration")
     with pytest.raises(InputError, match="must be one of"):
         smallest_largest_group(nx.path_graph(5), 1, method="magic")
     with pytest.raises(InputError, match="alpha_c"):
         smallest_largest_group(nx.path_graph(5), 5)
-    with pytest.raises(InputError, match="time_limit"):
-        smallest_largest_group(nx.path_graph(5), 1, method="milp", time_limit=-1)
+    for limits, name in (({"time_limit": float("nan")}, "time_limit"), ({"max_nodes": -1}, "max_nodes")):
+        for method in ("auto", "milp", "enumeration"):
+            with pytest.raises(InputError, match=name):
+                smallest_largest_group(nx.path_graph(20), 1, method=method, **limits)
     loop = nx.path_graph(3)
     loop.add_edge(1, 1)
     for bad in (loop, nx.DiGraph([(0, 1)]), nx.MultiGraph([(0, 1)]), nx.Graph([(1, 2)]), "graph"):
