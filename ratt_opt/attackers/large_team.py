@@ -13,7 +13,7 @@ import numpy as np
 
 from ratt_opt.attackers.packing import Packer
 from ratt_opt.attackers.size_search import SizeSearch
-from ratt_opt.attackers.swap_search import swap_search
+from ratt_opt.attackers.weak_sets import weak_sets
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 from ratt_opt.problem import Attack
@@ -74,10 +74,11 @@ class LargeTeamSearch:
         self.bracket.raise_lower(min(undecided, self._threshold, self.left_open, self.weakest))
 
     def _start(self, sizes: list[int]) -> None:
-        """Incumbents before the search: the weakest robots, improved by exchanges."""
-        order = np.argsort(self.team.single, kind="stable")
+        """Incumbents before the search: sets that no exchange makes weaker."""
         for size in sizes:
-            self._offer(swap_search(self.team, frozenset(order[:size].tolist())))
+            for robots in weak_sets(self.team, size):
+                if self._offer(robots) <= self.team.value(robots):
+                    break
 
     def _offer(self, largest: frozenset[int]) -> float:
         """Make attacks of a largest group, or learn that it has none below the threshold."""

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 __all__ = ["SizeNode", "SizeSearch"]
 
 FIRST_ENUMERATION = 2_000_000
+FEW_ROBOTS, WHOLE_ENUMERATION = 32, 200_000_000
+"""So few robots are enumerated at once: at a tenth of a microsecond a node, faster than to branch (N = 30: 2 to 4 s
+instead of 4 to 7 s)."""
 SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 300_000, 1_000_000
 """Compiled nodes spent on one branch-and-bound node before it is split: more after successes, fewer after failures."""
 
@@ -76,7 +79,7 @@ class SizeSearch:
         self.team, self.size, self.offer = team, size, offer
         self._serial = 0
         self._inside, self._among = inside, frozenset(range(len(team.single))) - outside
-        self._limit = FIRST_ENUMERATION
+        self._limit = FIRST_ENUMERATION if len(team.single) > FEW_ROBOTS else WHOLE_ENUMERATION
         self.open = [SizeNode(floor, 0, inside, outside)]
 
     @property
@@ -92,7 +95,7 @@ class SizeSearch:
         """
         while self.open and self.open[0].bound < threshold:
             node = self.open[0]
-            children, threshold = self._expand(node, threshold, budget)
+            children, threshold = self._expand(node, threshold, budget, progress)
             heapq.heappop(self.open)
             for child in children:
                 heapq.heappush(self.open, child)
@@ -100,7 +103,9 @@ class SizeSearch:
         self.open.clear()
         return threshold
 
-    def _expand(self, node: SizeNode, threshold: float, budget: Budget) -> tuple[list[SizeNode], float]:
+    def _expand(
+        self, node: SizeNode, threshold: float, budget: Budget, progress: Callable[[float], None]
+    ) -> tuple[list[SizeNode], float]:
         budget.spend()
         robots = self._free(node)
         size = self.size - len(node.inside)
@@ -120,6 +125,7 @@ class SizeSearch:
             threshold = self._try(node, robots[order[:size]], threshold)
         if bound >= threshold:
             return [], threshold
+        progress(min([bound, *(other.bound for other in self.open[1:3])]))  # the next lowest are a heap's children
         if minorant is not None:
             node, robots, minorant = self._fix(node, robots, minorant, threshold)
             size = self.size - len(node.inside)

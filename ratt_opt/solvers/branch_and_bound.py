@@ -9,7 +9,6 @@ their own, and where that fails the node branches on which group wins (:mod:`rat
 from __future__ import annotations
 
 import heapq
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,11 +62,12 @@ class BranchAndBound:
         representatives = tuple(np.array(sorted(own), dtype=np.int64) for own in self.classes)
         self._program = NodeProgram(problem.objective.n, representatives)
         self._cuts = CutStore(problem, objective, pool)
-        self._winners = Winners(objective, self._cuts, incumbent, self.classes, self._closes)
+        self._winners = Winners(objective, self._cuts, incumbent, self.classes, closes=self._closes, close=self._close)
         self._singles = objective.singletons()
         self._queue: list[tuple[float, int, TreeNode]] = []
         self._pushed = 0
-        self._finished = -np.inf
+        self._closed: list[TreeNode] = []
+        self._finished = self._decided = -np.inf
         self._current: TreeNode | None = None
         self._root = self._first_node(representatives)
         self._push(self._root)
@@ -80,7 +80,7 @@ class BranchAndBound:
         still = [-self._queue[0][0]] if self._queue else []
         if self._current is not None:
             still.append(self._current.bound)
-        return max(self._finished, self._winners.finished, self.incumbent.lower, *still)
+        return max(self._finished, self._decided, self._winners.finished, self.incumbent.lower, *still)
 
     def proof(self) -> UpperProof:
         """The proof of :attr:`upper`: winners decided for all plans, then the tree."""
@@ -90,26 +90,27 @@ class BranchAndBound:
 
     # -- the search --------------------------------------------------------------------------------------------
 
-    def run(
-        self, deadline: float | None, max_nodes: int | None, progress: Callable[[int, float, float], None] | None
-    ) -> Stop:
-        """Search until the gap closes or a budget is spent; return why it stopped."""
-        while self._queue:
-            if self._closes(-self._queue[0][0]):
-                break
+    def run(self, max_nodes: int | None, progress: Callable[[int, float, float], None] | None) -> Stop:
+        """Search until the gap closes, or the nodes or the incumbent's time are spent; return why it stopped."""
+        while True:
+            if not self._queue or self._closes(-self._queue[0][0]):
+                if not self._reopen():
+                    return Stop.GAP
+                continue
             if max_nodes is not None and self.nodes >= max_nodes:
                 return Stop.NODES
             self._current = self._queue[0][2]  # before it leaves the queue: an interrupt must not lose it
             heapq.heappop(self._queue)
             self.nodes += 1
-            if not self._explore(self._current, deadline):
+            if not self._explore(self._current):
+                self._push(self._current)
+                self._current = None
                 return Stop.TIME
             self._current = None
             if progress is not None:
                 progress(self.nodes, self.incumbent.lower, self.upper)
-        return Stop.GAP
 
-    def _explore(self, node: TreeNode, deadline: float | None) -> bool:
+    def _explore(self, node: TreeNode) -> bool:
         """Bound one node by rounds of cuts, then close it or divide it; False when time ran out."""
         stalls = 0
         allowed_stalls = STALLS_AT_ROOT if self.nodes == 1 else STALLS_ELSEWHERE
@@ -118,7 +119,7 @@ class BranchAndBound:
         self._program.drop_idle(PATIENCE)
         self._seed(node)
         while True:
-            if deadline is not None and time.monotonic() >= deadline:
+            if self.incumbent.out_of_time:
                 return False
             self._program.allow(self._allowed(node))
             relaxed = self._program.solve()
@@ -127,7 +128,7 @@ class BranchAndBound:
             before = node.bound
             found = self._tighten(node, relaxed)
             if self._closes(node.bound):
-                self._finished = max(self._finished, node.bound)
+                self._close(node)
                 return True
             plan = self._rounded(relaxed)
             if self.incumbent.offer(plan):
@@ -153,6 +154,22 @@ class BranchAndBound:
     def _closes(self, bound: float) -> bool:
         # Below the incumbent's level, proved or not, no better plan is to be found; ``upper`` keeps the bound.
         return bool(np.isfinite(bound)) and bound <= self.incumbent.level + self.gap * abs(bound)
+
+    def _close(self, node: TreeNode) -> None:
+        self._closed.append(node)
+        self._finished = max(self._finished, node.bound)
+
+    def _reopen(self) -> bool:
+        """Queue nodes that were closed against a better incumbent than there is now; whether there are any."""
+        again = [node for node in self._closed if not self._closes(node.bound)]
+        if again:
+            self._closed = [node for node in self._closed if self._closes(node.bound)]
+            self._finished = max((node.bound for node in self._closed), default=-np.inf)
+            for node in again:
+                self._push(node)
+        if not self._closes(self._winners.finished):
+            self._winners.reconsider()
+        return bool(again)
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one where it is better.
@@ -182,7 +199,7 @@ class BranchAndBound:
                 continue
             rest = node.child(with_choice(node.choices, i, choice[~gone]))
             divide(node, i, [closed, rest], self.classes)
-            self._finished = max(self._finished, closed.bound)
+            self._close(closed)
             node = rest
             self._current = rest
         return node
@@ -191,14 +208,14 @@ class BranchAndBound:
         """Branch on an undecided winner that would cut the relaxed plan off, else on the most mixed robot."""
         level = np.inf if relaxed is None else relaxed.level - 1e-9 * abs(relaxed.level)
         information = self.objective.information
-        of_robot = information[self.incumbent.elements] if relaxed is None else self._mixed(relaxed.selection)
+        of_robot = information[self.incumbent.best] if relaxed is None else self._mixed(relaxed.selection)
         outcome = self._winners.undecided(node, of_robot, level)
         if outcome is not None:
             children = self._winners.divide(node, outcome)
         else:
             i, parts = self._branch(node, relaxed)
             if i is None:
-                self._finished = max(self._finished, node.bound)
+                self._decided = max(self._decided, node.bound)  # a single plan: nothing more to be found
                 return True
             children = [node.child(with_choice(node.choices, i, part)) for part in parts]
             divide(node, i, children, self.classes)
@@ -327,7 +344,7 @@ class BranchAndBound:
     def _first_node(self, choices: tuple[IntArray, ...]) -> TreeNode:
         """The root, bounded by one tangent cut of the incumbent's worst attack where its winner is decided."""
         node = TreeNode(choices=choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
-        points = self.pool.group_points(self.objective.information[self.incumbent.elements])
+        points = self.pool.group_points(self.objective.information[self.incumbent.best])
         for outcome in range(len(self.pool.attacks)):
             winner = self._winners.of(node, outcome)
             if winner is None:

@@ -1,7 +1,8 @@
-"""The best plan known so far, with its exact worst case."""
+"""The best plan known so far, and the best one whose worst case is proved."""
 
 from __future__ import annotations
 
+import heapq
 import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -12,54 +13,80 @@ from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.greedy import greedy_attack
 from ratt_opt.solvers.baselines import greedy, myopic
+from ratt_opt.solvers.local_search import climb
 from ratt_opt.solvers.ratt import ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.result import AttackResult
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.outcome_pool import OutcomePool
 
 __all__ = ["Incumbent"]
 
 LOCAL_SEARCH_ROUNDS = 50
-ATTACK_SHARE = 0.25
-"""Share of the time left that one exact attack may take."""
 SEARCHED_BY_SIZE = 12
 """Larger teams with all links alike are attacked by exchanges first (``attackers/large_team.py``): fast and hardly
 ever wrong."""
+FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
+"""Nodes, and share of the time, spent at once on a first lower bound for a large team."""
+SEARCH_SHARE = 0.4
+"""Share of the time left that is searched before an unproved plan is attacked exactly."""
+PROVED = 1e-9
+"""Relative difference between a plan's known and its proved value that counts as none."""
 
 
 class Incumbent:
-    """Plans are screened against the known outcomes and a quick attack, and believed only after an exact one.
+    """Plans are judged by the known outcomes and a quick attack; the best of them is attacked exactly in the end.
 
-    ``lower`` is the proved worst-case value of ``elements``. ``level`` is the value that the best plan has under
-    the worst attack found, proved or not: no plan of a smaller bound is worth looking for. The two
-    differ only where an exact attack did not close (``attack_stop`` says why). Every attack enters the pool.
+    ``level`` is the value of ``best`` under the known outcomes: no plan of a smaller bound is worth looking for. A new
+    outcome may lower it; then another of the plans offered may become ``best``. ``lower`` is the proved worst-case
+    value of ``elements``. Every attack enters the pool.
     """
 
     def __init__(self, problem: Problem, pool: OutcomePool, deadline: float | None) -> None:
-        self.problem = problem
-        self.pool = pool
+        self.problem, self.pool = problem, pool
         self.elements: IntArray = ratt(problem).elements
-        self.lower = -np.inf
-        self.level = -np.inf
+        self.lower = problem.objective([])  # whatever the plan
         self.evaluations = 0
-        self.attack_stop = Stop.HEURISTIC
-        self._best: IntArray = self.elements
+        self.unproved_stop = Stop.HEURISTIC
+        """Why the last exact attack that did not close stopped."""
+        self._candidates: list[tuple[float, int, int, IntArray]] = []
         self._deadline = deadline
+        self._began = time.monotonic()
         self._tried: set[bytes] = set()
         self._started: set[bytes] = set()
+
+    # -- the best plan -----------------------------------------------------------------------------------------
+
+    @property
+    def level(self) -> float:
+        """Value of :attr:`best` under all known outcomes."""
+        return -self._top()[0]
+
+    @property
+    def best(self) -> IntArray:
+        """The plan of largest value under all known outcomes; the first offered among equals."""
+        return self._top()[3]
+
+    def _top(self) -> tuple[float, int, int, IntArray]:
+        """The best candidate; a stored value is out of date, and too large, where outcomes were found since."""
+        known = len(self.pool.attacks)
+        while self._candidates and self._candidates[0][2] < known:
+            _, serial, _, plan = self._candidates[0]
+            heapq.heapreplace(self._candidates, (-self.pool.plan_value(plan), serial, known, plan))
+        return self._candidates[0] if self._candidates else (np.inf, 0, known, self.elements)
 
     def start(self) -> None:
         """Improve the most promising of RATT's, the greedy and the myopic plan by local search, and beat all three."""
         plans = [planner(self.problem).elements for planner in (ratt, greedy, myopic)]
         for plan in plans:
-            self.pool.add(self._quick_attack(self.problem, plan))
+            self._learn(plan)
         self.improve(max(plans, key=self.pool.plan_value))
         for plan in plans:
             self.offer(plan)
+        left = None if self._deadline is None else FIRST_SHARE * max(self._deadline - time.monotonic(), 0.0)
+        self._attack(self.best, time_limit=left, max_nodes=FIRST_PROOF)
 
     def offer(self, plan: IntArray) -> bool:
         """Attack a plan that is better on the known outcomes; return whether it became the best."""
@@ -67,36 +94,84 @@ class Incumbent:
         if key in self._tried or self.pool.plan_value(plan) <= self.level:
             return False
         self._tried.add(key)
-        self.pool.add(self._quick_attack(self.problem, plan))
-        if self.pool.plan_value(plan) <= self.level:
-            return False
-        result = self.attack(plan)
-        if result.upper > self.level:
-            self.level, self._best = result.upper, plan.copy()
-            return True
-        return False
+        self._learn(plan)
+        if self.pool.plan_value(plan) > self.level and self._cheap:
+            self._attack(plan)
+        value = self.pool.plan_value(plan)
+        better = value > self.level
+        heapq.heappush(self._candidates, (-value, len(self._tried), len(self.pool.attacks), plan.copy()))
+        return better
 
-    def attack(self, plan: IntArray, share: float = ATTACK_SHARE) -> AttackResult:
-        """Exact worst case of a plan, as far as time allows; what it proves and its outcome are remembered.
+    @property
+    def _cheap(self) -> bool:
+        """Whether an exact attack costs little, and says more than the known outcomes do."""
+        return self.problem.n_robots <= SEARCHED_BY_SIZE and not self.pool.complete
+
+    def improve(self, plan: IntArray) -> None:
+        """Local search from a plan, judged by the known outcomes.
+
+        Only where no step is left the plan is attacked, and the search goes on against what that attack adds.
+        """
+        if (key := plan.tobytes()) in self._started:
+            return
+        self._started.add(key)
+        current = plan
+        for _ in range(LOCAL_SEARCH_ROUNDS):
+            current = climb(self.problem, self.pool, current)
+            known = len(self.pool.attacks)
+            self._learn(current)
+            if len(self.pool.attacks) == known:
+                self.offer(current)
+            if len(self.pool.attacks) == known:
+                return
+
+    # -- proof of its value ------------------------------------------------------------------------------------
+
+    @property
+    def proved(self) -> bool:
+        """Whether the best plan's value is proved."""
+        return self.lower >= self.level - PROVED * abs(self.level)
+
+    @property
+    def out_of_time(self) -> bool:
+        """Whether it is time to stop the search: for good, or to prove the best plan's value."""
+        if self._deadline is None:
+            return False
+        now = time.monotonic()
+        pause = self._began + SEARCH_SHARE * (self._deadline - self._began)
+        return now >= self._deadline or (now >= pause and not self.proved)
+
+    def prove(self) -> bool:
+        """Attack the best plan exactly in the time left; return whether the search can go on with what was learnt."""
+        left = None if self._deadline is None else self._deadline - time.monotonic()
+        if self.proved or (left is not None and left <= 0):
+            return False
+        level = self.level
+        self._attack(self.best, time_limit=left)
+        self._began = time.monotonic()
+        return self.proved or self.level < level
+
+    def _attack(self, plan: IntArray, *, time_limit: float | None = None, max_nodes: int | None = None) -> None:
+        """Exact worst case of a plan within limits; what it proves and its outcome are remembered.
 
         Raises
         ------
         KeyboardInterrupt : the user interrupted the attack; what it had proved counts.
         """
-        left = None if self._deadline is None else max(share * (self._deadline - time.monotonic()), 0.0)
-        result = worst_case_attack(self.problem, plan, time_limit=left)
+        result = worst_case_attack(self.problem, plan, time_limit=time_limit, max_nodes=max_nodes)
         self.evaluations += result.evaluations
         self.pool.add(result.attack)
         if result.lower > self.lower:
-            self.elements, self.lower, self.attack_stop = plan.copy(), result.lower, result.stop
+            self.elements, self.lower = plan.copy(), result.lower
+        if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
+            self.unproved_stop = result.stop
         if result.stop is Stop.INTERRUPTED:
             raise KeyboardInterrupt
-        return result
 
-    def prove(self) -> None:
-        """Spend the time left on proving the best plan's value, where an exact attack was cut short."""
-        if self._deadline is not None and self.lower < self.level * (1 - 1e-9) and time.monotonic() < self._deadline:
-            self.attack(self._best, share=1.0)
+    def _learn(self, plan: IntArray) -> None:
+        """Add a quick attack's outcome to the known ones, unless all are known."""
+        if not self.pool.complete:
+            self.pool.add(self._quick_attack(self.problem, plan))
 
     def _quick_attack(self, problem: Problem, plan: IntArray) -> Attack:
         if problem.n_robots <= SEARCHED_BY_SIZE:
@@ -118,48 +193,3 @@ class Incumbent:
         if n_robots <= SEARCHED_BY_SIZE:
             return [greedy_attack(relaxed, plan).attack, bounded_rational_attack(relaxed, plan).attack]
         return [self._quick_attack(relaxed, plan)]
-
-    def improve(self, plan: IntArray) -> None:
-        """Local search from a plan: the best change of one robot after the other, while that helps.
-
-        Steps are judged by the known outcomes; only where none is left the plan is attacked,
-        and the search goes on against what that attack adds.
-        """
-        current = plan
-        if (key := plan.tobytes()) in self._started:
-            return
-        self._started.add(key)
-        for _ in range(LOCAL_SEARCH_ROUNDS):
-            current = self._climb(current)
-            known = len(self.pool.attacks)
-            self.pool.add(self._quick_attack(self.problem, current))
-            if len(self.pool.attacks) == known:
-                self.offer(current)
-            if len(self.pool.attacks) == known:
-                return
-
-    def _climb(self, plan: IntArray) -> IntArray:
-        """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes."""
-        objective, pool = self.pool.objective, self.pool
-        current = plan.copy()
-        points = pool.group_points(objective.information[current])
-        base = objective.value(points)
-        value = float(pool.outcome_values(base).min(initial=np.inf))
-        unchanged, i = 0, 0
-        while unchanged < self.problem.n_robots:
-            choice = self.problem.choices[i]
-            rows = np.flatnonzero(pool.membership()[:, i])
-            others = choice[choice != current[i]]
-            unchanged += 1
-            if len(others) and len(rows):
-                change = objective.information[others] - objective.information[current[i]]
-                values = np.repeat(base[None], len(others), axis=0)
-                values[:, rows] = objective.value(points[rows][None] + change[:, None])
-                worst = pool.outcome_values(values).min(axis=1)
-                k = int(worst.argmax())
-                if worst[k] > value * (1 + 1e-12):
-                    current[i], value, base = others[k], float(worst[k]), values[k]
-                    points[rows] += change[k]
-                    unchanged = 0
-            i = (i + 1) % self.problem.n_robots
-        return current

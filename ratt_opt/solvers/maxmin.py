@@ -73,11 +73,25 @@ def solve_maxmin(
         _list_outcomes(problem, pool)
         incumbent.start()
         search = BranchAndBound(problem, objective, pool, incumbent, gap)
-        stop = search.run(deadline, max_nodes, progress)
-        incumbent.prove()
+        stop = _search_and_prove(search, incumbent, max_nodes, progress)
     except KeyboardInterrupt:
         stop = Stop.INTERRUPTED
     return _result(problem, incumbent, search, stop, gap)
+
+
+def _search_and_prove(
+    search: BranchAndBound,
+    incumbent: Incumbent,
+    max_nodes: int | None,
+    progress: Callable[[int, float, float], None] | None,
+) -> Stop:
+    """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
+    while True:
+        if progress is not None:
+            progress(search.nodes, incumbent.lower, search.upper)
+        stop = search.run(max_nodes, progress)
+        if not incumbent.prove():
+            return stop
 
 
 def _result(
@@ -86,12 +100,12 @@ def _result(
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))
     proved = search is not None and np.isfinite(search.upper)
-    lower = max(incumbent.lower, problem.objective([]))
+    lower = incumbent.lower
     upper = max(search.upper if search is not None and proved else everything, lower)
     if upper <= lower * (1 + 1e-9):
         stop = Stop.CLOSED
-    elif stop is Stop.GAP and upper - lower > max(gap, 1e-9) * abs(upper):
-        stop = incumbent.attack_stop  # no better plan is left, but this one's worst case is not proved
+    elif stop is Stop.GAP and upper - lower > max(gap, 1e-9) * abs(upper) * (1 + 1e-9):
+        stop = incumbent.unproved_stop  # no better plan is left, but this one's worst case is not proved
     return MaxMinResult(
         elements=readonly(incumbent.elements),
         lower=lower,
@@ -118,6 +132,7 @@ def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
     if len(outcomes) <= LISTED_OUTCOMES:
         for outcome in outcomes:
             pool.add(Attack(*realise(problem.threat, outcome)))
+        pool.complete = True
 
 
 def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = None) -> None:

@@ -17,12 +17,14 @@ __all__ = ["OutcomePool"]
 class OutcomePool:
     """Attacks with the groups of non-blinded robots they leave; equal outcomes are kept once.
 
-    ``attacks[o]`` leaves the groups ``groups[g]`` for ``g`` in ``of_outcome[o]``.
+    ``attacks[o]`` leaves the groups ``groups[g]`` for ``g`` in ``of_outcome[o]``. ``complete`` : whether
+    all outcomes that matter are known.
     """
 
     def __init__(self, problem: Problem, objective: InformationObjective) -> None:
         self.problem = problem
         self.objective = objective
+        self.complete = False
         self.attacks: list[Attack] = []
         self.groups: list[tuple[int, ...]] = []
         self.of_outcome: list[tuple[int, ...]] = []

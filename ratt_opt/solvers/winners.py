@@ -32,7 +32,8 @@ UNKNOWN, UNDECIDED = -2, -1
 class Winners:
     """Winners of the outcomes in the pool, decided when first asked for.
 
-    ``finished`` : largest bound of a group closed so far; part of the search's upper bound.
+    ``finished`` : largest bound of a group closed for the whole search; part of its upper bound.
+    ``close`` : is told every node that a group's proof closes within the tree.
     """
 
     def __init__(
@@ -41,10 +42,13 @@ class Winners:
         cuts: CutStore,
         incumbent: Incumbent,
         classes: Classes,
+        *,
         closes: Callable[[float], bool],
+        close: Callable[[TreeNode], None],
     ) -> None:
         self.objective, self.cuts, self.pool = objective, cuts, cuts.pool
-        self.incumbent, self.classes, self.closes = incumbent, classes, closes
+        self.incumbent, self.classes = incumbent, classes
+        self.closes, self.close = closes, close
         self.finished = -np.inf
         self._everything = tuple(np.array(sorted(own), dtype=np.int64) for own in classes)
         self._winner = np.zeros(0, dtype=np.int64)
@@ -97,7 +101,7 @@ class Winners:
 
     def _value(self, group: int) -> float:
         """Value of one group under the incumbent."""
-        plan = self.incumbent.elements[list(self.pool.groups[group])]
+        plan = self.incumbent.best[list(self.pool.groups[group])]
         return float(self.objective.value(self.objective.posterior_information(plan)[None])[0])
 
     def _close(self, group: int, choices: tuple[IntArray, ...]) -> ClosedGroup | None:
@@ -105,23 +109,33 @@ class Winners:
         members = self.pool.groups[group]
         key = (group, b"|".join(choices[i].tobytes() for i in members))
         level, proof = self._attempts.get(key, (-np.inf, None))
+        if proof is not None and not self.closes(proof.bound):
+            level, proof = -np.inf, None  # of a time when the incumbent seemed better
         if proof is None and level < self.incumbent.level:
             proof = close_group(self.cuts.problem, self.objective, members=members, choices=choices, closes=self.closes)
             self._attempts[key] = (self.incumbent.level, proof)
         return proof
 
-    def _node(self, node: TreeNode, outcome: int, group: int, proof: ClosedGroup) -> TreeNode:
-        """The proof that a group is closed, as a node of the search tree below the winner branch."""
+    def _grow_proof(self, node: TreeNode, outcome: int, group: int, proof: ClosedGroup) -> list[TreeNode]:
+        """Write the proof that a group is closed below ``node`` of the search tree; return its leaves."""
         if proof.cut is not None:
             node.leaf = Leaf(cuts=(self.cuts.add(outcome, group, proof.cut),), weights=(1.0,))
             node.bound = proof.bound
-            return node
-        children = []
-        for part, below in proof.parts:
-            child = node.child(with_choice(node.choices, proof.robot, part))
-            children.append(self._node(child, outcome, group, below))
+            return [node]
+        children = [node.child(with_choice(node.choices, proof.robot, part)) for part, _ in proof.parts]
         divide(node, proof.robot, children, self.classes)
-        return node
+        return [
+            leaf
+            for child, (_, below) in zip(children, proof.parts, strict=True)
+            for leaf in self._grow_proof(child, outcome, group, below)
+        ]
+
+    def reconsider(self) -> None:
+        """After the incumbent turned out worse: close again what no longer closes, where that works."""
+        for outcome, closed in self._closed.items():
+            again = [(g, p if self.closes(p.bound) else self._close(g, self._everything) or p) for g, p in closed]
+            self._closed[outcome] = again
+        self.finished = max((p.bound for closed in self._closed.values() for _, p in closed), default=-np.inf)
 
     # -- dividing a node ---------------------------------------------------------------------------------------
 
@@ -148,8 +162,8 @@ class Winners:
             if proof is None:
                 open_children.append(child)
             else:
-                self.finished = max(self.finished, proof.bound)
-                self._node(child, outcome, group, proof)
+                for leaf in self._grow_proof(child, outcome, group, proof):
+                    self.close(leaf)
             parts.append((self.pool.groups[group], child))
         node.split = ("winner", outcome, parts)
         return open_children
@@ -172,7 +186,8 @@ class Winners:
             children = [(self.pool.groups[winner], top)]
             for group, proof in self._closed[outcome]:
                 node = TreeNode(choices=root.choices, winners={}, bound=-np.inf, leaf=root.leaf)
-                children.append((self.pool.groups[group], self._node(node, outcome, group, proof)))
+                self._grow_proof(node, outcome, group, proof)
+                children.append((self.pool.groups[group], node))
             parent = TreeNode(choices=root.choices, winners={}, bound=root.bound, leaf=root.leaf)
             parent.split = ("winner", outcome, children)
             top = parent

@@ -15,6 +15,7 @@ from ratt_opt.attackers.low_sets import LowSets
 from ratt_opt.attackers.minorant import affine_minorant
 from ratt_opt.attackers.outer_points import SetFamily
 from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.weak_sets import weak_sets
 from ratt_opt.attackers.weakest_axis import weakest_axis
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
 
@@ -49,6 +50,7 @@ def run_large(problem, elements, max_nodes=None):
 @pytest.mark.parametrize("limit", [2_000_000, 3])
 def test_agrees_with_the_threshold_search(name, seed, limit, monkeypatch):
     """Once by plain enumeration at the root, once with so little of it that branching decides."""
+    monkeypatch.setattr(size_search, "FEW_ROBOTS", 0)
     monkeypatch.setattr(size_search, "FIRST_ENUMERATION", limit)
     monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 3)
     monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", limit)
@@ -65,6 +67,7 @@ def test_agrees_with_the_threshold_search(name, seed, limit, monkeypatch):
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_bracket_is_valid_at_every_node_count(name, seed, monkeypatch):
+    monkeypatch.setattr(size_search, "FEW_ROBOTS", 0)
     monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 4)
     monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 4)
     problem, elements = team_problem(seed, 8, name)
@@ -160,6 +163,7 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
 @pytest.mark.parametrize("calls", range(1, 6))
 def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     """Wherever the interrupt lands: at the first bound, deep in the tree, or never."""
+    monkeypatch.setattr(size_search, "FEW_ROBOTS", 0)
     monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 20)
     monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 20)
     rng = np.random.default_rng(2)
@@ -194,3 +198,23 @@ def test_relabelling_a_large_team_changes_nothing(protected):
         problem = ro.Problem(ro.LogDetObjective(data[0], information), np.arange(15), None, 4, 26, kept)
         values.append(ro.worst_case_attack(problem, np.arange(15)).upper)
     assert values[0] == pytest.approx(values[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(8))
+def test_no_exchange_lowers_a_weak_set(name, seed):
+    rng = np.random.default_rng(seed)
+    n_robots, size = 11, int(rng.integers(1, 11))
+    data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 3)
+    team = CompactTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    found = weak_sets(team, size)
+    values = [team.value(robots) for robots in found]
+    assert values == sorted(values)
+    assert found == weak_sets(team, size)
+    for robots, value in zip(found, values, strict=True):
+        others = set(range(n_robots)) - robots
+        exchanged = min(team.value(robots - {i} | {e}) for i in robots for e in others)
+        assert len(robots) == size
+        assert exchanged >= value - 1e-9 * max(abs(value), 1.0)
+    best = min(team.value(robots) for robots in combinations(range(n_robots), size))
+    assert values[0] <= best + 0.05 * abs(best), "one of many starts comes near the weakest set"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -102,21 +104,40 @@ def test_stopping_early_leaves_a_valid_proved_bracket(kind: str, max_nodes: int)
     assert (again.lower, again.upper, again.nodes) == (result.lower, result.upper, result.nodes)
 
 
-def test_an_interrupt_keeps_the_bracket() -> None:
-    problem = random_scenario(6, 6, alpha_s=2, alpha_c=5, seed=3).problem("maxeig")
-    brackets = []
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("at", [1, 2, 4])
+def test_an_interrupt_keeps_the_bracket(kind: str, at: int) -> None:
+    seed = 0 if kind == "maxeig" else 1
+    problem = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=seed).problem(kind)
+    brackets: list[tuple[float, float]] = []
 
     def interrupt(_: int, lower: float, upper: float) -> None:
         brackets.append((lower, upper))
-        raise KeyboardInterrupt
+        if len(brackets) == at:
+            raise KeyboardInterrupt
 
     result = solve_maxmin(problem, progress=interrupt)
-    if brackets:
-        assert result.stop is Stop.INTERRUPTED
-        assert (result.lower, result.upper) == brackets[0]
+    assert result.stop is Stop.INTERRUPTED
+    assert (result.lower, result.upper) == brackets[-1]
+    assert all(later[0] >= lower and later[1] <= upper for (lower, upper), later in pairwise(brackets))
     full = solve_maxmin(problem)
     assert result.lower <= full.upper * (1 + 1e-12)
     assert full.lower <= result.upper * (1 + 1e-12)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_scenario(10, 8, alpha_s=3, alpha_c=11, seed=1).problem(kind)
+    full = solve_maxmin(problem)
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("ratt_opt.solvers.incumbent.worst_case_attack", interrupted)
+    result = solve_maxmin(problem)
+    assert result.stop is Stop.INTERRUPTED
+    assert result.lower <= full.lower <= full.upper <= result.upper
 
 
 @pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": 0}, {"max_nodes": 0}])
