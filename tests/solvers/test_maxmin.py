@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import (
+    Attack,
     InputError,
     LogDetObjective,
     Problem,
@@ -17,6 +18,7 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
+from ratt_opt.solvers import incumbent, maxmin
 from ratt_opt.solvers.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
@@ -89,6 +91,23 @@ def test_equals_the_exhaustive_optimum(seed: int) -> None:
     assert worst_case_attack(problem, result.elements).lower >= result.lower - 1e-12 * scale
     if result.proof is not None:
         assert proved_upper(problem, result.proof) <= result.upper + 1e-10 * scale
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_quick_attacks_that_see_nothing_cost_time_only(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Plans look better than they are until they are attacked exactly; what was closed on their word is reopened."""
+    monkeypatch.setattr(incumbent, "SEARCHED_BY_SIZE", 0)
+    monkeypatch.setattr(maxmin, "LISTED_ROBOTS", 0)
+    monkeypatch.setattr(incumbent.Incumbent, "_quick_attack", lambda *_: Attack())
+    rng = np.random.default_rng([6, seed])
+    problem = random_problem(rng, int(rng.integers(2, 6)), kind=list(OBJECTIVES)[seed % 3], controls=4)
+    expected = exhaustive_optimum(problem).lower
+    result = solve_maxmin(problem)
+    scale = max(1.0, abs(expected))
+    assert result.lower == pytest.approx(expected, abs=1e-8 * scale)
+    assert expected - 1e-9 * scale <= result.upper
+    assert proved_upper(problem, result.proof) <= result.upper + 1e-10 * scale
+    assert result.upper == pytest.approx(expected, abs=1e-8 * scale)
 
 
 @pytest.mark.parametrize("kind", OBJECTIVES)
