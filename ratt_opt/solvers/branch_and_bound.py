@@ -18,7 +18,7 @@ from ratt_opt.solvers.branching import divide_elements, mixing_gains
 from ratt_opt.solvers.cut_store import CutStore
 from ratt_opt.solvers.node_program import NodeProgram
 from ratt_opt.solvers.proof import Leaf, UpperProof
-from ratt_opt.solvers.search_tree import TreeNode, divide, freeze, used_cuts, with_choice
+from ratt_opt.solvers.search_tree import TreeNode, divide, equal_elements, freeze, used_cuts, with_choice
 from ratt_opt.solvers.winners import Winners
 from ratt_opt.stopping import Stop
 
@@ -58,7 +58,7 @@ class BranchAndBound:
         self.problem, self.objective = problem, objective
         self.pool, self.incumbent, self.gap = pool, incumbent, gap
         self.nodes = 0
-        self.classes = _equal_elements(problem, objective)
+        self.classes = equal_elements(problem, objective)
         representatives = tuple(np.array(sorted(own), dtype=np.int64) for own in self.classes)
         self._program = NodeProgram(problem.objective.n, representatives)
         self._cuts = CutStore(problem, objective, pool)
@@ -215,13 +215,27 @@ class BranchAndBound:
         else:
             i, parts = self._branch(node, relaxed)
             if i is None:
-                self._decided = max(self._decided, node.bound)  # a single plan: nothing more to be found
+                self._settle(node)
                 return True
             children = [node.child(with_choice(node.choices, i, part)) for part in parts]
             divide(node, i, children, self.classes)
         for child in children:
             self._push(child)
         return True
+
+    def _settle(self, node: TreeNode) -> None:
+        """Finish a node of a single plan: a tangent at the plan itself is exact there."""
+        points = self.pool.group_points(self.objective.information[[choice[0] for choice in node.choices]])
+        values, winners = self.objective.value(points), self._winners.at(node)
+        decided = np.flatnonzero(winners >= 0)
+        if len(decided):
+            outcome = int(decided[values[winners[decided]].argmin()])
+            group = int(winners[outcome])
+            leaf = Leaf(cuts=(self._cuts.tangent(outcome, group, points[group]),), weights=(1.0,))
+            bound, _ = self._cuts.leaf_bound(leaf, node.choices)
+            if bound < node.bound:
+                node.bound, node.leaf = bound, leaf
+        self._decided = max(self._decided, node.bound)
 
     def _branch(self, node: TreeNode, relaxed: RelaxedPlan | None) -> tuple[int | None, tuple[IntArray, ...]]:
         """The robot to branch on and the parts of its elements; any robot with a choice where none is mixed."""
@@ -367,16 +381,3 @@ class BranchAndBound:
     def _push(self, node: TreeNode) -> None:
         heapq.heappush(self._queue, (-node.bound, self._pushed, node))
         self._pushed += 1
-
-
-def _equal_elements(problem: Problem, objective: InformationObjective) -> Classes:
-    """Group each robot's elements by equal information."""
-    classes = []
-    for choice in problem.choices:
-        seen: dict[bytes, int] = {}
-        own: dict[int, list[int]] = {}
-        for e in choice.tolist():
-            first = seen.setdefault(objective.information[e].tobytes(), e)
-            own.setdefault(first, []).append(e)
-        classes.append(own)
-    return classes

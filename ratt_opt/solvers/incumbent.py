@@ -19,10 +19,11 @@ from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attackers.result import AttackResult
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.outcome_pool import OutcomePool
 
-__all__ = ["Incumbent"]
+__all__ = ["PROVED", "Incumbent"]
 
 LOCAL_SEARCH_ROUNDS = 50
 SEARCHED_BY_SIZE = 12
@@ -32,7 +33,7 @@ FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time, spent at once on a first lower bound for a large team."""
 SEARCH_SHARE = 0.4
 """Share of the time left that is searched before an unproved plan is attacked exactly."""
-PROVED = 1e-9
+PROVED = 2e-10
 """Relative difference between a plan's known and its proved value that counts as none."""
 
 
@@ -48,6 +49,7 @@ class Incumbent:
         self.problem, self.pool = problem, pool
         self.elements: IntArray = ratt(problem).elements
         self.lower = problem.objective([])  # whatever the plan
+        self.worst_case: AttackResult | None = None
         self.evaluations = 0
         self.unproved_stop = Stop.HEURISTIC
         """Why the last exact attack that did not close stopped."""
@@ -162,7 +164,7 @@ class Incumbent:
         self.evaluations += result.evaluations
         self.pool.add(result.attack)
         if result.lower > self.lower:
-            self.elements, self.lower = plan.copy(), result.lower
+            self.elements, self.lower, self.worst_case = plan.copy(), result.lower, result
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
             self.unproved_stop = result.stop
         if result.stop is Stop.INTERRUPTED:

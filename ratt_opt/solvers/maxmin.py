@@ -16,7 +16,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.branch_and_bound import BranchAndBound
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.incumbent import Incumbent
+from ratt_opt.solvers.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.outcome_pool import OutcomePool
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
@@ -72,7 +72,8 @@ def solve_maxmin(
     try:
         _list_outcomes(problem, pool)
         incumbent.start()
-        search = BranchAndBound(problem, objective, pool, incumbent, gap)
+        # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
+        search = BranchAndBound(problem, objective, pool, incumbent, max(gap - PROVED, 0.0))
         stop = _search_and_prove(search, incumbent, max_nodes, progress)
     except KeyboardInterrupt:
         stop = Stop.INTERRUPTED
@@ -114,6 +115,7 @@ def _result(
         evaluations=incumbent.evaluations,
         nodes=0 if search is None else search.nodes,
         posterior_gap=_posterior_gap(problem, lower, upper),
+        worst_case=incumbent.worst_case,
         proof=search.proof() if search is not None and proved else None,
     )
 

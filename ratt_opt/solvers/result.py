@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.result import AttackResult
     from ratt_opt.solvers.proof import UpperProof
     from ratt_opt.stopping import Stop
 
@@ -29,5 +30,7 @@ class MaxMinResult:
     posterior_gap: float | None = None
     """``upper - lower`` as a share of the posterior criterion (trace, max-eigenvalue) that ``lower`` leaves: a
     diffuse prior hides real differences in the relative gap. ``None`` for other objectives."""
+    worst_case: AttackResult | None = None
+    """The attack on ``elements`` that ``lower`` rests on; ``None`` where it was enumerated."""
     proof: UpperProof | None = None
     """What ``upper`` rests on; ``None`` where it was enumerated."""

@@ -9,9 +9,11 @@ from ratt_opt.solvers.proof import ElementBranch, Leaf, WinnerBranch
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.proof import Node
 
-__all__ = ["Classes", "TreeNode", "divide", "freeze", "used_cuts", "with_choice"]
+__all__ = ["Classes", "TreeNode", "divide", "equal_elements", "freeze", "used_cuts", "with_choice"]
 
 Classes = list[dict[int, list[int]]]
 """Per robot, lowest element -> all elements with the same information: one of each is searched."""
@@ -41,6 +43,19 @@ class TreeNode:
             leaf=self.leaf,
             depth=self.depth + 1,
         )
+
+
+def equal_elements(problem: Problem, objective: InformationObjective) -> Classes:
+    """Group each robot's elements by equal information."""
+    classes = []
+    for choice in problem.choices:
+        seen: dict[bytes, int] = {}
+        own: dict[int, list[int]] = {}
+        for e in choice.tolist():
+            first = seen.setdefault(objective.information[e].tobytes(), e)
+            own.setdefault(first, []).append(e)
+        classes.append(own)
+    return classes
 
 
 def with_choice(choices: tuple[IntArray, ...], robot: int, elements: IntArray) -> tuple[IntArray, ...]:

@@ -7,8 +7,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratt_opt import Problem, SetFunction, TableFunction, caa, greedy, myopic, nonrobust_optimum, random_plan, ratt
+from ratt_opt import (
+    Problem,
+    SetFunction,
+    TableFunction,
+    caa,
+    greedy,
+    myopic,
+    nonrobust_optimum,
+    random_plan,
+    random_scenario,
+    ratt,
+)
 from ratt_opt.problem import Attack
+from ratt_opt.solvers import baselines
+from ratt_opt.solvers.baselines import nonrobust_search
+from ratt_opt.stopping import Stop
+from tests.strategies import OBJECTIVES, random_problem
 
 
 def algorithm_1(f: SetFunction, choices: list[list[int]], alpha: int) -> tuple[list[int], list[int]]:
@@ -82,6 +97,25 @@ def test_nonrobust_optimum_is_the_best_plan_without_attack(problem: Problem) -> 
     }
     plan = nonrobust_optimum(problem)
     assert values[tuple(plan.elements.tolist())] == max(values.values())
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(8))
+def test_nonrobust_optimum_by_search_equals_every_plan(kind: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_problem(np.random.default_rng([8, seed]), 4, kind=kind)
+    every = nonrobust_optimum(problem)
+    monkeypatch.setattr(baselines, "FEW_PLANS", 0)
+    searched = nonrobust_optimum(problem)
+    values = [problem.team_value(plan.elements, Attack()) for plan in (every, searched)]
+    assert values[1] == pytest.approx(values[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_nonrobust_optimum_of_thirty_robots_is_proved_and_no_worse_than_greedy(kind: str) -> None:
+    problem = random_scenario(30, 10, alpha_s=10, alpha_c=108, seed=0).problem(kind)
+    result = nonrobust_search(problem)
+    assert result.stop is Stop.CLOSED
+    assert result.lower >= problem.team_value(greedy(problem).elements, Attack()) * (1 - 1e-9)
 
 
 class CountingFunction(TableFunction):
