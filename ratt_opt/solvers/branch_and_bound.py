@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.incumbent import Incumbent
     from ratt_opt.solvers.node_program import RelaxedPlan
     from ratt_opt.solvers.outcome_pool import OutcomePool
-    from ratt_opt.solvers.search_tree import Classes
 
 __all__ = ["BranchAndBound"]
 
