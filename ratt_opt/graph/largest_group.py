@@ -110,8 +110,9 @@ def smallest_largest_group(
     if method == "enumeration" and graph.n_robots > LARGEST_LATTICE:
         found = _by_groups(threat, time_limit, max_nodes)
         if found is None:
-            rule = f'must be "milp" (or "caa" on a complete graph) for more than {LARGEST_LATTICE} robots'
-            raise InputError("method", f"{rule} with so many links", f"enumeration of {graph.n_robots} robots")
+            rule = 'must be "milp" (or "caa" on a complete graph) for more than 60 robots, or a graph'
+            value = f"enumeration of {graph.n_robots} robots"
+            raise InputError("method", f"{rule} that an attack can split in so many ways", value)
         return found
     return METHODS[method](threat)
 
