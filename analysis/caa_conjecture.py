@@ -114,18 +114,18 @@ def summary(runs: list[dict[str, object]]) -> list[dict[str, object]]:
         chosen = [run for run in runs if tuple(run[k] for k in keys) == key]
         row: dict[str, object] = dict(zip(keys, key, strict=True))
         split = share(chosen, "even_split")
-        if not np.isnan(split).any():
-            row |= {"even_split_is_worst": f"{(split <= 1 + CLOSE).sum()}/{len(chosen)}"}
-            row |= {"largest_even_split": float(split.max())}
-        rows.append(
-            row | {f"mean_{name}": float(share(chosen, name).mean()) for name in SHARES if name in used(chosen)}
-        )
+        known = not np.isnan(split).any()
+        row |= {"even_split_is_worst": f"{(split <= 1 + CLOSE).sum()}/{len(chosen)}" if known else ""}
+        row |= {"largest_even_split": float(split.max()) if known else ""}
+        for name in SHARES:
+            row[f"mean_{name}"] = float(share(chosen, name).mean()) if known or name != "even_split" else ""
+        rows.append(row)
     return rows
 
 
 def used(runs: list[dict[str, object]]) -> list[str]:
     """Attackers that were run."""
-    return [name for name in SHARES if not np.isnan(share(runs, name)).any()]
+    return [name for name in SHARES if not np.isnan(share(runs, name)).all()]
 
 
 def grid(runs: list[dict[str, object]]) -> list[dict[str, object]]:
@@ -146,9 +146,10 @@ def conclusion(title: str, runs: list[dict[str, object]]) -> str:
     said = []
     for name in used(runs):
         shares = share(runs, name)
+        shares = shares[~np.isnan(shares)]
         hits, mean, worst = int((shares <= 1 + CLOSE).sum()), shares.mean(), shares.max()
         label = "minimising the largest group" if name == "even_split" else name.replace("_", "-")
-        said.append(f"{label} is the worst attack in {hits}/{len(runs)} (leaves {mean:.3f} x, at most {worst:.3f} x)")
+        said.append(f"{label} is the worst attack in {hits}/{len(shares)} (leaves {mean:.3f} x, at most {worst:.3f} x)")
     return f"{title}: " + "; ".join(said)
 
 

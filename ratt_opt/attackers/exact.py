@@ -12,15 +12,23 @@ from ratt_opt.attackers.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
 from ratt_opt.attackers.threshold_search import LARGEST_PLAIN, LARGEST_THRESHOLD_SEARCH, threshold_search
+from ratt_opt.attackers.unprotected_links import unprotected_bound
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
 __all__ = ["worst_case_attack"]
+
+LARGEST_TABULATED = 15
+"""Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
+
+FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
+"""Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
 
 
 def worst_case_attack(
@@ -28,13 +36,13 @@ def worst_case_attack(
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
-    - Up to 12 robots, and up to 20 where the next line does not apply, on any graph and for any
+    - Up to 12 robots, and up to 20 where the next two lines do not apply, on any graph and for any
       objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
       threshold). The result relies on nothing.
     - Larger teams with two-dimensional targets on a complete graph without protected links: branch
       and bound (``large_team.py``; a node is a branch or a partial set). Relies on a non-decreasing
       objective, which the three criteria are.
-    - Two-dimensional targets on other graphs that an attack can split in few ways, 21 to 60 robots:
+    - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
       partitions into groups and who is blinded in each (``split_search.py``; a node is a group tried or a
       partial set). Relies on a non-decreasing objective, which the three criteria are.
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
@@ -96,13 +104,23 @@ def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budg
         return LargeTeamSearch(problem, team, values, bracket, budget).run()
     better = greedy_attack(problem, values.plan)
     bracket.offer(better.attack, better.upper)
-    if problem.n_robots <= LARGEST_THRESHOLD_SEARCH:
+    groups = _few_groups(problem, team)
+    if problem.n_robots <= LARGEST_THRESHOLD_SEARCH and groups is None:
         return threshold_search(problem, values, bracket, budget)
-    if team is not None:
-        from ratt_opt.attackers.split_search import MOST_GROUPS, SplitSearch  # compiles
-        from ratt_opt.graph.separable_groups import separable_groups
+    if team is not None and problem.communication.is_complete:
+        unprotected_bound(problem, team, values, bracket, budget)
+    if team is not None and groups is not None:
+        from ratt_opt.attackers.split_search import SplitSearch  # compiles
 
-        groups = separable_groups(problem.threat, MOST_GROUPS)
-        if groups is not None:
-            return SplitSearch(problem, team, groups, values, bracket, budget).run()
+        return SplitSearch(problem, team, groups, values, bracket, budget).run()
     return forced_group_bound(problem, values, team, bracket, budget)
+
+
+def _few_groups(problem: Problem, team: CompactTeam | None) -> SeparableGroups | None:
+    """The groups an attack may leave, where they are few enough to search partitions of the team."""
+    if team is None or problem.n_robots <= LARGEST_TABULATED:
+        return None
+    from ratt_opt.graph.separable_groups import separable_groups  # compiles
+
+    few = FEW_GROUPS if problem.n_robots <= LARGEST_THRESHOLD_SEARCH else MANY_GROUPS
+    return separable_groups(problem.threat, few)

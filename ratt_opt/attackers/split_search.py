@@ -31,10 +31,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
-__all__ = ["MOST_GROUPS", "SplitSearch"]
-
-MOST_GROUPS = 300_000
-"""Groups whose bounds are tabulated; denser graphs and larger link budgets have more."""
+__all__ = ["SplitSearch"]
 
 TOLERANCE = 1e-10
 """Relative width that counts as closed."""

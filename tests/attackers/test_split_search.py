@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import size_search, split_search, weak_subsets
+from ratt_opt.attackers import size_search, weak_subsets
 from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
 from ratt_opt.attackers.compact import CompactTeam
@@ -44,7 +44,7 @@ def run_split(problem, elements, max_nodes=None):
     first = bounded_rational_attack(problem, elements)
     bracket, budget = Bracket(first.attack, first.upper, 0.0), Budget(max_nodes, None)
     team = CompactTeam.of(problem.objective, values.plan)
-    groups = separable_groups(problem.threat, split_search.MOST_GROUPS)
+    groups = separable_groups(problem.threat, 100_000)
     try:
         stop = SplitSearch(problem, team, groups, values, bracket, budget).run()
     except OutOfBudget as out:
@@ -73,8 +73,9 @@ def test_value_is_the_definition_s(seed):
 def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
     """Nine and ten robots: subsets found by plain enumeration, then all by branch and bound."""
     monkeypatch.setattr(weak_subsets, "PLAIN_NODES", plain)
-    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 10)
-    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 10)
+    if not plain:
+        monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 10)
+        monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 10)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
     bracket, _, stop = run_split(problem, elements)
     check(problem, elements, bracket, stop, ro.worst_case_attack(problem, elements).upper)
@@ -88,7 +89,7 @@ def test_the_bracket_is_valid_at_every_node_count(seed, monkeypatch):
     expected = ro.worst_case_attack(problem, elements).upper
     _, nodes, _ = run_split(problem, elements)
     previous = 0.0
-    for limit in [*range(min(nodes, 200)), nodes, nodes + 1]:
+    for limit in [*range(min(nodes, 120)), nodes, nodes + 1]:
         bracket, used, stop = run_split(problem, elements, limit)
         assert used <= limit
         assert previous <= bracket.lower <= expected * (1 + 1e-12) + 1e-12
@@ -158,3 +159,36 @@ def test_an_interrupt_returns_the_bracket_reached(batches, monkeypatch):
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
     assert problem.team_value(np.arange(24), result.attack) == result.upper
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_a_protected_link_of_a_complete_graph_only_helps(name):
+    """The bracket of the team without protection bounds it from below; with a link nobody would cut it closes."""
+    rng = np.random.default_rng(1)
+    objective, plan = OBJECTIVES[name](*range_bearing(rng, 24, 5, 1)), np.arange(24)
+    free = ro.Problem(objective, plan, None, 6, 60)
+    worst = ro.worst_case_attack(free, plan)
+    spared = min(free.communication.links - worst.attack.links)
+    same = ro.worst_case_attack(ro.Problem(objective, plan, None, 6, 60, frozenset(), frozenset([spared])), plan)
+    assert same.stop is ro.Stop.CLOSED
+    assert same.upper == pytest.approx(worst.upper, rel=1e-9)
+    held = ro.Problem(objective, plan, None, 6, 60, frozenset(), worst.attack.links)
+    result = ro.worst_case_attack(held, plan, max_nodes=200_000)
+    assert worst.lower <= result.lower <= result.upper == held.team_value(plan, result.attack)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_both_exact_ways_agree_at_sixteen_robots(seed):
+    """Partitions into groups as it is, thresholds once the class of the objective is hidden."""
+    rng = np.random.default_rng(seed)
+    prior, information = range_bearing(rng, 16, 4, 1)
+
+    class Hidden(ro.TraceObjective):
+        pass
+
+    plan, graph = np.arange(16), disk_graph(seed, 16, 4)
+    budgets, held = (3, 7), (frozenset({seed}), frozenset(sorted((min(e), max(e)) for e in graph.edges)[:seed]))
+    shown = ro.worst_case_attack(ro.Problem(ro.TraceObjective(prior, information), plan, graph, *budgets, *held), plan)
+    hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, graph, *budgets, *held), plan)
+    assert (shown.stop, hidden.stop) == (ro.Stop.CLOSED, ro.Stop.EXHAUSTED)
+    assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)
