@@ -132,7 +132,7 @@ class BranchAndBound:
             plan = self._rounded(relaxed)
             if self.incumbent.offer(plan):
                 self.incumbent.improve(plan)
-            node = self._eliminate(node, *found)
+            self._current = node = self._eliminate(node, *found)
             remaining = node.bound - self.incumbent.level
             stalls = stalls + 1 if before - node.bound < STALL * remaining else 0
             if not self._separate(node, relaxed) or stalls >= allowed_stalls:
@@ -200,7 +200,6 @@ class BranchAndBound:
             divide(node, i, [closed, rest], self.classes)
             self._close(closed)
             node = rest
-            self._current = rest
         return node
 
     def _divide(self, node: TreeNode, relaxed: RelaxedPlan | None) -> bool:
@@ -336,8 +335,7 @@ class BranchAndBound:
     def _attack_relaxed(self, of_robot: FloatArray) -> bool:
         """Attack the relaxed plan as if it were one; return whether a new outcome was found."""
         known = len(self.pool.attacks)
-        for attack in self.incumbent.attack_relaxed(of_robot):
-            self.pool.add(attack)
+        self.incumbent.attack_relaxed(of_robot)
         return len(self.pool.attacks) > known
 
     def _rounded(self, relaxed: RelaxedPlan) -> IntArray:

@@ -13,6 +13,7 @@ from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.greedy import greedy_attack
 from ratt_opt.solvers.baselines import greedy, myopic
+from ratt_opt.solvers.lasting_attack import LastingAttacks
 from ratt_opt.solvers.local_search import climb
 from ratt_opt.solvers.ratt import ratt
 from ratt_opt.stopping import Stop
@@ -53,6 +54,7 @@ class Incumbent:
         self.evaluations = 0
         self.unproved_stop = Stop.HEURISTIC
         """Why the last exact attack that did not close stopped."""
+        self._lasting = LastingAttacks(problem)
         self._candidates: list[tuple[float, int, int, IntArray]] = []
         self._deadline = deadline
         self._began = time.monotonic()
@@ -162,7 +164,7 @@ class Incumbent:
         """
         result = worst_case_attack(self.problem, plan, time_limit=time_limit, max_nodes=max_nodes)
         self.evaluations += result.evaluations
-        self.pool.add(result.attack)
+        self._remember(self.problem, plan, result.attack)
         if result.lower > self.lower:
             self.elements, self.lower, self.worst_case = plan.copy(), result.lower, result
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
@@ -173,7 +175,15 @@ class Incumbent:
     def _learn(self, plan: IntArray) -> None:
         """Add a quick attack's outcome to the known ones, unless all are known."""
         if not self.pool.complete:
-            self.pool.add(self._quick_attack(self.problem, plan))
+            self._remember(self.problem, plan, self._quick_attack(self.problem, plan))
+
+    def _remember(self, problem: Problem, plan: IntArray, attack: Attack) -> None:
+        """Add an attack on a plan to the pool; the lasting one in its place where that hurts this plan as much."""
+        lasting = self._lasting.of(attack)
+        self.pool.add(lasting)
+        value = problem.team_value(plan, attack)
+        if problem.team_value(plan, lasting) > value + 1e-12 * abs(value):
+            self.pool.add(attack)
 
     def _quick_attack(self, problem: Problem, plan: IntArray) -> Attack:
         if problem.n_robots <= SEARCHED_BY_SIZE:
@@ -182,8 +192,8 @@ class Incumbent:
             return worst_case_attack(problem, plan, max_nodes=0).attack
         return greedy_attack(problem, plan).attack
 
-    def attack_relaxed(self, of_robot: FloatArray) -> list[Attack]:
-        """Attacks on a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d), as if it were a plan."""
+    def attack_relaxed(self, of_robot: FloatArray) -> None:
+        """Attack a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d), as if it were a plan."""
         objective, problem = self.pool.objective, self.problem
         n_robots = problem.n_robots
         relaxed = replace(
@@ -193,5 +203,5 @@ class Incumbent:
         )
         plan = np.arange(n_robots)
         if n_robots <= SEARCHED_BY_SIZE:
-            return [greedy_attack(relaxed, plan).attack, bounded_rational_attack(relaxed, plan).attack]
-        return [self._quick_attack(relaxed, plan)]
+            self.pool.add(greedy_attack(relaxed, plan).attack)
+        self._remember(relaxed, plan, self._quick_attack(relaxed, plan))
