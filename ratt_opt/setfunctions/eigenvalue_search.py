@@ -1,4 +1,4 @@
-"""How small one element's marginal of the max-eigenvalue criterion can be, and how large.
+"""How small one element's marginal of the max-eigenvalue criterion can be, and how large, in any dimension.
 
 Write ``g_j(L) = w_j / lambda_min(L_j)``, so that the marginal of ``x`` is ``max_j g_j(L) - max_j g_j(L + X)``.
 

@@ -32,6 +32,8 @@ from ratt_opt.setfunctions.information import (
 )
 from ratt_opt.setfunctions.marginals import Marginals
 from ratt_opt.setfunctions.minorants import others_of
+from ratt_opt.setfunctions.planar import LARGEST_DIMENSION
+from ratt_opt.setfunctions.planar_marginals import PlanarBrackets
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -77,6 +79,10 @@ def bracket_marginals(
 
     ``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal.
     """
+    if isinstance(f, MaxEigenvalueObjective) and f.dimension <= LARGEST_DIMENSION:
+        brackets = PlanarBrackets(f, owners, budget, against_own=against_own)
+        stop = brackets.run()
+        return BracketedMarginals(marginals=brackets.marginals(), stop=stop, nodes=brackets.nodes)
     single = f.singletons()
     if isinstance(f, MaxEigenvalueObjective):
         ends = eigenvalue_ends(f, owners)

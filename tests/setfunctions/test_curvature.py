@@ -312,7 +312,7 @@ def test_eigenvalue_ends_hold_for_every_context():
 @pytest.mark.parametrize("seed", range(3))
 def test_the_max_eigenvalue_bracket_says_something_on_section_six(seed):
     problem = ro.random_scenario(10, 15, alpha_s=1, alpha_c=1, seed=seed).problem("maxeig")
-    found = ro.total_curvature(problem.objective, problem.robot)
+    found = ro.total_curvature(problem.objective, problem.robot, time_limit=None, max_nodes=150)
     assert found.lower <= found.upper < 1
     assert ratio_shown(problem.objective, found) == pytest.approx(found.lower, abs=1e-9)
 

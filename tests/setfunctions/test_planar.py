@@ -1,0 +1,178 @@
+"""The max-eigenvalue criterion in the plane: every bound against every context, and the search to its end."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.setfunctions import eigenvalue_branching
+from ratt_opt.setfunctions.eigenvalue_branching import PlanarSearch
+from ratt_opt.setfunctions.level_bounds import Average, Forms, ceilings, least_marginal, most_marginal
+from ratt_opt.setfunctions.level_program import NO_CUTS, Sector, own_direction, relax
+from ratt_opt.setfunctions.planar import Options, Planar, levels, marginals
+from ratt_opt.setfunctions.planar_parts import Side
+from ratt_opt.stopping import Stop
+from tests.strategies import information_data, range_bearing
+
+LIMIT = "ratt_opt.setfunctions.curvature.LARGEST_ENUMERATION"
+OWNERS = np.array([0, 0, 1, 1, 1, 2, 3])
+
+
+def instance(rng, trial):
+    """An objective over 7 elements of 4 robots: harmless, or degenerate."""
+    if trial % 2:
+        prior, information = range_bearing(rng, 1, 3, 7)
+    else:
+        prior, information = information_data(rng, 7, int(rng.integers(1, 4)), int(rng.integers(1, 3)))
+    return ro.MaxEigenvalueObjective(prior, information, rng.uniform(0.5, 2, len(prior)))
+
+
+def every_context(options):
+    """All picks of one option a robot, (count, R)."""
+    ends = np.append(options.first[1:], len(options.robot))
+    return np.array(list(product(*[range(a, b) for a, b in zip(options.first, ends, strict=True)])))
+
+
+def test_levels_and_marginals_are_those_of_the_matrices():
+    rng = np.random.default_rng(1)
+    for trial in range(40):
+        f = instance(rng, trial)
+        planar = Planar.of(f)
+        options = Options.beside(planar, OWNERS, 0)
+        for picks in every_context(options)[:: 1 + trial % 5]:
+            context = options.context(picks)
+            total = planar.prior + options.parts[picks].sum(axis=0)
+            exact = np.linalg.eigvalsh(f.posterior_information(np.array(context, dtype=int)))[:, 0] / f.weights
+            assert levels(total) * planar.scale == pytest.approx(exact, rel=1e-9)
+            found = float(marginals(total, planar.parts[1])) / planar.scale
+            assert found == pytest.approx(f([*context, 1]) - f(context), abs=1e-9 * f.prior_criterion)
+
+
+def test_ceilings_hold_for_every_context_of_the_sector():
+    rng = np.random.default_rng(2)
+    inside = 0
+    for trial in range(250):
+        planar = Planar.of(instance(rng, trial))
+        options, added = Options.beside(planar, OWNERS, 0), planar.parts[1]
+        base, own_base = (planar.prior + added, planar.prior) if trial % 3 else (planar.prior, planar.prior + added)
+        seen = own_base + options.parts[rng.choice(every_context(options))].sum(axis=0)
+        target = int(rng.integers(planar.prior.shape[1]))
+        middle = np.arctan2(-seen[2], -seen[1])[target] + rng.uniform(-0.3, 0.3)
+        sector = Sector(target, float(middle), rng.uniform(0.05, 0.8))
+        slope = float(rng.choice([0.0, 0.7, 1.0, 2.5]))
+        allowed = rng.random(len(options.robot)) < 0.7
+        allowed[options.first] |= np.bincount(options.robot, allowed) == 0
+        found = relax(options, base, own_base, sector, slope=slope, allowed=allowed, cuts=NO_CUTS)
+        other = Sector(0, rng.uniform(-4, 4), 0.3)
+        forms = Forms(np.array([0]), own_direction(np.array([other.middle]), np.array([other.half])))
+        recycled = ceilings(options, base, own_base, forms, [Average(found.average, slope)])[0, 0]
+        free = relax(options, base, own_base, None, slope=0.0, allowed=allowed, cuts=NO_CUTS).ceiling
+        for picks in every_context(options):
+            parts = options.parts[picks].sum(axis=0)
+            level, own, own_total = levels(base + parts).min(), levels(own_base + parts), own_base + parts
+            away = np.angle(np.exp(1j * (np.arctan2(-own_total[2], -own_total[1]) - [[sector.middle], [other.middle]])))
+            if allowed[picks].all():
+                assert level <= free
+                if abs(away[0, sector.target]) <= sector.half:
+                    inside += 1
+                    assert level - slope * own[sector.target] <= found.ceiling
+            if abs(away[1, 0]) <= other.half:
+                assert level - slope * own[0] <= recycled
+    assert inside > 500
+
+
+def test_two_inequalities_leave_no_better_pair_than_the_formulas_say():
+    rng = np.random.default_rng(3)
+    p = np.linspace(1e-3, 2, 4001)
+    for _ in range(300):
+        bound, added = rng.uniform(0.2, 2), rng.uniform(0, 0.3)
+        low_slope, high_slope = rng.uniform(0.5, 1), rng.uniform(1, 4)
+        ceiling = rng.uniform(-1, 0.5)
+        least = least_marginal(*np.array([[ceiling], [added], [low_slope]]), bound)[0]
+        q = np.maximum(p + added, (p - ceiling) / low_slope)
+        seen = (1 / p - 1 / q)[p <= bound].min()
+        assert least <= seen + 1e-12
+        assert least == pytest.approx(seen, abs=0.02)
+        most = most_marginal(*np.array([[ceiling], [added], [high_slope], [bound]]))[0]
+        q = np.minimum(p + added, ceiling + high_slope * p)
+        seen = np.where(q > p, 1 / p - 1 / np.maximum(q, p), 0.0)[p >= bound].max(initial=0.0)
+        assert seen <= most + 1e-12
+
+
+@pytest.mark.parametrize("largest", [False, True])
+def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
+    rng = np.random.default_rng(4)
+    ended = 0
+    for trial in range(30):
+        planar = Planar.of(instance(rng, trial))
+        options = Options.beside(planar, OWNERS, 0)
+        everything = np.ones(len(options.robot), dtype=bool)
+        highest = relax(options, planar.prior, planar.prior, None, slope=0.0, allowed=everything, cuts=NO_CUTS).ceiling
+        added = planar.parts[0]
+        totals = planar.prior + options.parts[every_context(options)].sum(axis=1)
+        values = marginals(totals, added)
+        exact = values.max() if largest else values.min()
+        search = PlanarSearch(Side(options, planar.prior, added, largest=largest, highest=highest))
+        slack = 1e-9 * (1 + abs(exact))
+        # Without leaves to enumerate the end is far away; the bounds must hold all the same.
+        monkeypatch.setattr(eigenvalue_branching, "LARGEST_LEAF", (1, 2, 4, 8)[trial % 4])
+        for _ in range(60):
+            low, high = sorted([search.bound, search.attained.value])
+            assert low - slack <= exact <= high + slack
+            if search.exhausted:
+                break
+            search.refine()
+        ended += search.exhausted
+        search.attained.pairs()
+        if search.exhausted:
+            assert search.attained.value == pytest.approx(exact, abs=slack)
+    assert ended > 8
+
+
+def section_six(seed, n=10, m=15):
+    problem = ro.random_scenario(n, m, alpha_s=1, alpha_c=1, seed=seed).problem("maxeig")
+    return problem.objective, problem.robot
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))])
+def test_the_bracket_is_tight_on_section_six(seed):
+    f, owners = section_six(seed)
+    found = ro.total_curvature(f, owners, gap=0.1, time_limit=None, max_nodes=4000)
+    assert found.upper < 1
+    assert (1 - found.lower) / (1 - found.upper) <= 1.1 + 1e-9
+    assert found.stop is Stop.GAP
+
+
+def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
+    f, owners = section_six(3, 4, 5)
+    exact = ro.total_curvature(f, owners)
+    monkeypatch.setattr(LIMIT, 1)
+    plain, calls = relax, [0]
+
+    def interrupted(*arguments, **options):
+        calls[0] += 1
+        if calls[0] > after:
+            raise KeyboardInterrupt
+        return plain(*arguments, **options)
+
+    monkeypatch.setattr(eigenvalue_branching, "relax", interrupted)
+    for after in (0, 3, 10, 40):  # noqa: B007  (read by the function above)
+        calls[0] = 0
+        found = ro.total_curvature(f, owners, gap=0.0, time_limit=None)
+        assert found.stop is Stop.INTERRUPTED
+        assert found.lower - 1e-9 <= exact.upper <= found.upper + 1e-9
+
+
+@pytest.mark.parametrize("unit", [1e-30, 1e-3, 1e30])
+def test_the_unit_of_length_does_not_matter(unit, monkeypatch):
+    f, owners = section_six(0, 4, 5)
+    monkeypatch.setattr(LIMIT, 1)
+    plain = ro.total_curvature(f, owners, gap=0.1, time_limit=None, max_nodes=600)
+    scaled = ro.MaxEigenvalueObjective(f.prior * unit**2, f.information / unit**2)
+    found = ro.total_curvature(scaled, owners, gap=0.1, time_limit=None, max_nodes=600)
+    assert found.lower <= plain.upper
+    assert plain.lower <= found.upper
+    assert (1 - found.lower) / (1 - found.upper) <= 1.1 + 1e-6
