@@ -39,6 +39,9 @@ if TYPE_CHECKING:
         all_guarantees as all_guarantees,
     )
     from ratt_opt.bounds.guarantees import (
+        inapplicable_guarantees as inapplicable_guarantees,
+    )
+    from ratt_opt.bounds.guarantees import (
         pattern_free_bound as pattern_free_bound,
     )
     from ratt_opt.bounds.guarantees import (
@@ -50,6 +53,7 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.guarantees import (
         theorem1_bound as theorem1_bound,
     )
+    from ratt_opt.bounds.instance import instance_bound as instance_bound
     from ratt_opt.bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
     from ratt_opt.bounds.relaxation import RelaxationBound as RelaxationBound
     from ratt_opt.bounds.relaxation import relaxation_bound as relaxation_bound
@@ -278,6 +282,8 @@ _HOME = {
     "generalised_curvature": "setfunctions.ratios",
     "greedy": "solvers.baselines",
     "greedy_attack": "attackers.greedy",
+    "inapplicable_guarantees": "bounds.guarantees",
+    "instance_bound": "bounds.instance",
     "load_input": "scenario.files",
     "load_plan": "scenario.plan_file",
     "load_scenario": "scenario.files",

@@ -11,6 +11,7 @@ import numpy as np
 
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.guarantees import all_guarantees
+from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.certificates.write import certify, why_not_certifiable
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem
@@ -163,7 +164,7 @@ def bound(
     with clock("curvature and guarantees"):
         k, c = _curvatures(problem, time_limit)
         alpha_cs = equivalent_sensing_attacks(problem)
-        guarantees = all_guarantees(problem, alpha_cs, k=k, c=c)
+        guarantees = _guarantees(problem, robust.elements, time_limit, k=k, c=c)
     with clock("certificate"):
         proof = _certificate(problem, optimum, certificate)
     return BoundReport(
@@ -181,6 +182,16 @@ def bound(
         certificate=proof,
         seconds=clock.seconds,
     )
+
+
+def _guarantees(
+    problem: Problem, plan: IntArray, time_limit: float | None, *, k: Curvature | None, c: Curvature | None
+) -> dict[str, Guarantee]:
+    """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
+    found = all_guarantees(problem, equivalent_sensing_attacks(problem), k=k, c=c)
+    if k or c:
+        found["this instance"] = instance_bound(problem, plan, k=k, c=c, time_limit=time_limit)
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
 def assess(

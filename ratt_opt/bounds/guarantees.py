@@ -19,6 +19,7 @@ __all__ = [
     "Guarantee",
     "all_bait_group_bound",
     "all_guarantees",
+    "inapplicable_guarantees",
     "pattern_free_bound",
     "remark1_bound",
     "sensing_only_bound",
@@ -27,6 +28,7 @@ __all__ = [
 
 SUBMODULAR = "normalised, non-decreasing, submodular"
 NON_DECREASING = "normalised, non-decreasing"
+SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
 @runtime_checkable
@@ -178,18 +180,36 @@ def all_guarantees(
     alpha_cs : sensing attacks that RATT took the link attacks to be worth
     k : curvature, for a submodular objective; c : total curvature; over feasible sets, numbers or brackets
     """
-    all_bait = problem.alpha_s + alpha_cs >= problem.n_robots
+    missing = inapplicable_guarantees(problem, alpha_cs)
+    seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
     found: dict[str, Guarantee] = {}
     for name, given in (("k", {"k": k}), ("c", {"c": c})):
         if given[name] is None:
             continue
         found[f"pattern-free ({name})"] = pattern_free_bound(**given)
-        found[f"Theorem 1 ({name})"] = theorem1_bound(alpha_cs, all_bait=all_bait, **given)
-        if problem.alpha_c == 0 and not all_bait:
-            found[f"sensing only ({name})"] = sensing_only_bound(**given)
-        if all_bait:
-            found[f"Remark 1 ({name})"] = remark1_bound(**given)
+        found[f"Theorem 1 ({name})"] = theorem1_bound(alpha_cs, all_bait=ALL_BAIT not in missing, **given)
+        if SENSING_ONLY not in missing:
+            found[f"{SENSING_ONLY} ({name})"] = sensing_only_bound(**given)
+        if REMARK_1 not in missing:
+            found[f"{REMARK_1} ({name})"] = remark1_bound(**given)
+        if ALL_BAIT not in missing and seeing > 0:
+            # No group has more robots that see, and the bound falls with their number.
+            found[f"{ALL_BAIT} ({name})"] = all_bait_group_bound(seeing, **given)
     return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
+    """The published guarantees that say nothing about RATT's plan for one problem: name -> which hypothesis fails."""
+    alpha = problem.alpha_s + alpha_cs
+    found: dict[str, str] = {}
+    if problem.alpha_c > 0:
+        found[SENSING_ONLY] = f"links are attacked (alpha_c = {problem.alpha_c})"
+    elif alpha >= problem.n_robots:
+        found[SENSING_ONLY] = f"every robot may be blinded (alpha_s = {problem.alpha_s})"
+    if alpha < problem.n_robots:
+        greedy = f"RATT leaves {problem.n_robots - alpha} robots to the greedy step (alpha = {alpha})"
+        found[REMARK_1] = found[ALL_BAIT] = greedy
+    return found
 
 
 def _one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from ratt_opt.bounds.guarantees import inapplicable_guarantees
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
@@ -126,6 +128,8 @@ def _guarantees(report: BoundReport) -> Table:
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0
         table.add_row(f"{name} *" if strongest else name, f"{float(guarantee):.6g}", "; ".join(guarantee.hypotheses))
+    for name, why in inapplicable_guarantees(report.problem, report.alpha_cs).items():
+        table.add_row(name, "none", f"does not apply: {why}")
     table.caption = "* strongest that applies" if best > 0 else "curvature 1: no guarantee says anything here"
     return table
 

@@ -7,7 +7,7 @@ element per robot: owners are given), or ``"robots"`` (the robots under one plan
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,6 +44,8 @@ class Curvature:
     (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within the
     rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
     ``how`` : what the ends rest on. ``stop`` : why the search stopped; ``nodes`` : parts of the domain bounded.
+    ``marginals`` : what is known of every element of the domain, in ascending order (its contexts name elements by
+    their position in that order).
     """
 
     lower: float
@@ -57,6 +59,7 @@ class Curvature:
     how: str
     stop: Stop
     nodes: int
+    marginals: Marginals = field(compare=False, repr=False)
 
 
 def total_curvature(
@@ -224,4 +227,5 @@ def _curvature_from(found: _Found, domain: Domain) -> Curvature:
         how=found.how if useful.any() else "no element ever adds anything",
         stop=found.stop,
         nodes=found.nodes,
+        marginals=marginals,
     )

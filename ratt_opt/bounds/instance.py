@@ -1,0 +1,125 @@
+"""A guarantee for one plan of one instance: the pattern-free chain with the instance's own numbers in every step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.contexts import domain_of
+from ratt_opt.setfunctions.curvature import SECONDS, total_curvature
+from ratt_opt.setfunctions.marginals import domain_values, groups_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.setfunctions.curvature import Curvature
+
+__all__ = ["instance_bound"]
+
+LARGEST_TABLE = 16
+"""Most robots whose subsets are all looked at: one table of 2**16 marginals a robot."""
+
+
+def instance_bound(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    k: Curvature | None = None,
+    c: Curvature | None = None,
+    time_limit: float | None = SECONDS,
+) -> Guarantee:
+    """Share of the optimum that a plan keeps under the worst attack, from marginals within this plan alone.
+
+    Proof. Let ``u`` be the plan, ``o`` any plan, and put the robots in any order. For every set ``S`` of robots,
+    ``u_S`` is built robot by robot in that order, each adding at least ``l_i``, the smallest marginal of ``u_i`` over
+    sets of elements that the plan has before ``i`` (submodular: the marginal on top of all of them). And ``o_S`` is
+    built from marginals of at most ``m_i``, the largest marginal of any element of robot ``i`` over feasible sets
+    (submodular: its value alone). So ``phi(u_S) >= sum_S l_i >= min_i (l_i / m_i) phi(o_S)``, for every ``S``, hence
+    for the best group of every outcome and after the worst attack. The order that makes the smallest ratio largest
+    puts last, again and again, the robot with the largest ratio among those left: leaving robots out can only raise
+    the others' ``l``.
+
+    Parameters
+    ----------
+    elements : (N,) any plan, RATT's or not
+    k : curvature over feasible sets of a submodular objective (its word for submodularity, and its values alone)
+    c : total curvature over feasible sets of a non-decreasing objective; give exactly one of the two
+    time_limit : seconds for the marginals within the plan, where a table of its subsets is too large (over 16 robots)
+
+    Raises
+    ------
+    InputError : neither or both curvatures, one over another domain, or ``elements`` is no plan.
+
+    Source: this library. For RATT's plan never below the pattern-free bound: a greedy element's ``l`` in RATT's own
+    order is its greedy marginal, at least ``(1-k) m_i``, respectively ``(1-c)^2 m_i``; a bait's likewise.
+    """
+    if (k is None) == (c is None):
+        raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
+    given = k or c
+    assert given is not None
+    if given.domain != "feasible":
+        raise InputError("k" if k else "c", "must be over feasible sets (give the owners)", given.domain)
+    plan = problem.check_plan(elements)
+    largest = np.array([given.marginals.largest_upper[choice].max() for choice in problem.choices])
+    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, time_limit)
+    value = _best_order(within, largest)
+    needs = (SUBMODULAR if k else NON_DECREASING, "this instance and this plan")
+    return Guarantee(min(max(value, 0.0), 1.0), needs, "per-instance chain (proof in its docstring)")
+
+
+def _best_order(within: Callable[[IntArray, int], float], largest: FloatArray) -> float:
+    """The smallest ratio under the best order; robots that can never add anything do not count."""
+    left = np.flatnonzero(largest > 0)
+    smallest = 1.0
+    while len(left):
+        ratios = np.array([within(left[left != i], int(i)) / largest[i] for i in left])
+        smallest = min(smallest, float(ratios.max()))
+        left = np.delete(left, int(ratios.argmax()))
+    return smallest
+
+
+def _on_top(problem: Problem, plan: IntArray) -> Callable[[IntArray, int], float]:
+    """Marginals of a robot's element on top of some others'."""
+    f = problem.objective
+
+    def within(before: IntArray, robot: int) -> float:
+        return f(plan[np.append(before, robot)]) - f(plan[before])
+
+    return within
+
+
+def _smallest_within(problem: Problem, plan: IntArray, time_limit: float | None) -> Callable[[IntArray, int], float]:
+    """Smallest marginals of a robot's element over subsets of some others'."""
+    f, robots = problem.objective, len(plan)
+    if robots > LARGEST_TABLE:
+        # The domain's elements ascend; the plan's are in the order of the robots.
+        order = np.argsort(np.argsort(plan, kind="stable"), kind="stable")
+        lower = total_curvature(f, plan=plan, gap=0.1, time_limit=time_limit).marginals.smallest_lower[order]
+        return lambda _, robot: float(lower[robot])
+    domain = domain_of(f, None, plan)
+    position = {int(name): axis for axis, name in enumerate(domain.names)}
+    values = domain_values(domain.restricted, groups_of(domain.owners))
+    tables = [_running_minimum(np.diff(values, axis=position[int(e)]).squeeze(position[int(e)])) for e in plan]
+
+    def within(before: IntArray, robot: int) -> float:
+        own = position[int(plan[robot])]
+        axes = {position[int(plan[i])] - (position[int(plan[i])] > own) for i in before}
+        return float(tables[robot][tuple(int(axis in axes) for axis in range(robots - 1))])
+
+    return within
+
+
+def _running_minimum(gain: FloatArray) -> FloatArray:
+    """Smallest entry over all subsets of each set."""
+    smallest = gain.copy()
+    for axis in range(gain.ndim):
+        view = np.moveaxis(smallest, axis, 0)
+        np.minimum(view[1:], view[:1], out=view[1:])
+    return smallest
