@@ -14,6 +14,8 @@ __all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_diffe
 
 # Values are finite (checked on entry), so comparisons may assume it; no operation is reordered.
 _FINITE = {"nnan", "ninf", "nsz"}
+_BLOCK_BITS = 13
+_BLOCK = 1 << _BLOCK_BITS  # 64 KiB of differences
 
 
 @numba.njit(cache=True, fastmath=_FINITE)
@@ -34,24 +36,46 @@ def marginal_ends(values: Any, n: int) -> Any:
 
 @numba.njit(cache=True, fastmath=_FINITE)
 def second_differences(values: Any, n: int) -> Any:
-    """(n, n) smallest ``f(S+i) + f(S+j) - f(S+i+j) - f(S)`` over ``S``, for ``i < j``; 0 elsewhere."""
+    """(n, n) smallest ``f(S+i) + f(S+j) - f(S+i+j) - f(S)`` over ``S``, for ``i < j``; 0 elsewhere.
+
+    The first differences by ``j`` of a block are computed once and stay in cache for all ``i`` within the block.
+    """
     ends = np.zeros((n, n))
     for j in range(1, n):
         for i in range(j):
             ends[i, j] = np.inf
     for j in range(1, n):
         top = 1 << j
-        # All pairs (i, j) of one block of the table before the next block: the block stays in cache.
+        size = min(top, _BLOCK)
+        falls = np.empty(size)
         for start in range(0, len(values), 2 * top):
-            for i in range(j):
+            for part in range(start, start + top, size):
+                for s in range(size):
+                    falls[s] = values[part + s] - values[part + s + top]
+                for i in range(j):
+                    step = 1 << i
+                    if step >= size:
+                        break
+                    ends[i, j] = min(ends[i, j], _smallest_rise(falls, step))
+            for i in range(_BLOCK_BITS, j):
                 step = 1 << i
                 low = ends[i, j]
                 for base in range(start, start + top, 2 * step):
                     for s in range(base, base + step):
-                        slack = (values[s + step] - values[s]) - (values[s + top + step] - values[s + top])
+                        slack = (values[s + step] - values[s + top + step]) - (values[s] - values[s + top])
                         low = min(low, slack)
                 ends[i, j] = low
     return ends
+
+
+@numba.njit(cache=True, fastmath=_FINITE)
+def _smallest_rise(block: Any, step: int) -> Any:
+    """Smallest ``block[s + step] - block[s]`` over ``s`` without the bit ``step``."""
+    low = np.inf
+    for base in range(0, len(block), 2 * step):
+        for s in range(base, base + step):
+            low = min(low, block[s + step] - block[s])
+    return low
 
 
 @numba.njit(cache=True)

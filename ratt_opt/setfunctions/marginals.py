@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.table import TableFunction
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -31,8 +33,8 @@ class Marginals:
     smallest_upper: FloatArray
     largest_lower: FloatArray
     largest_upper: FloatArray
-    smallest_context: tuple[Context, ...]
-    largest_context: tuple[Context, ...]
+    smallest_context: Sequence[Context]
+    largest_context: Sequence[Context]
 
 
 def groups_of(owners: IntArray) -> list[IntArray]:
@@ -42,6 +44,9 @@ def groups_of(owners: IntArray) -> list[IntArray]:
 
 def enumerate_marginals(domain: Domain, values: FloatArray | None = None) -> Marginals:
     """Exact smallest and largest marginals, O(n) passes over the domain (``values`` : its table, if known)."""
+    alone = len(np.unique(domain.owners)) == domain.restricted.n
+    if values is None and alone and isinstance(domain.restricted, TableFunction):
+        return _table_marginals(domain.restricted)
     groups = groups_of(domain.owners)
     if values is None:
         values = finite_values(domain_values(domain.restricted, groups))
@@ -58,6 +63,37 @@ def enumerate_marginals(domain: Domain, values: FloatArray | None = None) -> Mar
                 ends[side, x] = marginal[index]
                 contexts[side][x] = tuple(int(g[k - 1]) for g, k in zip(rest, index, strict=True) if k > 0)
     return Marginals(ends[0], ends[0], ends[1], ends[1], tuple(contexts[0]), tuple(contexts[1]))
+
+
+def _table_marginals(f: TableFunction) -> Marginals:
+    """The same for a table and all its sets, by one compiled pass an element."""
+    from ratt_opt.setfunctions.lattice import marginal_ends
+
+    ends = marginal_ends(f.values, f.n)
+    return Marginals(ends[0], ends[0], ends[1], ends[1], _Attaining(f, 1.0), _Attaining(f, -1.0))
+
+
+class _Attaining(Sequence[Context]):
+    """Contexts of the smallest marginals (largest: ``sign`` -1) of a table, looked for when asked for."""
+
+    def __init__(self, f: TableFunction, sign: float) -> None:
+        self._f, self._sign = f, sign
+
+    def __len__(self) -> int:
+        return self._f.n
+
+    @overload
+    def __getitem__(self, x: int) -> Context: ...
+    @overload
+    def __getitem__(self, x: slice) -> Sequence[Context]: ...
+    def __getitem__(self, x: int | slice) -> Context | Sequence[Context]:
+        if isinstance(x, slice):
+            return [self[k] for k in range(*x.indices(len(self)))]
+        halves = self._f.values.reshape(-1, 2, 1 << x)
+        where = int((self._sign * (halves[:, 1] - halves[:, 0])).argmin())
+        low = where & ((1 << x) - 1)
+        mask = (where ^ low) << 1 | low
+        return tuple(e for e in range(self._f.n) if mask >> e & 1)
 
 
 def domain_values(f: SetFunction, groups: list[IntArray]) -> FloatArray:
