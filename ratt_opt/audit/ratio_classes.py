@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ratt_opt.audit.ratio_program import Row
+from ratt_opt.audit.ratio_program import MANY_COLUMNS, Row
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -63,13 +63,25 @@ class Submodular:
         return mask
 
     def first_rows(self) -> list[Row]:
-        """Monotone and curvature rows; with diminishing returns the largest contexts imply all others."""
+        """Monotone and curvature rows; with diminishing returns the largest contexts imply all others.
+
+        Diminishing returns come along where there are many columns, else :meth:`violated` finds them.
+        """
         everything = self.n_columns - 1
         rows = [Row(_terms((everything, 1), (everything & ~(1 << x), -1))) for x in range(self.n)]
         for x in range(self.n):
             for context in self._largest_contexts(x):
                 rows.append(Row(_terms((context | 1 << x, 1), (context, -1), (1 << x, -self.kept))))
+        if self.n_columns >= MANY_COLUMNS:
+            rows += [_diminishing(a, b, base) for a, b in self._pairs() for base in self._bases(a, b).tolist()]
         return rows
+
+    def _pairs(self) -> list[tuple[int, int]]:
+        return [(a, b) for b in range(self.n) for a in range(b)]
+
+    def _bases(self, a: int, b: int) -> IntArray:
+        masks: IntArray = np.arange(self.n_columns)
+        return np.asarray(masks[(masks >> a | masks >> b) & 1 == 0])
 
     def _largest_contexts(self, x: int) -> list[int]:
         if self.domain == "elements":
@@ -79,21 +91,18 @@ class Submodular:
         return [sum(pick) for pick in picks]
 
     def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:  # noqa: ARG002  (every subset has a column)
-        """Diminishing returns ``f(S+a) + f(S+b) >= f(S+a+b) + f(S)`` that fail."""
+        """Diminishing returns ``f(S+a) + f(S+b) >= f(S+a+b) + f(S)`` that fail and are not in the program yet."""
+        if self.n_columns >= MANY_COLUMNS:
+            return []
         values = x.copy()
         values[0] = 0.0
-        masks = np.arange(self.n_columns)
         found: list[tuple[float, int, int, int]] = []
-        for b in range(self.n):
-            for a in range(b):
-                base = masks[(masks >> a | masks >> b) & 1 == 0]
-                slack = values[base | 1 << a] + values[base | 1 << b] - values[base | 1 << a | 1 << b] - values[base]
-                found += [(float(slack[i]), a, b, int(base[i])) for i in np.flatnonzero(slack < -ROUNDING)]
+        for a, b in self._pairs():
+            base = self._bases(a, b)
+            slack = values[base | 1 << a] + values[base | 1 << b] - values[base | 1 << a | 1 << b] - values[base]
+            found += [(float(slack[i]), a, b, int(base[i])) for i in np.flatnonzero(slack < -ROUNDING)]
         found.sort()
-        return [
-            Row(_terms((s | 1 << a, 1), (s | 1 << b, 1), (s | 1 << a | 1 << b, -1), (s, -1)))
-            for _, a, b, s in found[:MOST_ROWS]
-        ]
+        return [_diminishing(a, b, base) for _, a, b, base in found[:MOST_ROWS]]
 
     def optimal_values(self, x: FloatArray, used: Collection[int], masks: Sequence[int]) -> FloatArray:  # noqa: ARG002
         """The program's own values."""
@@ -178,6 +187,10 @@ class NonDecreasing:
             removed += [value + self.kept * m for value in removed]
         known = [(0, Fraction(0)), *((mask, point[self._columns[mask]]) for mask in used)]
         return [min(f + added[t & ~s] - removed[s & ~t] for s, f in known) for t in range(1 << self.n)]
+
+
+def _diminishing(a: int, b: int, base: int) -> Row:
+    return Row(_terms((base | 1 << a, 1), (base | 1 << b, 1), (base | 1 << a | 1 << b, -1), (base, -1)))
 
 
 def _terms(*terms: tuple[int, int | Fraction]) -> dict[int, Fraction]:

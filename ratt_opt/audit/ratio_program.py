@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["ClaimedOptimum", "Program", "Row", "solve_square"]
+__all__ = ["MANY_COLUMNS", "ClaimedOptimum", "Program", "Row", "solve_square"]
 
 ROUNDING = 1e-9
 """How far a proved bound may stay behind the claimed one before better rationals are tried."""
@@ -24,7 +24,10 @@ DENOMINATORS = (60, 10_000, 1_000_000)
 
 
 MANY_COLUMNS = 1000
-"""From here on an interior-point method with crossover, from scratch, beats simplex from the last basis."""
+"""From here on an interior-point method with crossover on all rows at once beats simplex on a growing list of rows."""
+
+LARGEST_SQUARE = 1_500
+"""Most unknowns of a rational system that is solved (a few seconds)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +128,6 @@ class Program:
         again = self.solve(inf)
         if again is not None:
             yield self._basic_multipliers(again)
-        yield self._exact_multipliers(claimed)
 
     def _support(self, claimed: ClaimedOptimum) -> list[int]:
         return [int(i) for i in np.flatnonzero(claimed.y > 1e-9) if self.on[i]]
@@ -142,43 +144,31 @@ class Program:
             return None
         return sum((y * self.rows[i].least for i, y in multipliers.items()), Fraction(0))
 
-    def _exact_multipliers(self, claimed: ClaimedOptimum) -> dict[int, Fraction]:
-        """Solve the complementary-slackness equations: columns in use have reduced cost 0."""
-        rows = self._support(claimed)
-        position = {i: k for k, i in enumerate(rows)}
-        equations: dict[int, dict[int, Fraction]] = {int(j): {} for j in np.flatnonzero(claimed.x > 1e-9)}
-        for i in rows:
-            for j, value in self.rows[i].terms.items():
-                if j in equations:
-                    equations[j][position[i]] = value
-        solved = solve_rational(
-            [equations[j] for j in equations], [Fraction(int(j == 0)) for j in equations], len(rows)
-        )
-        return dict(zip(rows, solved, strict=True))
-
     def _basic_multipliers(self, claimed: ClaimedOptimum) -> dict[int, Fraction]:
-        """The multipliers of the basis without rounding; this decides where many multipliers solve the equations."""
-        rows = {i: k for k, i in enumerate(claimed.tight_rows)}
-        position = {j: k for k, j in enumerate(claimed.basic_columns)}
-        entries = [(position[j], rows[i], v) for i in rows for j, v in self.rows[i].terms.items() if j in position]
+        """The multipliers of the basis without rounding: columns in it have reduced cost 0."""
+        entries = [(column, row, value) for row, column, value in self._basis(claimed)]
         right = [Fraction(int(j == 0)) for j in claimed.basic_columns]
-        solved = solve_square(entries, right, len(rows))
-        return {i: value for i, value in zip(rows, solved, strict=True) if value}
+        solved = solve_square(entries, right, len(claimed.tight_rows))
+        return {i: value for i, value in zip(claimed.tight_rows, solved, strict=True) if value}
 
     def exact_point(self, claimed: ClaimedOptimum) -> list[Fraction]:
-        """Solve the rows with a positive multiplier as equations, together with near-tight ones; not checked here."""
-        columns = [int(j) for j in np.flatnonzero(claimed.x > 1e-9)]
-        position = {j: k for k, j in enumerate(columns)}
-        equations, right = [], []
-        for i, row in enumerate(self.rows):
-            slack = sum(float(v) * claimed.x[j] for j, v in row.terms.items()) - float(row.least)
-            if self.on[i] and abs(slack) < 1e-9:
-                equations.append({position[j]: v for j, v in row.terms.items() if j in position})
-                right.append(row.least)
+        """The point of the basis without rounding: its rows hold with equality. Not checked here."""
+        right = [self.rows[i].least for i in claimed.tight_rows]
+        solved = solve_square(self._basis(claimed), right, len(claimed.basic_columns))
         point = [Fraction(0)] * len(claimed.x)
-        for j, value in zip(columns, solve_rational(equations, right, len(columns)), strict=True):
+        for j, value in zip(claimed.basic_columns, solved, strict=True):
             point[j] = value
         return point
+
+    def _basis(self, claimed: ClaimedOptimum) -> list[tuple[int, int, Fraction]]:
+        """Entries (row, column, value) of the basis matrix."""
+        position = {j: k for k, j in enumerate(claimed.basic_columns)}
+        return [
+            (k, position[j], value)
+            for k, i in enumerate(claimed.tight_rows)
+            for j, value in self.rows[i].terms.items()
+            if j in position
+        ]
 
 
 def solve_square(
@@ -200,32 +190,3 @@ def solve_square(
     except ZeroDivisionError:
         return answer
     return [Fraction(int(solved[k, 0].p), int(solved[k, 0].q)) for k in range(n_unknowns)]
-
-
-LARGEST_SQUARE = 1_500
-"""Most unknowns of a square rational system that is solved (a few seconds)."""
-LARGEST_SYSTEM = 2_000_000
-"""Most entries of a rational system that is reduced (a few seconds)."""
-
-
-def solve_rational(
-    equations: Sequence[Mapping[int, Fraction]], right: Sequence[Fraction], n_unknowns: int
-) -> list[Fraction]:
-    """Return one rational solution (free unknowns 0); all zero where there is none or the system is too large."""
-    import flint
-
-    width = n_unknowns + 1
-    answer = [Fraction(0)] * n_unknowns
-    if not equations or len(equations) * width > LARGEST_SYSTEM:
-        return answer
-    entries = [flint.fmpq(0)] * (len(equations) * width)
-    for i, (equation, value) in enumerate(zip(equations, right, strict=True)):
-        for j, coefficient in {**equation, n_unknowns: value}.items():
-            entries[i * width + j] = flint.fmpq(coefficient.numerator, coefficient.denominator)
-    reduced, rank = flint.fmpq_mat(len(equations), width, entries).rref()
-    for i in range(rank):
-        pivot = next(j for j in range(width) if reduced[i, j] != 0)
-        if pivot == n_unknowns:
-            return [Fraction(0)] * n_unknowns
-        answer[pivot] = Fraction(int(reduced[i, n_unknowns].p), int(reduced[i, n_unknowns].q))
-    return answer
