@@ -50,11 +50,12 @@ chain). A statement "for every set function of this class with these roles" is a
 values: a feasible dual is a proof, a feasible primal a counterexample. Both are rounded to rationals and checked
 exactly; no verdict below is a float, and none is typed in by hand.
 
-This page is written by two commands:
+This page is written by commands:
 
 ```bash
 ratt-opt audit --out ledger
-python -m analysis.audit_page --ledger ledger --out docs/audit.md
+python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/
+python -m analysis.audit_page --ledger ledger --figure worst_ratio.png --out docs/audit.md
 ```
 """
 
@@ -93,8 +94,10 @@ def realistic_table(document: dict[str, Any]) -> Finding:
 def _worst(worst: dict[str, Any] | None) -> str:
     if worst is None:
         return "-"
-    size = abs(worst["relative_violation"])
-    return f"broken by {size:.2g}" if worst["violated_exactly"] else f"holds, margin {size:.2g}"
+    size = worst["relative_violation"]
+    if worst["violated_exactly"]:
+        return f"broken by {size:.2g}"
+    return f"not broken, margin {-size:.2g}" if size <= 0 else f"broken by {size:.2g} in rounding only"
 
 
 def ratio_table(cases: Sequence[tuple[str, int, int, int]]) -> Finding:

@@ -40,9 +40,10 @@ def _theorems(records: list[Record]) -> Finding:
         )
     if _all_proved([r for r in rows if r["label"].startswith("pattern_free")]):
         sentences.append(
-            "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger. "
+            "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
+            "every curvature strictly between 0 and 1. "
             "The machine decides teams up to the size shown; a written proof for any number of robots is in the "
-            "documentation of `pattern_free_bound`."
+            "documentation of pattern_free_bound."
         )
     table = [("entry", "statement", "verdict", "for which sizes")]
     table += [(r["label"], r["statement"], r["verdict"], r["sizes"]) for r in rows]
@@ -69,7 +70,8 @@ def _lines(records: list[Record]) -> Finding:
     end = f"From the start of its chain, every line is proved in some reading ({len(cumulative)} lines)."
     if lost:
         end = f"From the start of its chain, these lines fail in every reading: {', '.join(lost)}."
-    return Finding(heading="Which steps hold?", sentences=(text, end), table=tuple(table))
+    gap = "A step that fails is a gap in the argument: what it concludes may still be true, see the next sentence."
+    return Finding(heading="Which steps hold?", sentences=(text, gap, end), table=tuple(table))
 
 
 def _readings(records: list[Record]) -> Finding:

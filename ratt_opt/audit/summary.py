@@ -86,6 +86,8 @@ def _realistic_lines(found: dict[str, Any]) -> list[str]:
     size = f"{worst['relative_violation']:.3g} of the largest value in it"
     if worst["violated_exactly"]:
         lines.append(f"worst geometry found: violated by {size}, replayed without rounding; {worst['origin']}")
+    elif worst["relative_violation"] > 0:
+        lines.append(f"worst geometry found: violated by {size} in rounding, not confirmed exactly; {worst['origin']}")
     else:
         lines.append(
             f"worst geometry found: not violated (margin {-worst['relative_violation']:.3g}); {worst['origin']}"

@@ -33,7 +33,7 @@ def test_the_realistic_table_reads_the_records() -> None:
     table = realistic_table(document()).table
     assert table[1:] == (
         ("x_1, step", "trace", "3 of 40", "broken by 0.25"),
-        ("x_2, step", "trace", "0 of 40", "holds, margin 0.5"),
+        ("x_2, step", "trace", "0 of 40", "not broken, margin 0.5"),
     )
 
 
