@@ -123,6 +123,8 @@ class Program:
         """Yield rational multipliers, cheap ones first."""
         for denominator in DENOMINATORS:
             yield {i: Fraction(float(claimed.y[i])).limit_denominator(denominator) for i in self._support(claimed)}
+        if len(claimed.tight_rows) > LARGEST_SQUARE:
+            return
         yield self._basic_multipliers(claimed)
         self._highs.clearSolver()
         again = self.solve(inf)
