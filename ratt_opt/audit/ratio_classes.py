@@ -27,6 +27,8 @@ __all__ = ["FunctionClass", "NonDecreasing", "Submodular"]
 ROUNDING = 1e-9
 MOST_ROWS = 3000
 """Violated class rows added at once, the worst first."""
+MOST_COMPLETE = 1 << 12
+"""Columns up to which all rows of diminishing returns fit in a program from the start (67,584 rows for 4,096)."""
 
 
 class FunctionClass(Protocol):
@@ -57,6 +59,7 @@ class Submodular:
         self.n_robots, self.kept, self.domain = n_robots, 1 - curvature, domain
         self.n = 2 * n_robots
         self.n_columns = 1 << self.n
+        self.is_complete = MANY_COLUMNS <= self.n_columns <= MOST_COMPLETE
 
     def column(self, mask: int) -> int:
         """Column ``mask``: the empty set has none, so column 0 is free for the ratio."""
@@ -65,14 +68,14 @@ class Submodular:
     def first_rows(self) -> list[Row]:
         """Monotone and curvature rows; with diminishing returns the largest contexts imply all others.
 
-        Diminishing returns come along where there are many columns, else :meth:`violated` finds them.
+        Diminishing returns come along for five and six robots, else :meth:`violated` finds them.
         """
         everything = self.n_columns - 1
         rows = [Row(_terms((everything, 1), (everything & ~(1 << x), -1))) for x in range(self.n)]
         for x in range(self.n):
             for context in self._largest_contexts(x):
                 rows.append(Row(_terms((context | 1 << x, 1), (context, -1), (1 << x, -self.kept))))
-        if self.n_columns >= MANY_COLUMNS:
+        if self.is_complete:
             rows += [_diminishing(a, b, base) for a, b in self._pairs() for base in self._bases(a, b).tolist()]
         return rows
 
@@ -92,7 +95,7 @@ class Submodular:
 
     def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:  # noqa: ARG002  (every subset has a column)
         """Diminishing returns ``f(S+a) + f(S+b) >= f(S+a+b) + f(S)`` that fail and are not in the program yet."""
-        if self.n_columns >= MANY_COLUMNS:
+        if self.is_complete:
             return []
         values = x.copy()
         values[0] = 0.0

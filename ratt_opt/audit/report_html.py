@@ -17,7 +17,8 @@ __all__ = ["html_report"]
 
 _STYLE = """
 body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}
-table{border-collapse:collapse;margin:1rem 0}td,th{border:1px solid #bbb;padding:.2rem .6rem;text-align:left}
+table{border-collapse:collapse;margin:1rem 0}
+td,th{border:1px solid #bbb;padding:.2rem .6rem;text-align:left;overflow-wrap:anywhere}
 details{border-left:.35rem solid #999;margin:.4rem 0;padding:.2rem .8rem}
 details.proved{border-color:#0072b2}details.refuted{border-color:#d55e00}
 details.no-violation-found{border-color:#e69f00}
