@@ -1,8 +1,8 @@
-"""Speed of the audit: ``python -m analysis.benchmarks.audit [--five] [--ledger]``.
+"""Speed of the audit: ``python -m analysis.benchmarks.audit [--five] [--six] [--ledger]``.
 
 Worst-case ratios at N = 3 and 4 against one plain integer program an attack (every class row, every attack, no
-symmetry, no theorem to start from); ``--five`` adds N = 5 without the plain program, which needs minutes;
-``--ledger`` times the whole proof ledger. Processor seconds of this process.
+symmetry, no theorem to start from); ``--five`` and ``--six`` add N = 5 and 6 without the plain program, which
+needs minutes there; ``--ledger`` times the whole proof ledger. Processor seconds of this process.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 CURVATURE = Fraction(1, 2)
 SMALL = ((3, 1, 0), (3, 0, 2), (4, 1, 0), (4, 0, 3))
-FIVE = (("nondecreasing", 5, 1, 0), ("nondecreasing", 5, 0, 6), ("submodular", 5, 1, 0), ("submodular", 5, 0, 4))
+FIVE = (("nondecreasing", 5, 1, 0), ("nondecreasing", 5, 0, 6), ("submodular", 5, 1, 0), ("submodular", 5, 0, 7))
+SIX = (("nondecreasing", 6, 2, 0), ("nondecreasing", 6, 0, 9), ("submodular", 6, 2, 0))
 
 Terms = list[tuple[int, float]]
 
@@ -35,7 +36,8 @@ Terms = list[tuple[int, float]]
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--five", action="store_true", help="also N = 5 (about two minutes)")
+    parser.add_argument("--five", action="store_true", help="also N = 5 (about half a minute)")
+    parser.add_argument("--six", action="store_true", help="also N = 6 (about a minute)")
     parser.add_argument("--ledger", action="store_true", help="also the whole ledger (a few minutes)")
     options = parser.parse_args()
     print(f"{'worst-case ratio':34} {'value':>8} {'seconds':>9} {'plain':>9} {'ratio':>8}")
@@ -51,7 +53,7 @@ def main() -> None:
             plain, slow = _timed(lambda f=family, n=n, s=alpha_s, c=alpha_c: plain_ratio(f, n, s, c))  # type: ignore[misc]
             assert abs(plain - float(found)) < 1e-6, "both programs must agree"
             print(f"{family:14} N={n} ({alpha_s}, {alpha_c}) {found!s:>16} {fast:9.2f} {slow:9.2f} {slow / fast:7.1f}x")
-    for family, n, alpha_s, alpha_c in FIVE if options.five else ():
+    for family, n, alpha_s, alpha_c in (*FIVE * options.five, *SIX * options.six):
         found, fast = _timed(
             lambda f=family, n=n, s=alpha_s, c=alpha_c: (
                 worst_case_ratio(  # type: ignore[misc]
