@@ -1,7 +1,8 @@
 """What the bounds are worth: Theorem 1's are attained by no instance, the pattern-free ones are.
 
 The paper leaves the tightness of ``(1-c)^3`` open. It is not tight: ``(1-c)^2`` always holds. That cannot be
-improved for all N: the family of :func:`limit_instance` has ratios that tend to it.
+improved for all N: the family of :func:`limit_instance` has ratios that tend to it. For submodular functions ``1-k``
+cannot be improved either: the family of :func:`attaining_instance` attains it for every ``k < 1``.
 """
 
 from __future__ import annotations
@@ -11,6 +12,9 @@ from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ratt_opt._validation import readonly
 from ratt_opt.audit.decide import Verdict, decide
 from ratt_opt.audit.entry import Counted, EnumeratedEntry
 from ratt_opt.audit.language import FunctionClass
@@ -19,15 +23,18 @@ from ratt_opt.audit.ratio import worst_case_ratio
 from ratt_opt.audit.ratio_classes import NonDecreasing
 from ratt_opt.audit.ratio_witness import RatioWitness, replay, scaled_values
 from ratt_opt.audit.summaries import every_group
+from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["limit_instance", "limit_ratio", "tightness_entries"]
+__all__ = ["attaining_instance", "limit_instance", "limit_ratio", "tightness_entries"]
 
 LARGEST_TEAM = 4
 REPLAYED = tuple((size, Fraction(part, 4)) for size, part in ((1, 2), (2, 1), (2, 2), (2, 3), (3, 2)))
 """Sizes g and total curvatures c."""
+ATTAINED = tuple((size, Fraction(*k)) for size, k in ((2, (1, 4)), (2, (1, 2)), (3, (3, 5)), (3, (2, 3))))
+"""Sizes m and curvatures k."""
 
 
 def tightness_entries() -> Iterator[EnumeratedEntry]:
@@ -47,7 +54,13 @@ def tightness_entries() -> Iterator[EnumeratedEntry]:
             "some instance with 0 < k < 1 attains Theorem 1's bound min[(1-k)/(1+k), (1-k)/alpha_cs]",
             partial(_exceeded, submodular, T, ONE, T, one_plus_k),
         ),
-        ("pattern_free_sub_tight", "", "RATT's worst ratio can be 1-k exactly", _attained),
+        (
+            "pattern_free_sub_tight",
+            "",
+            "for every k < 1 RATT's worst ratio is 1-k exactly once N is large enough: N = 3m with m >= 1/(1-k)",
+            _attained_by_family,
+        ),
+        ("pattern_free_sub_tight_n4", "", "RATT's worst ratio can be 1-k exactly with four robots", _attained),
         (
             "pattern_free_nd_tight",
             "",
@@ -102,6 +115,16 @@ def _attained() -> Counted:
     )
 
 
+def _attained_by_family() -> Counted:
+    for size, k in ATTAINED:
+        ratio = replay(attaining_instance(size, k))
+        if ratio != 1 - k:
+            return Counted(verdict=Verdict.UNDECIDED, sizes=f"m = {size}, k = {k}", detail=f"replayed ratio {ratio}")
+    detail = f"{len(ATTAINED)} weighted coverage functions replayed through the library; the ratio is 1-k each time"
+    sizes = f"replayed for (m, k) in {', '.join(f'({m}, {k})' for m, k in ATTAINED)}; any m by its proof"
+    return Counted(verdict=Verdict.PROVED, sizes=sizes, detail=detail)
+
+
 def _approached() -> Counted:
     reached = []
     for size, c in REPLAYED:
@@ -115,6 +138,56 @@ def _approached() -> Counted:
     )
     sizes = f"replayed for (g, c) in {', '.join(f'({g}, {c})' for g, c in REPLAYED)}; any g by its proof"
     return Counted(verdict=Verdict.PROVED, sizes=sizes, detail=detail)
+
+
+def attaining_instance(size: int, curvature: Fraction) -> RatioWitness:
+    """Return the instance with ``N = 3 size`` robots, ``alpha_s = size`` on which RATT keeps exactly ``1 - curvature``.
+
+    Let ``t = 1-k`` and m = ``size``. A weighted coverage function, hence submodular and non-decreasing. Each element
+    covers an item of its own, and some share items: robots ``b`` (m of them), ``r`` (m) and ``v`` (m) have
+
+    - ``b_i``: own t, and shared items ``W_1 .. W_m`` of weight ``k/m`` each; ``o(b_i)``: own 1;
+    - ``r_j``: own t, and a shared item of weight k; ``o(r_j)``: own 1;
+    - ``v_j``: own ``t - k/m``, and ``W_j``; ``o(v_j)``: own t, and the shared item of ``r_j``.
+
+    *Class.* The own part of an element is its smallest marginal: t times its value 1, or for ``v_j``, worth t,
+    ``t - k/m >= t^2`` as ``m t >= 1``. So the curvature is k.
+    *RATT.* All robots' best single values are 1, so the first m robots, b, are the bait (ties by index). Greedy then
+    takes the r, whose marginals stay 1 (no element has more), and then the v: ``v_j`` adds t, and so does
+    ``o(v_j)`` beside ``r_j``. *Attack.* Blinding the r leaves ``m t + k + m (t - k/m) = 2 m t``. *Optimum.* The
+    other plan covers no item twice: it is additive, 1 each, and keeps 2m whatever m robots are blinded. So the ratio
+    is at most t, and the pattern-free theorem says at least t.
+
+    Parameters
+    ----------
+    size : m >= 1; curvature : k in [0, 1 - 1/m]
+
+    Raises
+    ------
+    InputError : ``curvature`` is larger, where ``v_j`` would exceed it.
+    """
+    if not 0 <= curvature <= 1 - Fraction(1, size):
+        raise InputError("curvature", f"must be in [0, {1 - Fraction(1, size)}]", curvature)
+    n, whole = 3 * size, curvature.denominator * size
+    part = int(whole * curvature) // size
+    kept = whole - size * part
+    own = [kept] * (2 * size) + [kept - part] * size + [whole] * (2 * size) + [kept] * size
+    bait, removed, victims = range(size), range(size, 2 * size), range(2 * size, n)
+    items: list[tuple[int, tuple[int, ...]]] = [(weight, (element,)) for element, weight in enumerate(own)]
+    items += [(part, (*bait, v)) for v in victims]
+    items += [(size * part, (r, n + v)) for r, v in zip(removed, victims, strict=True)]
+    masks = np.arange(1 << 2 * n)
+    values = sum(weight * (masks & _mask(covers) != 0).astype(np.int64) for weight, covers in items)
+    return RatioWitness(
+        values=readonly(np.asarray(values)),
+        n_robots=n,
+        alpha_s=size,
+        alpha_c=0,
+        curvature=curvature,
+        family="submodular",
+        domain="elements",
+        planner="ratt",
+    )
 
 
 def limit_ratio(size: int, curvature: Fraction) -> Fraction:

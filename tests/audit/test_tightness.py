@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import pytest
 
-from ratt_opt import ProofError
+from ratt_opt import InputError, ProofError
 from ratt_opt.audit.decide import Verdict
 from ratt_opt.audit.ratio import worst_case_ratio
 from ratt_opt.audit.ratio_witness import replay
-from ratt_opt.audit.tightness import limit_instance, limit_ratio, tightness_entries
+from ratt_opt.audit.tightness import attaining_instance, limit_instance, limit_ratio, tightness_entries
 
 
 @pytest.mark.parametrize(
@@ -51,5 +51,23 @@ def test_verdicts() -> None:
         "theorem1_nd_tight": Verdict.REFUTED,
         "theorem1_sub_tight": Verdict.REFUTED,
         "pattern_free_sub_tight": Verdict.PROVED,
+        "pattern_free_sub_tight_n4": Verdict.PROVED,
         "pattern_free_nd_tight": Verdict.PROVED,
     }
+
+
+@pytest.mark.parametrize(
+    ("size", "k"),
+    [(1, Fraction(0)), (2, Fraction(1, 3)), (2, Fraction(1, 2)), (3, Fraction(1, 2)), (3, Fraction(2, 3))],
+)
+def test_one_minus_k_is_attained(size: int, k: Fraction) -> None:
+    witness = attaining_instance(size, k)
+    assert replay(witness) == 1 - k
+    if k:
+        with pytest.raises(ProofError, match="curvature"):
+            replay(replace(witness, curvature=k - Fraction(1, 1000)))
+
+
+def test_the_attaining_family_ends_where_its_curvature_would_be_exceeded() -> None:
+    with pytest.raises(InputError, match=r"curvature must be in \[0, 1/2\]"):
+        attaining_instance(2, Fraction(51, 100))
