@@ -47,7 +47,7 @@ def test_every_figure_and_table_is_there(out: Path) -> None:
         "small_scale/small_scale_paired.png",
     ]
     lines = (out / "claims.md").read_text().splitlines()
-    assert len(lines) == 3 + len(CLAIMS)
+    assert len(lines) == 4 + len(CLAIMS)
     assert lines[2].endswith("| confirmed (exact) |")
     assert [len(read_table(out / name)) for name in ("caa", "qualitative", "small_scale", "large_scale")] == [
         11,
