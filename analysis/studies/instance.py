@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import networkx as nx
@@ -21,6 +21,7 @@ from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin import solve_maxmin
 from ratt_opt.solvers.ratt import ratt
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,13 +46,14 @@ EFFORT: dict[str, Any] = {"gap": 5e-4, "max_nodes": 30}
 
 @dataclass(slots=True)
 class Instance:
-    """A scenario, its problem and seeds. The optimum is computed when first asked for."""
+    """A scenario, its problem and seeds. The optimum is computed when first asked for, and each plan attacked once."""
 
     scenario: Scenario
     objective: InformationObjective
     problem: Problem
     seeds: Seeds
     _optimum: MaxMinResult | None = None
+    _attacked: dict[bytes, AttackResult] = field(default_factory=dict)
 
     @classmethod
     def of(cls, case: Case, seeds: Seeds) -> Instance:
@@ -79,7 +81,16 @@ class Instance:
         if self._optimum is None:
             small = self.problem.n_robots <= LARGEST_EXHAUSTIVE
             self._optimum = exhaustive_optimum(self.problem) if small else solve_maxmin(self.problem, **EFFORT)
+            if (attack := self._optimum.worst_case) is not None and attack.stop in {Stop.CLOSED, Stop.EXHAUSTED}:
+                self._attacked.setdefault(self._optimum.elements.tobytes(), attack)
         return self._optimum
+
+    def worst_case(self, plan: IntArray) -> AttackResult:
+        """Return the exact worst case of a plan."""
+        key = plan.tobytes()
+        if key not in self._attacked:
+            self._attacked[key] = worst_case_attack(self.problem, plan)
+        return self._attacked[key]
 
     @property
     def digest(self) -> str:
@@ -112,7 +123,7 @@ PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
 
 ATTACKERS: dict[str, Callable[[Instance, IntArray], AttackResult | None]] = {
     "none": lambda _instance, _plan: None,
-    "exact": lambda instance, plan: worst_case_attack(instance.problem, plan),
+    "exact": lambda instance, plan: instance.worst_case(plan),
     "bounded_rational": lambda instance, plan: bounded_rational_attack(instance.problem, plan),
     "greedy": lambda instance, plan: greedy_attack(instance.problem, plan),
     "random": lambda instance, plan: random_attack(instance.problem, plan, seed=instance.seeds.attacker),

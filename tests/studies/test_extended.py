@@ -8,6 +8,7 @@ import sys
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -16,12 +17,15 @@ from analysis.extended.exact_attack import STUDY as EXACT
 from analysis.extended.guarantees import STUDY as GUARANTEES
 from analysis.extended.guarantees import shares
 from analysis.extended.sensitivity import DEFAULTS, VARIANTS
-from analysis.studies.instance import Instance
+from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
 from analysis.studies.quantities import curvature_class
 from analysis.studies.statistics import column, select
 from analysis.studies.store import read_table
 from analysis.studies.study import Case, Seeds, run_trial
-from ratt_opt import worst_case_ratio
+from ratt_opt import AttackResult, Problem, worst_case_attack, worst_case_ratio
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDIES = ("guarantees", "graphs", "budgets", "sensitivity")
@@ -90,6 +94,23 @@ def test_guarantees_are_ordered_and_hold_on_every_instance(out: Path) -> None:
     assert (found["pattern_free"] <= found["certified"]).all()
     # With both budgets at work a single robot remains in the second half of the cases: RATT is then optimal.
     assert (column(select(rows, alpha_s=2), "ratio") == 1).all()
+
+
+def test_each_plan_is_attacked_once_and_exactly(monkeypatch: pytest.MonkeyPatch) -> None:
+    attacked = []
+
+    def counting(problem: Problem, plan: IntArray) -> AttackResult:
+        attacked.append(plan.tolist())
+        return worst_case_attack(problem, plan)
+
+    monkeypatch.setattr("analysis.studies.instance.worst_case_attack", counting)
+    instance = Instance.of(EXACT.cases[0], Seeds.of(1, 0))
+    plans = [PLANNERS[name](instance) for name in ("optimum", "ratt", "greedy", "ratt")]
+    for plan in plans:
+        found, fresh = ATTACKERS["exact"](instance, plan), worst_case_attack(instance.problem, plan)
+        assert found is not None
+        assert (found.lower, found.upper) == pytest.approx((fresh.lower, fresh.upper), rel=1e-9)
+    assert len(attacked) == len({tuple(plan) for plan in attacked}) <= 2  # the search has attacked its own plan
 
 
 @pytest.mark.parametrize("upper", [0.0, 0.5, 0.7374127301306086, 0.998765, 1 - 1e-9, 1.0])
