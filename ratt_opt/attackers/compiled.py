@@ -57,6 +57,23 @@ class SearchState:
 
 
 @numba.njit(cache=True)
+def _averaged(kind: int, weights: Any, sums: Any, information: Any, left: int) -> float:
+    """No ``left`` of the robots bring the criterion above this: (M,), (M, 3), (F, M, 3) -> scalar.
+
+    ``sums`` plus the information of robots ``T`` is the average over ``i`` in ``T`` of ``sums + |T| information[i]``,
+    and the criterion is convex: it is at most the average there, so at most that of the ``|T|`` largest.
+    """
+    n_robots, n_targets = information.shape[0], information.shape[1]
+    one, worth = np.empty((n_targets, 3)), np.empty(n_robots)
+    for i in range(n_robots):
+        for j in range(n_targets):
+            for t in range(3):
+                one[j, t] = sums[j, t] + left * information[i, j, t]
+        worth[i] = criterion(kind, weights, one)
+    return float(np.sort(worth)[n_robots - left :].mean())
+
+
+@numba.njit(cache=True)
 def search(  # noqa: PLR0917  (compiled code takes arrays, not records)
     kind: int,
     weights: Any,
@@ -73,8 +90,8 @@ def search(  # noqa: PLR0917  (compiled code takes arrays, not records)
 ) -> int:
     """Continue to the next set of ``size`` robots whose value is below ``threshold``.
 
-    Robots are tried in the order given. A partial choice is left when its own value (values do not
-    decrease) or the affine minorant ``linear + scores`` of every completion reaches the threshold.
+    Robots are taken or left in the order given. A partial choice is left when the affine minorant ``linear +
+    scores`` or the averaged bound (:func:`_averaged`) of every completion reaches the threshold.
 
     Parameters
     ----------
@@ -96,6 +113,9 @@ def search(  # noqa: PLR0917  (compiled code takes arrays, not records)
             counters[0] = depth
             return 1
         counters[1] += 1
+        if baseline - _averaged(kind, weights, sums[depth], information[p:], left) >= threshold:
+            depth -= 1
+            continue
         position[depth] = p + 1
         bound = linear[depth] + scores[p]
         if bound + smallest[p + 1, left - 1] >= threshold:
@@ -103,9 +123,9 @@ def search(  # noqa: PLR0917  (compiled code takes arrays, not records)
         for j in range(n_targets):
             for t in range(3):
                 sums[depth + 1, j, t] = sums[depth, j, t] + information[p, j, t]
-        if baseline - criterion(kind, weights, sums[depth + 1]) >= threshold:
-            continue
         if left == 1:
+            if baseline - criterion(kind, weights, sums[depth + 1]) >= threshold:
+                continue
             counters[0] = depth
             return 2
         linear[depth + 1] = bound

@@ -52,6 +52,12 @@ class LowSets:
         self.finished = False
 
     @property
+    def work_of_node(self) -> int:
+        """Criteria of single targets that bounding a partial choice looks at, at most."""
+        n_robots, n_targets, _ = self._information.shape
+        return int(max(n_robots * n_targets, 1))
+
+    @property
     def nodes(self) -> int:
         """Partial choices looked at."""
         return int(self._state.counters[1])

@@ -1,9 +1,10 @@
 """Branch and bound over the largest group of an outcome on a complete graph.
 
 Every attack leaves a group with at least ``k`` seeing robots (``forced_group_size``), so the smallest
-value of any ``k`` robots is a lower bound. Nodes fix robots inside or outside that group; an affine
-minorant (``minorant.py``) bounds them, fixes more robots by reduced cost, and guides a compiled
-depth-first enumeration that finishes small nodes. Whenever a set below the incumbent is found, the
+value of any ``k`` robots is a lower bound. Teams of up to some forty robots are decided by a compiled
+depth-first search alone (``compiled.py``). In larger ones nodes fix robots inside or outside that group; an affine
+minorant (``minorant.py``) bounds them, fixes more robots by reduced cost, and guides the same
+depth-first search that finishes small nodes. Whenever a set below the incumbent is found, the
 other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
 """
 
@@ -31,15 +32,15 @@ if TYPE_CHECKING:
 
 __all__ = ["SizeNode", "SizeSearch"]
 
-FIRST_ENUMERATION = 2_000_000
-FEW_ROBOTS, WHOLE_ENUMERATION = 32, 200_000_000
-"""So few robots are enumerated at once: at a tenth of a microsecond a node, faster than to branch (N = 30: 2 to 4 s
-instead of 4 to 7 s)."""
-SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 300_000, 1_000_000
-"""Compiled nodes spent on one branch-and-bound node before it is split: more after successes, fewer after failures."""
+AT_ONCE = 48
+"""Teams of so many robots are first enumerated whole, without a minorant."""
+WHOLE_ENUMERATION = 4_000_000_000
+SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 10_000_000, 40_000_000
+"""Criteria of single targets looked at (some nanoseconds each) for the whole team, and for one branch-and-bound node
+before it is split: more after successes, fewer after failures."""
 
-UNINTERRUPTED = 2_000_000
-"""Compiled nodes between two looks at the clock and at interrupts (about half a second)."""
+UNINTERRUPTED = 100_000_000
+"""Criteria of single targets between two looks at the clock and at interrupts (about half a second)."""
 
 HEAVY_ROBOTS = ((50, 2), (80, 3), (10**9, 4))
 """(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above."""
@@ -79,7 +80,7 @@ class SizeSearch:
         self.team, self.size, self.offer = team, size, offer
         self._serial = 0
         self._inside, self._among = inside, frozenset(range(len(team.single))) - outside
-        self._limit = FIRST_ENUMERATION if len(team.single) > FEW_ROBOTS else WHOLE_ENUMERATION
+        self._work = LONGEST_ENUMERATION
         self.open = [SizeNode(floor, 0, inside, outside)]
 
     @property
@@ -93,6 +94,8 @@ class SizeSearch:
         ``progress`` is told what no undecided set falls below, after every node.
         The open nodes stay valid when the budget runs out or the user interrupts.
         """
+        if len(self._among) <= AT_ONCE:
+            threshold = self._enumerate_all(threshold, budget)
         while self.open and self.open[0].bound < threshold:
             node = self.open[0]
             children, threshold = self._expand(node, threshold, budget, progress)
@@ -130,7 +133,9 @@ class SizeSearch:
             node, robots, minorant = self._fix(node, robots, minorant, threshold)
             size = self.size - len(node.inside)
         low = self._enumeration(node, robots, size, minorant)
-        threshold = self._enumerate(low, threshold, budget)
+        threshold = self._enumerate(low, threshold, budget, self._work)
+        work = int(self._work * (1.3 if low.finished else 0.8))
+        self._work = min(max(work, SHORTEST_ENUMERATION), LONGEST_ENUMERATION)
         children = [] if low.finished else self._split(node, bound, robots, minorant)
         return children, threshold
 
@@ -182,17 +187,28 @@ class SizeSearch:
         affine = AffineBound(minorant.constant, minorant.scores[order])
         return LowSets(self.team, robots[order], node.inside, size, affine)
 
-    def _enumerate(self, low: LowSets, threshold: float, budget: Budget) -> float:
-        """Offer the sets below the threshold, up to a node limit; returns the new threshold."""
-        while not low.finished and low.nodes < self._limit:
+    def _enumerate_all(self, threshold: float, budget: Budget) -> float:
+        """Decide the root without a minorant, weakest robots first, where that takes no longer than is allowed."""
+        root = self.open[0]
+        robots, size = self._free(root)[::-1], self.size - len(root.inside)
+        if not 0 <= size <= len(robots):
+            return threshold
+        low = LowSets(self.team, robots, root.inside, size)
+        threshold = self._enumerate(low, threshold, budget, WHOLE_ENUMERATION)
+        if low.finished:
+            self.open.clear()
+        return threshold
+
+    def _enumerate(self, low: LowSets, threshold: float, budget: Budget, work: int) -> float:
+        """Offer the sets below the threshold, up to a limit of work; returns the new threshold."""
+        limit, pause = max(work // low.work_of_node, 1), max(UNINTERRUPTED // low.work_of_node, 1)
+        while not low.finished and low.nodes < limit:
             before = low.nodes
-            allowed = budget.nodes_left(min(self._limit - before, UNINTERRUPTED))
+            allowed = budget.nodes_left(min(limit - before, pause))
             found = low.next_below(threshold, before + allowed)
             budget.nodes += low.nodes - before
             if found is not None:
                 threshold = self.offer(found)
-        limit = int(self._limit * (1.3 if low.finished else 0.8))
-        self._limit = min(max(limit, SHORTEST_ENUMERATION), LONGEST_ENUMERATION)
         return threshold
 
     def _split(self, node: SizeNode, bound: float, robots: IntArray, minorant: Minorant | None) -> list[SizeNode]:

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = ["WeakSubsets"]
 
-PLAIN_NODES = 300_000
+PLAIN_NODES = 30_000
 """Compiled nodes before a question is handed to the branch and bound, which bounds it afresh."""
 
-UNINTERRUPTED = 100_000
+UNINTERRUPTED = 30_000
+"""Compiled nodes between two looks at the clock (a tenth of a second)."""
 
 
 @dataclass(slots=True)

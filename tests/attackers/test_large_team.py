@@ -45,15 +45,20 @@ def run_large(problem, elements, max_nodes=None):
     return bracket, budget.nodes, stop
 
 
+def only_branch(monkeypatch):
+    """Hardly any enumeration, so that bounds and branches decide."""
+    monkeypatch.setattr(size_search, "AT_ONCE", 0)
+    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 1)
+    monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", 1)
+
+
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("limit", [2_000_000, 3])
-def test_agrees_with_the_threshold_search(name, seed, limit, monkeypatch):
+@pytest.mark.parametrize("branch", [False, True])
+def test_agrees_with_the_threshold_search(name, seed, branch, monkeypatch):
     """Once by plain enumeration at the root, once with so little of it that branching decides."""
-    monkeypatch.setattr(size_search, "FEW_ROBOTS", 0)
-    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", limit)
-    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 3)
-    monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", limit)
+    if branch:
+        only_branch(monkeypatch)
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
     expected = ro.worst_case_attack(problem, elements).upper
     bracket, _, stop = run_large(problem, elements)
@@ -67,9 +72,7 @@ def test_agrees_with_the_threshold_search(name, seed, limit, monkeypatch):
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_bracket_is_valid_at_every_node_count(name, seed, monkeypatch):
-    monkeypatch.setattr(size_search, "FEW_ROBOTS", 0)
-    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 4)
-    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 4)
+    only_branch(monkeypatch)
     problem, elements = team_problem(seed, 8, name)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)
     expected = ro.worst_case_attack(problem, elements).upper
@@ -110,10 +113,11 @@ def test_minorants_lie_below_every_set(kind, seed):
     assert seed % 2 == 0 or bound >= 0.3 * best - 1e-9
 
 
+@pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(10))
-def test_low_sets_are_all_of_them(seed):
+def test_low_sets_are_all_of_them(seed, name):
     rng = np.random.default_rng(seed)
-    team = CompactTeam.of(OBJECTIVES["trace"](*information_data(rng, 8, 3)), np.arange(8))
+    team = CompactTeam.of(OBJECTIVES[name](*information_data(rng, 8, 3)), np.arange(8))
     values = {frozenset(s): team.value(s) for s in combinations(range(8), 4)}
     threshold = float(np.median(list(values.values())))
     low, found = LowSets(team, np.arange(8), frozenset(), 4), set()
@@ -163,9 +167,7 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
 @pytest.mark.parametrize("calls", range(1, 6))
 def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     """Wherever the interrupt lands: at the first bound, deep in the tree, or never."""
-    monkeypatch.setattr(size_search, "FEW_ROBOTS", 0)
-    monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 20)
-    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 20)
+    only_branch(monkeypatch)
     rng = np.random.default_rng(2)
     problem = ro.Problem(OBJECTIVES["trace"](*range_bearing(rng, 13, 4, 1)), np.arange(13), None, 3, 20)
     expected = ro.worst_case_attack(problem, np.arange(13))

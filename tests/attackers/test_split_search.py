@@ -74,8 +74,9 @@ def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
     """Nine and ten robots: subsets found by plain enumeration, then all by branch and bound."""
     monkeypatch.setattr(weak_subsets, "PLAIN_NODES", plain)
     if not plain:
-        monkeypatch.setattr(size_search, "FIRST_ENUMERATION", 10)
-        monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 10)
+        monkeypatch.setattr(size_search, "AT_ONCE", 0)
+        monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 1)
+        monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", 1)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
     bracket, _, stop = run_split(problem, elements)
     check(problem, elements, bracket, stop, ro.worst_case_attack(problem, elements).upper)
