@@ -52,6 +52,8 @@ def evidence(record: dict[str, Any]) -> list[str]:
         lines.append(f"with the factor {weaker['factor']} on the right the step holds{where}, {best}")
     if record.get("realistic"):
         lines += _realistic_lines(record["realistic"])
+    elif claim is not None and claim["witness"] is not None and "realistic" in record:
+        lines.append("not tried on EKF objectives: no roles, numbers that are no values, or many robots")
     if record.get("follows_from"):
         lines.append(f"a direct step that serves the proof: the line follows from {record['follows_from']} (proved)")
     serves = record.get("weaker_step_that_serves")
