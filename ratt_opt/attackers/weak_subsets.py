@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.compact import MAX_EIGENVALUE
 from ratt_opt.attackers.low_sets import AffineBound, LowSets
 from ratt_opt.attackers.size_search import SizeSearch
 from ratt_opt.attackers.swap_search import swap_search
-from ratt_opt.attackers.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.bracket import Budget
@@ -60,10 +58,6 @@ class WeakSubsets:
         free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
         if size in {len(fixed), len(group)}:
             return None  # only one subset, looked at already
-        if self.team.kind == MAX_EIGENVALUE:
-            axis = weakest_axis(self.team, self.team.sums(fixed), self.team.information[free], size - len(fixed))
-            if axis.bound >= threshold:
-                return None
         return self._search(fixed, free, size, threshold, budget)
 
     def _search(
