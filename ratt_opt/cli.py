@@ -48,7 +48,9 @@ DEMO_SEED = 14
 
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; created if absent.")]
 JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
-TimeLimit = Annotated[float, typer.Option("--time-limit", help="Seconds for the search for the optimum.")]
+TimeLimit = Annotated[
+    float, typer.Option("--time-limit", help="Seconds for all searches; the certificate comes on top.")
+]
 Gap = Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")]
 CertificateFlag = Annotated[
     bool, typer.Option(help="Write certificate.json, and verify it before anything is printed.")

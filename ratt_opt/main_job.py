@@ -37,8 +37,10 @@ if TYPE_CHECKING:
 
 __all__ = ["BoundReport", "PlanAssessment", "bound"]
 
-NONROBUST_SHARE = 0.25
-"""The non-robust optimum is a baseline where it is proved in this share of the time limit."""
+ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
+"""Share of the time left that each attack, and each of the later searches, may take. The non-robust
+optimum is a baseline where it is proved in its share."""
+LEAST_SECONDS = 1e-3
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this."""
 SECONDS_BETWEEN_LINES = 1.0
@@ -142,7 +144,8 @@ def bound(
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
     objective : ``"trace"`` (the default), ``"logdet"`` or ``"maxeig"``; not with a problem, which has its own
     gap : relative gap at which the search for the optimum stops
-    time_limit : seconds for that search, and for each attack; ``None`` for no limit
+    time_limit : seconds for all searches together, of which that for the optimum may take three quarters of what
+        the attacks on the baselines leave; ``None`` for no limit. Writing and verifying the certificate comes on top.
     certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
 
@@ -154,17 +157,20 @@ def bound(
     check_limits(gap, time_limit)
     problem, name = _problem_of(scenario_or_problem, objective)
     tell = progress or _silent
-    clock = _Clock(tell)
+    clock = _Clock(tell, time_limit)
     with clock("RATT and the baselines"):
-        robust = assess(problem, "ratt", ratt(problem), time_limit)
-        baselines = tuple(assess(problem, label, plan, time_limit) for label, plan in _baselines(problem, time_limit))
+        robust = assess(problem, "ratt", ratt(problem), clock.share(ATTACK_SHARE))
+        baselines = tuple(
+            assess(problem, label, plan, clock.share(ATTACK_SHARE)) for label, plan in _baselines(problem, clock)
+        )
     with clock("the best possible plan"):
-        optimum = solve_maxmin(problem, gap=gap, time_limit=time_limit, progress=_search_lines(tell))
-        best = _assess_optimum(problem, optimum, time_limit)
+        limit = clock.share(OPTIMUM_SHARE)
+        optimum = solve_maxmin(problem, gap=gap, time_limit=limit, progress=_search_lines(tell))
+        best = _assess_optimum(problem, optimum, clock.share(ATTACK_SHARE))
     with clock("curvature and guarantees"):
-        k, c = _curvatures(problem, time_limit)
+        k, c = _curvatures(problem, clock.share(CURVATURE_SHARE))
         alpha_cs = equivalent_sensing_attacks(problem)
-        guarantees = _guarantees(problem, robust.elements, time_limit, k=k, c=c)
+        guarantees = _guarantees(problem, robust.elements, clock.share(CURVATURE_SHARE), k=k, c=c)
     with clock("certificate"):
         proof = _certificate(problem, optimum, certificate)
     return BoundReport(
@@ -225,12 +231,12 @@ def _problem_of(given: HasProblem | Problem, objective: str | None) -> tuple[Pro
     return given.problem(name), name
 
 
-def _baselines(problem: Problem, time_limit: float | None) -> Iterator[tuple[str, Plan]]:
+def _baselines(problem: Problem, clock: _Clock) -> Iterator[tuple[str, Plan]]:
     yield "greedy", greedy(problem)
     yield "myopic", myopic(problem)
     yield "random", random_plan(problem, seed=RANDOM_SEED)
     if isinstance(problem.objective, InformationObjective) or problem.objective.n <= LARGEST_TABLE:
-        unattacked = nonrobust_search(problem, time_limit=time_limit and NONROBUST_SHARE * time_limit)
+        unattacked = nonrobust_search(problem, time_limit=clock.share(NONROBUST_SHARE))
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             yield "nonrobust", Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
 
@@ -266,11 +272,16 @@ def _silent(_: str) -> None:
 
 
 class _Clock:
-    """Tells when a step begins and keeps how long it took."""
+    """Tells when a step begins, keeps how long it took, and shares out the time left."""
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
+    def __init__(self, tell: Callable[[str], None], time_limit: float | None) -> None:
         self.seconds: dict[str, float] = {}
         self._tell = tell
+        self._deadline = None if time_limit is None else time.monotonic() + time_limit
+
+    def share(self, part: float) -> float | None:
+        """Seconds that are ``part`` of the time left, never none; ``None`` where there is no limit."""
+        return None if self._deadline is None else part * max(self._deadline - time.monotonic(), LEAST_SECONDS)
 
     @contextmanager
     def __call__(self, step: str) -> Iterator[None]:

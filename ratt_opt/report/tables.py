@@ -118,8 +118,10 @@ def _verdict(proof: Certificate | str) -> str:
     if isinstance(proof, str):
         return f"none: {proof}"
     found = proof.verified
-    ends = "both ends proved" if found.lower_proved else "upper end proved, lower end only enumerated in floating point"
-    return f"verified, {ends} in {found.arithmetic}: {bracket_text(found.lower, found.upper)}"
+    bracket = bracket_text(found.lower, found.upper)
+    if found.lower_proved:
+        return f"verified, both ends proved in {found.arithmetic}: {bracket}"
+    return f"verified, upper end proved in {found.arithmetic}, lower end searched in floating point: {bracket}"
 
 
 def _guarantees(report: BoundReport) -> Table:
