@@ -11,7 +11,7 @@ from ratt_opt.errors import ProofError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["defect_of", "definite", "rounded_up", "total", "trace", "trace_of_inverse"]
+__all__ = ["defect_of", "definite", "largest_of_inverse", "total", "trace", "trace_of_inverse"]
 
 
 def total(terms: Iterable[Any]) -> Any:
@@ -24,15 +24,19 @@ def trace(a: fmpq_mat) -> Any:
     return total(a[i, i] for i in range(a.nrows()))
 
 
-def trace_of_inverse(a: fmpq_mat) -> Any:
-    """Trace of the inverse, which must exist."""
-    return trace(a) / a.det() if a.nrows() == 2 else trace(a.inv())
-
-
-def rounded_up(x: fmpq) -> fmpq:
-    """Return the next multiple of ``2**-ctx.prec``: sums of those stay short."""
+def trace_of_inverse(a: fmpq_mat) -> fmpq:
+    """Return the trace of the inverse, rounded up to a multiple of ``2**-ctx.prec``: sums of those stay short."""
+    exact = trace(a) / a.det() if a.nrows() == 2 else trace(a.inv())
     scale = fmpz(1) << ctx.prec
-    return fmpq((x * scale).ceil(), scale)
+    return fmpq((exact * scale).ceil(), scale)
+
+
+def largest_of_inverse(a: fmpq_mat) -> fmpq:
+    """Return an upper bound on the largest eigenvalue of the inverse of a 2 x 2 matrix; its root is off by
+    ``2**-ctx.prec``."""
+    size, minor, scale = trace(a), a.det(), fmpz(1) << ctx.prec
+    root = ((size * size - 4 * minor) * scale * scale).ceil().isqrt() + 1
+    return fmpq(size + fmpq(root, scale)) / (2 * minor)
 
 
 def definite(matrix: fmpq_mat) -> int:

@@ -99,8 +99,8 @@ class _Cases:
         """Whether the ``missing`` smallest values are worth it on average (see the verifier's leaf -3)."""
         self._count(len(posteriors))
         values = np.sort(self.objective.value(posteriors))
-        average = values[0] if isinstance(self.objective, MaxEigenvalueObjective) else values[:missing].mean()
-        return bool(average >= self.threshold)
+        each = isinstance(self.objective, MaxEigenvalueObjective) and self.objective.dimension != 2
+        return bool((values[0] if each else values[:missing].mean()) >= self.threshold)
 
     def _count(self, sets: int) -> None:
         self.looked_at += sets * self.objective.n_targets

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flint import arb, ctx, fmpq, fmpq_mat
 
 from ratt_opt.certificates import reading
-from ratt_opt.certificates.exact_matrices import defect_of, definite, rounded_up, total, trace, trace_of_inverse
+from ratt_opt.certificates.exact_matrices import defect_of, definite, largest_of_inverse, total, trace, trace_of_inverse
 from ratt_opt.certificates.reading import array, exact, fields, index, indices, links, need, packed, walk
 from ratt_opt.certificates.verified import Verified
 from ratt_opt.errors import ProofError
@@ -366,18 +366,20 @@ class Checker:
     def _are_worth(self, cases: list[list[fmpq_mat]], count: int, lower: fmpq) -> bool:
         if lower <= 0 and all(definite(m - i) >= 0 for x in cases for m, i in zip(x, self.inverse, strict=True)):
             return True  # at least the prior's information is worth at least phi(empty set) = 0
-        if self.objective != "maxeig":
+        if self.objective != "maxeig" or self.d == 2:
             return bool(total(sorted(map(self._value, cases))[:count]) >= lower * count)
-        # lambda_max(L^{-1}) <= room / w for every target of every case, decided as L - (w / room) I >= 0.
+        # Each case is worth it if lambda_max(L^{-1}) <= room / w for its targets, decided as L - (w / room) I >= 0.
         room = self.prior_low - lower
         pairs = (pair for x in cases for pair in zip(self.weights, x, strict=True))
         return bool(room > 0) and all(definite(m - self.identity * (w / room)) >= 0 for w, m in pairs)
 
     def _value(self, posterior: list[fmpq_mat]) -> Any:
-        """Return a lower bound on the trace or log-det criterion, sharper at a higher precision."""
+        """Return a lower bound on the criterion (max-eigenvalue: d = 2), sharper at a higher precision."""
+        pairs = list(zip(self.weights, posterior, strict=True))
+        if self.objective == "maxeig":
+            return self.prior_low - max(w * largest_of_inverse(m) for w, m in pairs)
         if self.objective == "trace":
-            left = (rounded_up(w * trace_of_inverse(m)) for w, m in zip(self.weights, posterior, strict=True))
-            return self.prior_trace - total(left)
+            return self.prior_trace - total(w * trace_of_inverse(m) for w, m in pairs)
         items = zip(self.weights, self.prior, posterior, strict=True)
         return total(w * arb((m * p).det()).log() for w, p, m in items).lower()
 
