@@ -67,11 +67,11 @@ def _lines(records: list[Record]) -> Finding:
     names = list(dict.fromkeys(r["label"] for r in equalities))
     table.append(("is printed as = but holds as >= only", str(len(names)), ", ".join(names) or "none"))
     text = f"Of {len(steps)} numbered lines, {len(outcome['holds'])} follow from the line before under every reading."
-    end = f"From the start of its chain, every line is proved in some reading ({len(cumulative)} lines)."
+    end = "A failing step is a gap in the argument, not a false result: from the start of its chain each line is proved"
+    end = f"{end} in some reading ({len(cumulative)} lines)."
     if lost:
-        end = f"From the start of its chain, these lines fail in every reading: {', '.join(lost)}."
-    gap = "A step that fails is a gap in the argument: what it concludes may still be true, see the next sentence."
-    return Finding(heading="Which steps hold?", sentences=(text, gap, end), table=tuple(table))
+        end = f"Even from the start of its chain, these lines fail in every reading: {', '.join(lost)}."
+    return Finding(heading="Which steps hold?", sentences=(text, end), table=tuple(table))
 
 
 def _readings(records: list[Record]) -> Finding:
