@@ -1,7 +1,7 @@
 """Results on disk: a journal that only grows, and the sorted table made from it.
 
 ``study.json`` says which study the folder holds, ``journal.csv`` has one line per finished trial in
-the order they finished, ``table.csv`` the same rows sorted by case and trial. The journal is
+the order they finished, ``table.csv`` those of whole trials sorted by case and trial. The journal is
 append-only and each line is forced to disk; a line torn by a kill is cut off and its trial run again.
 """
 
@@ -11,6 +11,7 @@ import csv
 import io
 import json
 import os
+from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
 
@@ -58,9 +59,15 @@ class Journal:
         self._rows.append(cells)
 
     def write_table(self) -> Path:
-        """Write the rows sorted by case and trial; the same rows give the same bytes."""
+        """Write the rows sorted by case and trial; the same rows give the same bytes.
+
+        Trials that a killed run left in some cases only, beyond those asked for now, stay in the journal: in the
+        table every case has the same trials, so that they can be compared.
+        """
         order = {case.name: k for k, case in enumerate(self._study.cases)}
-        rows = sorted(self._rows, key=lambda row: (order[row["case"]], int(row["trial"])))
+        cases = Counter(row["trial"] for row in self._rows)
+        whole = [row for row in self._rows if cases[row["trial"]] == len(order)]
+        rows = sorted(whole, key=lambda row: (order[row["case"]], int(row["trial"])))
         text = _line(self._columns) + "".join(_line(row.values()) for row in rows)
         return write_atomically(self._folder / TABLE, lambda file: file.write_bytes(text.encode()))
 

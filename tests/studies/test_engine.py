@@ -36,6 +36,11 @@ def _threads(folder: Path, trials: int = 3, study: object = STUDY) -> bytes:
         return run(study, folder, executor, trials=trials, progress=Progress()).read_bytes()  # type: ignore[arg-type]
 
 
+def _rows(folder: Path, trials: int) -> list[dict[str, str]]:
+    _threads(folder, trials)
+    return read_table(folder)
+
+
 def _command(folder: Path, *arguments: str, seconds: float = 0.0) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "tests.studies.run_toy", "--out", str(folder), *arguments]
     environment = os.environ | {"TOY_SECONDS": str(seconds), "PYTHONPATH": str(ROOT)}
@@ -99,6 +104,17 @@ def test_more_trials_extend_the_table_and_repeat_nothing(tmp_path: Path) -> None
     assert _threads(tmp_path, 4) == _threads(tmp_path / "other", 4)
     assert (tmp_path / "journal.csv").read_bytes().startswith(before)
     assert _threads(tmp_path, 1) == _threads(tmp_path / "other", 4)
+
+
+def test_trials_that_only_some_cases_have_wait_in_the_journal(tmp_path: Path) -> None:
+    _threads(tmp_path / "many", 5)
+    lines = (tmp_path / "many" / "journal.csv").read_text().splitlines(keepends=True)
+    lines.remove(next(line for line in lines if line.startswith(f"{STUDY.cases[2].name},3,")))
+    (tmp_path / "many" / "journal.csv").write_text("".join(lines))
+    # Asked for three trials, the table has the four that are whole; asked for five, only the missing row is run.
+    assert [row["trial"] for row in _rows(tmp_path / "many", 3)] == ["0", "1", "2", "4"] * 4
+    assert (tmp_path / "many" / "journal.csv").read_text() == "".join(lines)
+    assert _threads(tmp_path / "many", 5) == _threads(tmp_path / "calm", 5)
 
 
 @pytest.mark.parametrize("cut", [1, 7, 60])
