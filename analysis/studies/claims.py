@@ -83,7 +83,8 @@ def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = (), 
 
 def _line(claim: Claim, cases: Sequence[Estimate], average: Estimate, verdict: Verdict) -> str:
     scale, unit = (1.0, claim.unit) if claim.share is None else (100.0, "%")
-    what, limit = "difference" if claim.share is None else "relative difference", claim.share or 0.0
+    what = "difference" if claim.share is None else "excess" if claim.share else "relative difference"
+    limit = claim.share or 0.0
     holds, fails = sum(e.high < limit for e in cases), sum(e.among(len(cases)).low > limit for e in cases)
     count = f"holds in {holds} of {len(cases)} cases" + (f", fails in {fails}" if fails else "")
     result = f"{what} {average.show(scale)} {unit} on average; {count}; {average.n} trials"
