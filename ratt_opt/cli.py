@@ -137,12 +137,21 @@ def attack(
     objective: ObjectiveOption = "trace",
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for the exact attack.")] = 60.0,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the random attack.")] = 0,
+    rank: Annotated[
+        int, typer.Option("--rank", min=0, help="Also rank so many robots and links by what protecting them gains.")
+    ] = 0,
+    below: Annotated[
+        float | None,
+        typer.Option("--below", help="Also find the smallest budgets that push the plan below this value."),
+    ] = None,
     as_json: JsonFlag = False,
 ) -> None:
-    """Find the exact worst case, and the heuristics' attacks, against your own plan."""
+    """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
+    from ratt_opt.attackers.breaking_budgets import breaking_budgets
+    from ratt_opt.attackers.criticality import criticality_ranking
     from ratt_opt.attackers.survey import attack_survey
     from ratt_opt.report.document import attack_document
-    from ratt_opt.report.tables import attack_table
+    from ratt_opt.report.tables import attack_table, budget_table, critical_table
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan
 
@@ -151,10 +160,18 @@ def attack(
     with _progress() as tell:
         tell("attacking")
         results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
+        tell("what to protect" if rank or below is not None else "done")
+        critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else ()
+        budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
     if as_json:
-        print(json.dumps(attack_document(objective, elements, results), indent=1, allow_nan=False))
-    else:
-        _console().print(attack_table(results))
+        document = attack_document(objective, elements, results, critical, budgets)
+        print(json.dumps(document, indent=1, allow_nan=False))
+        return
+    _console().print(attack_table(results))
+    if rank:
+        _console().print(critical_table(critical))
+    if budgets is not None:
+        _console().print(budget_table(budgets, f"{below:.8g}"))
 
 
 @app.command()

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from ratt_opt import random_scenario, save_scenario, worst_case_attack
+from ratt_opt import (
+    breaking_budgets,
+    criticality_ranking,
+    random_scenario,
+    save_scenario,
+    worst_case_attack,
+)
 from ratt_opt.certificates import write
 from ratt_opt.cli import run
 
@@ -187,6 +193,36 @@ def test_verify_refuses_a_missing_file_and_another_problem(
     certificate = str(tmp_path / "o" / "certificate.json")
     assert run(["verify", certificate, "--problem", str(scenario_file), "--objective", "logdet"]) == 1
     assert "different problem" in capsys.readouterr().err
+
+
+def test_attack_says_what_to_protect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Ranking and smallest budgets as the library finds them; what is protected already is never attacked."""
+    path, plan = tmp_path / "scenario.json", tmp_path / "plan.json"
+    free = random_scenario(5, 3, alpha_s=1, alpha_c=4, seed=2)
+    scenario = free.replace(protected_robots=(1,), protected_links=((0, 2),))
+    save_scenario(scenario, path)
+    plan.write_text('{"controls": [0, 0, 0, 0, 0]}')
+    problem, elements = scenario.problem("trace"), [0, 12, 24, 36, 48]
+    worst = worst_case_attack(problem, elements).upper
+    below = worst * 0.9
+    command = ["attack", str(path), "--plan", str(plan), "--rank", "4", "--below", str(below)]
+    assert run([*command, "--json"]) == 0
+    document = _strict(capsys.readouterr().out)
+    assert all(1 not in found["sensing"] and [0, 2] not in found["links"] for found in document["attacks"].values())
+    ranking = criticality_ranking(problem, elements)
+    assert [row["gain_lower"] for row in document["critical"]] == [row.gain_lower for row in ranking[:4]]
+    assert [row.get("robot", tuple(row.get("link", ()))) for row in document["critical"]] == [
+        row.target for row in ranking[:4]
+    ]
+    found = [(row["alpha_s"], row["alpha_c"], row["proved"]) for row in document["breaking_budgets"]]
+    assert found == [(row.alpha_s, row.alpha_c, True) for row in breaking_budgets(problem, elements, below)]
+    assert run(command) == 0
+    printed = capsys.readouterr().out
+    assert "what to protect" in printed
+    assert "smallest budgets that leave less than" in printed
+    assert run([*command[:-1], "0"]) == 0
+    assert "no attack on what is" in capsys.readouterr().out
+    _refused([*command[:-1], "nan"], capsys, "value must be finite")
 
 
 def test_attack_evaluates_the_users_plan(

@@ -6,9 +6,11 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.breaking_budgets import BreakingBudget
+    from ratt_opt.attackers.criticality import Criticality
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.certificates.write import Certificate
     from ratt_opt.main_job import BoundReport, PlanAssessment
@@ -55,14 +57,41 @@ def report_document(report: BoundReport) -> dict[str, Any]:
     return document
 
 
-def attack_document(objective: str, elements: IntArray, results: Mapping[str, AttackResult]) -> dict[str, Any]:
-    """Return the attacks on one plan as JSON-ready values: attacker -> worst case."""
-    return {
+def attack_document(
+    objective: str,
+    elements: IntArray,
+    results: Mapping[str, AttackResult],
+    critical: Sequence[Criticality] = (),
+    budgets: Sequence[BreakingBudget] | None = None,
+) -> dict[str, Any]:
+    """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
+    document = {
         "format": "ratt-opt attack",
         "version": VERSION,
         "objective": objective,
         "elements": elements.tolist(),
         "attacks": {name: _worst_case(result) for name, result in results.items()},
+    }
+    if critical:
+        document["critical"] = [_critical(row) for row in critical]
+    if budgets is not None:
+        document["breaking_budgets"] = [_budget(row) for row in budgets]
+    return document
+
+
+def _critical(row: Criticality) -> dict[str, Any]:
+    target = {"robot": row.target} if isinstance(row.target, int) else {"link": list(row.target)}
+    return {**target, "loss": row.loss, "gain_lower": row.gain_lower, "gain_upper": row.gain_upper}
+
+
+def _budget(row: BreakingBudget) -> dict[str, Any]:
+    return {
+        "alpha_s": row.alpha_s,
+        "alpha_c": row.alpha_c,
+        "value": row.value,
+        "sensing": sorted(row.attack.sensing),
+        "links": [list(link) for link in sorted(row.attack.links)],
+        "proved": row.is_proved,
     }
 
 

@@ -13,13 +13,23 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
+    from ratt_opt.attackers.breaking_budgets import BreakingBudget
+    from ratt_opt.attackers.criticality import Criticality
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.certificates.write import Certificate
     from ratt_opt.main_job import BoundReport
     from ratt_opt.problem import Attack
     from ratt_opt.setfunctions.curvature import Curvature
 
-__all__ = ["attack_table", "audit_table", "bracket_text", "report_tables", "share_text"]
+__all__ = [
+    "attack_table",
+    "audit_table",
+    "bracket_text",
+    "budget_table",
+    "critical_table",
+    "report_tables",
+    "share_text",
+]
 
 PROVED_OPTIMAL = 1e-9
 """A plan proved to keep all but this share of the best possible is called optimal."""
@@ -46,6 +56,25 @@ def attack_table(results: Mapping[str, AttackResult]) -> Table:
     for name, result in results.items():
         proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
         table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
+    return table
+
+
+def critical_table(ranking: Iterable[Criticality]) -> Table:
+    """One row a robot or link: what protecting it alone gains, and what losing it alone costs."""
+    table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
+    for row in ranking:
+        name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
+        table.add_row(name, bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
+    return table
+
+
+def budget_table(budgets: Iterable[BreakingBudget], goal: str) -> Table:
+    """One row a smallest pair of budgets that pushes the plan below a value."""
+    table = _table(f"smallest budgets that leave less than {goal}", "blinded", "links cut", "value left", "proved")
+    for row in budgets:
+        table.add_row(str(row.alpha_s), str(row.alpha_c), f"{row.value:.8g}", "yes" if row.is_proved else "no")
+    if not table.row_count:
+        table.caption = "no attack on what is not protected leaves less"
     return table
 
 
