@@ -144,7 +144,7 @@ class _Searches:
         try:
             for x in range(self.f.n):
                 self.searches.append(self._search(x))
-                if stop := self.budget.spent(0):
+                if stop := self.budget.spent(self.nodes):
                     return stop
             while True:
                 lower, upper, _ = self.ends()
