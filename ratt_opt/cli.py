@@ -7,6 +7,7 @@ standard error; 130 interrupted. Results go to standard output, progress to stan
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from contextlib import contextmanager
@@ -155,12 +156,15 @@ def attack(
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan
 
+    if below is not None and not math.isfinite(below):
+        raise InputError("--below", "must be a finite number", below)
     problem = load_input(file).problem(objective)
     elements = load_plan(plan, problem)
     with _progress() as tell:
         tell("attacking")
         results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
-        tell("what to protect" if rank or below is not None else "done")
+        if rank or below is not None:
+            tell("what to protect")
         critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else ()
         budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
     if as_json:

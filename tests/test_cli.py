@@ -222,7 +222,7 @@ def test_attack_says_what_to_protect(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "smallest budgets that leave less than" in printed
     assert run([*command[:-1], "0"]) == 0
     assert "no attack on what is" in capsys.readouterr().out
-    _refused([*command[:-1], "nan"], capsys, "value must be finite")
+    _refused([*command[:-1], "nan"], capsys, "--below must be a finite number; got nan")
 
 
 def test_attack_evaluates_the_users_plan(

@@ -42,8 +42,8 @@ def breaking_budgets(
 ) -> tuple[BreakingBudget, ...]:
     """Smallest attack budgets that push a plan strictly below ``value``: none in the list contains another.
 
-    For each number of blinded robots, ascending, the fewest cut links are found by bisection (a larger
-    budget never helps the team); the problem's own budgets are not used. Empty when even blinding all
+    For each number of blinded robots, ascending, the fewest cut links are found by doubling and bisection (a
+    larger budget never helps the team); the problem's own budgets are not used. Empty when even blinding all
     unprotected robots and cutting all unprotected links leaves ``value`` or more.
 
     Parameters
@@ -69,9 +69,11 @@ def breaking_budgets(
         best = attacked(alpha_s, most_links)
         if best.upper >= goal:
             continue
-        low, high, proved = 0, most_links, True
+        low, high, proved, step = 0, most_links, True, 1
         while low < high:
-            middle = (low + high) // 2
+            # From few links upwards: large budgets are slow to attack exactly, and seldom needed.
+            middle = min(low + step - 1, (low + high) // 2)
+            step *= 2
             result = attacked(alpha_s, middle)
             if result.upper < goal:
                 best, high = result, middle
