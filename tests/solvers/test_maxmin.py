@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,10 @@ from ratt_opt import (
     Problem,
     TraceObjective,
     exhaustive_optimum,
+    greedy,
+    myopic,
     random_scenario,
+    ratt,
     solve_maxmin,
     worst_case_attack,
 )
@@ -199,3 +203,35 @@ def test_optimal_designs_known_in_closed_form(objective, robots: int, shares: di
     assert result.upper >= best * (1 - 1e-12)
     assert result.lower == pytest.approx(best, rel=1e-9)
     assert {point: chosen.count(point) for point in set(chosen)} == shares
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize(("alpha_s", "alpha_c"), [(4, 20), (7, 30), (9, 46)])
+def test_teams_whose_outcomes_are_not_listed(kind: str, alpha_s: int, alpha_c: int) -> None:
+    """The proved bracket holds what every part says anew: the proof its upper end, the exact attacker its lower."""
+    problem = random_scenario(14, 5, alpha_s=alpha_s, alpha_c=alpha_c, seed=4).problem(kind)
+    result = solve_maxmin(problem, gap=1e-6)
+    assert result.upper - result.lower <= 1e-6 * result.upper * (1 + 1e-9)
+    assert result.stop in {Stop.GAP, Stop.CLOSED}
+    assert worst_case_attack(problem, result.elements).lower >= result.lower * (1 - 1e-9)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+    for planner in (ratt, greedy, myopic):
+        assert worst_case_attack(problem, planner(problem).elements).upper <= result.upper * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_node_limits_make_large_teams_reproducible(kind: str) -> None:
+    problem = random_scenario(14, 5, alpha_s=5, alpha_c=26, seed=0).problem(kind)
+    first, again = (solve_maxmin(problem, max_nodes=6) for _ in range(2))
+    assert first.elements.tolist() == again.elements.tolist()
+    assert (first.lower, first.upper, first.nodes, first.stop) == (again.lower, again.upper, again.nodes, again.stop)
+    assert first.nodes <= 6
+
+
+def test_a_time_limit_is_kept_and_the_bracket_reported_open() -> None:
+    problem = random_scenario(30, 25, alpha_s=10, alpha_c=108, seed=3).problem()
+    began = time.monotonic()
+    result = solve_maxmin(problem, time_limit=0.5)
+    assert result.stop is Stop.TIME
+    assert 0 <= result.lower < result.upper
+    assert time.monotonic() - began < 60, "a limit of half a second, on however busy a machine"
