@@ -99,18 +99,26 @@ class PlanarSearch:
         """Raise a part's bound; the last mixture."""
         self.nodes += 1
         side, sector = self.side, self.side.sector(part)
-        cuts = part.cuts if len(part.cuts.targets) else self._last_cuts
+        cuts = part.cuts.joined(self._last_cuts)
         low, high = 0.0, np.inf
+        best = side.sign * self.attained.value
         for _ in range(SLOPES):
             found = relax(
-                side.options, side.base, side.own_base, sector, slope=part.slope, allowed=part.allowed, cuts=cuts
+                side.options,
+                side.base,
+                side.own_base,
+                sector,
+                slope=part.slope,
+                allowed=part.allowed,
+                cuts=cuts,
+                closes=lambda ceiling: side.key(part, ceiling, part.slope) >= best,
             )
             key = side.key(part, found.ceiling, part.slope)
             if part.relaxed is None or key >= part.key:
                 part.relaxed = found
             part.key = max(part.key, key)
             part.cuts = self._last_cuts = cuts = found.cuts
-            gap = side.sign * self.attained.value - key
+            gap = best - key
             if gap <= 0 or not 0 < found.level < np.inf or found.own <= 0:
                 break
             # The second is the key that the best slope could reach, at most.

@@ -24,6 +24,8 @@ import numpy as np
 from ratt_opt.setfunctions.planar import along, levels
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.planar import Options
 
@@ -56,6 +58,16 @@ class Cuts:
 
     targets: IntArray
     angles: FloatArray
+
+    def joined(self, others: Cuts) -> Cuts:
+        """These, and those of the others that are not among them."""
+        if others is self or len(others.targets) == 0:
+            return self
+        here = set(zip(self.targets.tolist(), self.angles.tolist(), strict=True))
+        new = [pair not in here for pair in zip(others.targets.tolist(), others.angles.tolist(), strict=True)]
+        return Cuts(
+            np.concatenate([self.targets, others.targets[new]]), np.concatenate([self.angles, others.angles[new]])
+        )
 
 
 NO_CUTS = Cuts(np.empty(0, dtype=np.int64), np.empty(0))
@@ -95,12 +107,14 @@ def relax(
     slope: float,
     allowed: BoolArray,
     cuts: Cuts,
+    closes: Callable[[float], bool] | None = None,
 ) -> Relaxed:
     """Bound ``t - slope own`` over the contexts of allowed options; without a sector, ``t`` alone.
 
     Parameters
     ----------
     base, own_base : (3, M) parts of what every context is added to; allowed : (K,); cuts : directions to start from
+    closes : whether a ceiling is low enough to stop at
     """
     own, edges = _sector_forms(options, own_base, sector)
     columns = np.flatnonzero(allowed)
@@ -108,21 +122,23 @@ def relax(
         counts = np.bincount(options.robot, allowed)
         cuts = _worst(options, base, allowed / counts[options.robot])
     program = _Program(options, columns, own, edges, slope)
-    program.add(_cut_forms(options, base, cuts))
+    forms = _cut_forms(options, base, cuts)
+    program.add(forms)
     for last in [False] * (ROUNDS - 1) + [True]:
         mixture, level = program.solve()
-        if last or not np.isfinite(level):
+        weights, edge_weights = program.multipliers(len(cuts.targets))
+        ceiling = _ceiling(options, allowed, [(forms, weights), (own, np.array([-slope])), (edges, edge_weights)])
+        if last or not np.isfinite(level) or (closes and closes(ceiling)):
             break
         # Without a sector the level itself is wanted; else its distance from the target's own.
         apart = abs(level - float(own.constant[0] + own.scores[0] @ mixture))
         found = _worst(options, base, mixture, below=level - VIOLATION * apart)
         if len(found.targets) == 0:
             break
-        program.add(_cut_forms(options, base, found))
+        new = _cut_forms(options, base, found)
+        program.add(new)
+        forms = _Form(np.append(forms.constant, new.constant), np.concatenate([forms.scores, new.scores]))
         cuts = Cuts(np.concatenate([cuts.targets, found.targets]), np.concatenate([cuts.angles, found.angles]))
-    weights, edge_weights = program.multipliers(len(cuts.targets))
-    terms = [(_cut_forms(options, base, cuts), weights), (own, np.array([-slope])), (edges, edge_weights)]
-    ceiling = _ceiling(options, allowed, terms)
     binding = weights > 0
     average = np.zeros_like(base)
     np.add.at(average.T, cuts.targets, weights[:, None] * along(cuts.angles))
