@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_subset
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.table import TableFunction
 
@@ -90,7 +91,7 @@ def _rounding(f: SetFunction) -> float:
     """Several hundred units in the last place of the numbers that a marginal is the difference of."""
     if isinstance(f, TableFunction):
         return 0.0
-    size = abs(f(range(f.n)))
+    size = abs(float(finite_values(np.array([f(range(f.n))]))[0]))
     if isinstance(f, InformationObjective):
         size += float(np.abs(f.criterion(f.prior_information)).sum())
     return 1e-13 * size

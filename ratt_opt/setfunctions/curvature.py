@@ -14,6 +14,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer, check_number
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.contexts import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
 from ratt_opt.setfunctions.marginal_bounds import Budget, bracket_marginals
@@ -127,10 +128,12 @@ def curvature(
     domain = domain_of(f, owners, plan)
     if domain.name == "feasible":
         found = _marginals(domain, budget, against_own=True)
+        if not isinstance(domain.restricted, LogDetObjective):
+            found = replace(found, how=f"{found.how} (submodularity relied on, not checked)")
     else:
         found = _Found(_top_of_lattice(domain.restricted), _submodularity(domain), Stop.EXHAUSTED, 0)
         check_monotone(domain, found.marginals)
-    single = domain.restricted.singletons() - domain.restricted([])
+    single = finite_values(domain.restricted.singletons()) - finite_values(np.array([domain.restricted([])]))
     marginals = replace(found.marginals, largest_lower=single, largest_upper=single)
     return _curvature_from(replace(found, marginals=marginals), domain)
 
@@ -196,10 +199,10 @@ def _top_of_lattice(f: SetFunction) -> Marginals:
         top = f.values[-1] - f.values[(2**f.n - 1) ^ (1 << everything)]
     else:
         membership = ~np.eye(f.n, dtype=np.bool_)
-        top = f(everything) - f.evaluate(membership)
+        top = finite_values(np.array([f(everything)])) - finite_values(f.evaluate(membership))
     contexts = tuple(tuple(int(e) for e in everything if e != x) for x in everything)
     nothing: tuple[tuple[int, ...], ...] = ((),) * f.n
-    single = f.singletons()
+    single = finite_values(f.singletons())
     return Marginals(top, top, single, single, contexts, nothing)
 
 

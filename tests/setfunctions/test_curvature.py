@@ -325,3 +325,18 @@ def test_a_max_eigenvalue_marginal_that_is_truly_zero_has_a_witness(monkeypatch)
     found = ro.total_curvature(ro.MaxEigenvalueObjective(prior, information), [0, 1, 2])
     assert found.lower == found.upper == 1
     assert ratio_shown(ro.MaxEigenvalueObjective(prior, information), found) == 1
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.parametrize("n", [4, 30])
+@pytest.mark.parametrize("measure", [ro.curvature, ro.total_curvature])
+def test_values_that_are_no_numbers_are_refused(bad, n, measure):
+    f = ro.ConcaveOfModular(np.ones(n), lambda totals: np.where(totals == n, bad, totals))
+    with pytest.raises(InputError, match="must have finite values"):
+        measure(f)
+
+
+def test_a_curvature_over_feasible_sets_says_what_it_relies_on():
+    f, owners = section_six("trace", 3)
+    assert "submodularity relied on, not checked" in ro.curvature(f, owners).how
+    assert "relied on" not in ro.curvature(*section_six("logdet", 3)).how
