@@ -17,6 +17,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.scenario.threat_fields import OBJECTIVES
 from ratt_opt.setfunctions.base import LARGEST_TABLE
+from ratt_opt.setfunctions.contexts import LARGEST_ENUMERATION
 from ratt_opt.setfunctions.curvature import curvature, total_curvature
 from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_search, random_plan
@@ -295,7 +296,8 @@ def _curvatures(problem: Problem, time_limit: float | None) -> tuple[Curvature |
     """Curvature (log-det, which is submodular) and total curvature over feasible sets, where they can be bracketed."""
     f, owners = problem.objective, problem.robot
     submodular = isinstance(f, LogDetObjective)
-    if not isinstance(f, InformationObjective) and f.n > LARGEST_TABLE:
+    feasible = np.prod([len(choice) + 1.0 for choice in problem.choices])
+    if not isinstance(f, InformationObjective) and feasible > LARGEST_ENUMERATION:
         return None, None
     if submodular:
         return curvature(f, owners, gap=CURVATURE_GAP, time_limit=time_limit), None

@@ -58,3 +58,11 @@ def test_bad_arguments_are_refused(arguments, text):
         ro.bound(ro.random_scenario(2, 1, alpha_s=0, alpha_c=0, seed=0), **arguments)
     with pytest.raises(InputError, match="scenario_or_problem"):
         ro.bound("scenario.json")
+
+
+def test_a_function_with_too_many_feasible_sets_goes_without_curvature():
+    problem = ro.Problem(ro.Modular(np.arange(1.0, 26.0)), np.arange(25), None, 2, 0)
+    report = ro.bound(problem, time_limit=5)
+    assert report.curvature is None
+    assert report.total_curvature is None
+    assert not report.guarantees
