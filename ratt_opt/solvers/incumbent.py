@@ -32,7 +32,7 @@ SEARCHED_BY_SIZE = 12
 ever wrong."""
 FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time, spent at once on a first lower bound for a large team."""
-SEARCH_SHARE = 0.4
+SEARCH_SHARE = 0.25
 """Share of the time left that is searched before an unproved plan is attacked exactly."""
 PROVED = 2e-10
 """Relative difference between a plan's known and its proved value that counts as none."""
