@@ -109,11 +109,12 @@ def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budg
         return threshold_search(problem, values, bracket, budget)
     if team is not None and problem.communication.is_complete:
         unprotected_bound(problem, team, values, bracket, budget)
-    if team is not None and groups is not None:
-        from ratt_opt.attackers.split_search import SplitSearch  # compiles
+    stop = forced_group_bound(problem, values, team, bracket, budget)
+    if team is None or groups is None or stop is Stop.CLOSED:
+        return stop
+    from ratt_opt.attackers.split_search import SplitSearch  # compiles
 
-        return SplitSearch(problem, team, groups, values, bracket, budget).run()
-    return forced_group_bound(problem, values, team, bracket, budget)
+    return SplitSearch(problem, team, groups, values, bracket, budget).run()
 
 
 def _few_groups(problem: Problem, team: CompactTeam | None) -> SeparableGroups | None:
