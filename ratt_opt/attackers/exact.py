@@ -44,7 +44,8 @@ def worst_case_attack(
       objective, which the three criteria are.
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
       partitions into groups and who is blinded in each (``split_search.py``; a node is a group tried or a
-      partial set). Relies on a non-decreasing objective, which the three criteria are.
+      partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
+      protected links too (``unprotected_links.py``). Relies on a non-decreasing objective, as above.
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 
