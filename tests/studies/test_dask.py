@@ -160,10 +160,25 @@ def test_a_lost_scheduler_is_one_line_and_the_sweep_resumes(tmp_path: Path) -> N
     assert len(table.read_text().splitlines()) == 401
 
 
+def _without_the_package(folder: Path) -> str:
+    """A search path on which an interpreter does not find the package, installed or not."""
+    path = folder / "without"
+    path.mkdir()
+    (path / "sitecustomize.py").write_text(
+        "import sys\n"
+        "class Hidden:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name.partition('.')[0] in {'analysis', 'ratt_opt', 'tests'}:\n"
+        "            raise ModuleNotFoundError(f'No module named {name!r}', name=name)\n"
+        "sys.meta_path.insert(0, Hidden())\n"
+    )
+    return str(path)
+
+
 def test_a_worker_without_the_package_is_one_line(tmp_path: Path) -> None:
     with ExitStack() as stack:
         address = stack.enter_context(_scheduler(tmp_path))
-        stack.enter_context(_workers(1, address, tmp_path, path=""))
+        stack.enter_context(_workers(1, address, tmp_path, path=_without_the_package(tmp_path)))
         with pytest.raises(InputError, match=r"worker tcp\S+ must import the same package .*; got ModuleNotFoundError"):
             stack.enter_context(open_executor(address, None))
 
@@ -174,7 +189,7 @@ def test_a_worker_without_the_package_that_joins_later_changes_nothing(tmp_path:
         address = stack.enter_context(_scheduler(tmp_path))
         stack.enter_context(_workers(1, address, tmp_path, seconds=0.05))
         executor = stack.enter_context(open_executor(address, None))
-        stack.enter_context(_workers(1, address, tmp_path, path="", before=1))
+        stack.enter_context(_workers(1, address, tmp_path, path=_without_the_package(tmp_path), before=1))
         table = run(STUDY, tmp_path / "dask", executor, trials=5, progress=Progress()).read_bytes()
     with open_executor(None, 1) as executor:
         assert run(STUDY, tmp_path / "local", executor, trials=5, progress=Progress()).read_bytes() == table
