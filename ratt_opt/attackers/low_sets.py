@@ -11,6 +11,7 @@ from ratt_opt.attackers.compiled import FINISHED, FOUND, SearchState, criterion,
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attackers.bracket import Budget
     from ratt_opt.attackers.compact import CompactTeam
 
 __all__ = ["AffineBound", "LowSets"]
@@ -51,6 +52,17 @@ class LowSets:
         self._information = np.ascontiguousarray(team.information[robots])
         self.finished = False
 
+    @classmethod
+    def surest_first(
+        cls, team: CompactTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound
+    ) -> LowSets:
+        """The same search, those ``robots`` first whose side, inside or outside, the minorant is surest of."""
+        if not 0 < size < len(robots):
+            return cls(team, robots, chosen, size)
+        middle = np.partition(affine.scores, size - 1)[size - 1]
+        order = np.argsort(-np.abs(affine.scores - middle), kind="stable")
+        return cls(team, robots[order], chosen, size, AffineBound(affine.constant, affine.scores[order]))
+
     @property
     def work_of_node(self) -> int:
         """Criteria of single targets that bounding a partial choice looks at, at most."""
@@ -61,6 +73,13 @@ class LowSets:
     def nodes(self) -> int:
         """Partial choices looked at."""
         return int(self._state.counters[1])
+
+    def next_within(self, threshold: float, nodes: int, budget: Budget) -> frozenset[int] | None:
+        """Spend up to ``nodes`` more of the budget on :meth:`next_below`; raises ``OutOfBudget`` where none is left."""
+        before = self.nodes
+        found = self.next_below(threshold, before + budget.nodes_left(nodes))
+        budget.nodes += self.nodes - before
+        return found
 
     def next_below(self, threshold: float, limit: int) -> frozenset[int] | None:
         """The next set worth less than ``threshold``; ``None`` once ``finished`` or at ``limit`` nodes in all.

@@ -177,15 +177,10 @@ class SizeSearch:
         return fixed, robots[free], minorant.restricted(free, surely_in)
 
     def _enumeration(self, node: SizeNode, robots: IntArray, size: int, minorant: Minorant | None) -> LowSets:
-        """The node's sets, those robots first whose side the minorant is surest of."""
         if minorant is None:
             return LowSets(self.team, robots, node.inside, size)
-        if not 0 < size < len(robots):
-            return LowSets(self.team, robots, node.inside, size)
-        middle = np.partition(minorant.scores, size - 1)[size - 1]
-        order = np.argsort(-np.abs(minorant.scores - middle), kind="stable")
-        affine = AffineBound(minorant.constant, minorant.scores[order])
-        return LowSets(self.team, robots[order], node.inside, size, affine)
+        affine = AffineBound(minorant.constant, minorant.scores)
+        return LowSets.surest_first(self.team, robots, node.inside, size, affine)
 
     def _enumerate_all(self, threshold: float, budget: Budget) -> float:
         """Decide the root without a minorant, weakest robots first, where that takes no longer than is allowed."""
@@ -203,10 +198,7 @@ class SizeSearch:
         """Offer the sets below the threshold, up to a limit of work; returns the new threshold."""
         limit, pause = max(work // low.work_of_node, 1), max(UNINTERRUPTED // low.work_of_node, 1)
         while not low.finished and low.nodes < limit:
-            before = low.nodes
-            allowed = budget.nodes_left(min(limit - before, pause))
-            found = low.next_below(threshold, before + allowed)
-            budget.nodes += low.nodes - before
+            found = low.next_within(threshold, min(limit - low.nodes, pause), budget)
             if found is not None:
                 threshold = self.offer(found)
         return threshold

@@ -21,9 +21,6 @@ __all__ = ["WeakSubsets"]
 PLAIN_NODES = 30_000
 """Compiled nodes before a question is handed to the branch and bound, which bounds it afresh."""
 
-UNINTERRUPTED = 30_000
-"""Compiled nodes between two looks at the clock (a tenth of a second)."""
-
 
 @dataclass(slots=True)
 class WeakSubsets:
@@ -65,10 +62,7 @@ class WeakSubsets:
     ) -> frozenset[int] | None:
         low = self._enumeration(fixed, free, size)
         while not low.finished and low.nodes < PLAIN_NODES:
-            before = low.nodes
-            allowed = budget.nodes_left(min(PLAIN_NODES - before, UNINTERRUPTED))
-            found = low.next_below(threshold, before + allowed)
-            budget.nodes += low.nodes - before
+            found = low.next_within(threshold, PLAIN_NODES - low.nodes, budget)
             if found is not None:
                 return found
         return None if low.finished else self._branch(fixed, free, size, threshold, budget)
@@ -79,11 +73,8 @@ class WeakSubsets:
         minorant = self.minorants.get(size)
         if minorant is None:
             return LowSets(self.team, free, fixed, left)
-        scores = minorant.scores[free]
-        middle = np.partition(scores, left - 1)[left - 1]
-        order = np.argsort(-np.abs(scores - middle), kind="stable")
         constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
-        return LowSets(self.team, free[order], fixed, left, AffineBound(constant, scores[order]))
+        return LowSets.surest_first(self.team, free, fixed, left, AffineBound(constant, minorant.scores[free]))
 
     def _branch(
         self, fixed: frozenset[int], free: np.ndarray, size: int, threshold: float, budget: Budget

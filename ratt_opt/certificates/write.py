@@ -96,7 +96,7 @@ def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certifi
     The file is verified under a temporary name first; only then is it renamed to ``path``.
 
     The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
-    (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the node limit, the
+    (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the limits of ``lower.py``, the
     lower end is stated as enumerated in floating point and ``verified.lower_proved`` is False.
 
     Raises
