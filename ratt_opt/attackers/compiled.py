@@ -11,7 +11,17 @@ from typing import Any
 import numba
 import numpy as np
 
-__all__ = ["FINISHED", "FOUND", "PAUSED", "SearchState", "criterion", "cut_polytopes", "search"]
+__all__ = [
+    "FINISHED",
+    "FOUND",
+    "PAUSED",
+    "SearchState",
+    "criterion",
+    "cut_polytopes",
+    "point_values",
+    "row_weights",
+    "search",
+]
 
 FINISHED, PAUSED, FOUND = 0, 1, 2
 """Why :func:`search` returned: all sets decided, node limit, or a set below the threshold."""
@@ -136,72 +146,131 @@ def search(  # noqa: PLR0917  (compiled code takes arrays, not records)
 
 
 @numba.njit(cache=True)
-def _cut(normal: Any, offset: float, row: Any, points: Any, facets: Any, n: int) -> int:  # noqa: PLR0917
-    """Replace ``points[0, :n]`` by the vertices on or above the plane and those on it; returns their number."""
-    capacity = points.shape[1]
-    slack = points[0, :n] @ normal - offset
-    if slack.min() >= 0:
+def _cut(  # noqa: PLR0917
+    normal: Any, offset: float, row: int, points: Any, facets: Any, slack: Any, lost: Any, lost_facets: Any, n: int
+) -> int:
+    """Replace ``points[:n]`` by the vertices on or above the plane and those on it; returns their number.
+
+    Loops rather than array expressions: the arrays are tiny, and most of the time was spent on making them.
+    """
+    least = np.inf
+    for i in range(n):
+        slack[i] = points[i, 0] * normal[0] + points[i, 1] * normal[1] + points[i, 2] * normal[2] - offset
+        least = min(least, slack[i])
+    if least >= 0:
         return n
-    m = 0
+    kept, gone = 0, 0
     for i in range(n):
         if slack[i] >= 0:
-            points[1, m] = points[0, i]
-            facets[1, m] = facets[0, i]
-            m += 1
-    for i in range(n):
-        if slack[i] >= 0:
-            continue
-        for q in range(n):
-            shared = facets[0, i] & facets[0, q]
-            if slack[q] < 0 or shared & (shared - np.uint64(1)) == 0:
+            slack[kept], facets[kept] = slack[i], facets[i]
+            for t in range(3):
+                points[kept, t] = points[i, t]
+            kept += 1
+        else:
+            lost[gone, 3], lost_facets[gone] = slack[i], facets[i]
+            for t in range(3):
+                lost[gone, t] = points[i, t]
+            gone += 1
+    m, one = kept, np.uint64(1)
+    for i in range(gone):
+        for q in range(kept):
+            shared = lost_facets[i] & facets[q]
+            if shared & (shared - one) == 0:
                 continue
-            if m >= capacity:
+            if m >= len(points):
                 return -1
-            ratio = slack[q] / (slack[q] - slack[i])
-            points[1, m] = points[0, q] + ratio * (points[0, i] - points[0, q])
-            facets[1, m] = shared | (np.uint64(1) << row)
+            ratio = slack[q] / (slack[q] - lost[i, 3])
+            for t in range(3):
+                points[m, t] = points[q, t] + ratio * (lost[i, t] - points[q, t])
+            facets[m] = shared | (one << np.uint64(row))
             m += 1
-    points[0, :m] = points[1, :m]
-    facets[0, :m] = facets[1, :m]
     return m
 
 
 @numba.njit(cache=True)
-def cut_polytopes(normals: Any, offsets: Any, capacity: int) -> Any:
+def cut_polytopes(normals: Any, offsets: Any, factors: Any, capacity: int) -> Any:
     """Vertices of many polytopes in three dimensions.
 
-    Polytope ``k`` is ``{y : normals[k] y >= offsets[k]}``; its first six rows are the axes and their
-    negatives (a box). Each further row cuts the vertices found so far: a new vertex lies on every
+    Polytope ``(j, p)`` is ``{factors[j] y : normals[j] y >= offsets[j, p]}``; its first six rows are the axes and
+    their negatives (a box). Each further row cuts the vertices found so far: a new vertex lies on every
     segment between a kept and a lost vertex that share two facets. Segments that are not edges only
     add points of the polytope, which does no harm to an outer approximation.
 
     Parameters
     ----------
-    normals : (K, D, 3), D <= 64
-    offsets : (K, D)
+    normals : (M, D, 3), D <= 64
+    offsets : (M, P, D)
+    factors : (M, 3, 3)
 
     Returns
     -------
-    (K, capacity, 3) vertices and (K,) their numbers, -1 where the capacity did not suffice
+    (V, 3) vertices, polytope by polytope; (V,) bits of the rows they lie on; (M, P) their numbers, 0 where the
+    capacity did not suffice
     """
-    count, n_rows = normals.shape[0], normals.shape[1]
-    vertices = np.zeros((count, capacity, 3))
-    numbers = np.zeros(count, dtype=np.int64)
-    points = np.zeros((2, capacity, 3))
-    facets = np.zeros((2, capacity), dtype=np.uint64)
-    for k in range(count):
-        for i in range(8):
-            facets[0, i] = 0
-            for t in range(3):
-                high = (i >> t) & 1
-                points[0, i, t] = -offsets[k, 3 + t] if high else offsets[k, t]
-                facets[0, i] |= np.uint64(1) << np.uint64(t + 3 * high)
-        n = 8
-        for row in range(6, n_rows):
-            n = _cut(normals[k, row], offsets[k, row], np.uint64(row), points, facets, n)
-            if n <= 0:
-                break
-        numbers[k] = n if n > 0 else -1
-        for i in range(max(n, 0)):
-            vertices[k, i] = points[0, i]
-    return vertices, numbers
+    n_targets, n_patterns, n_rows = offsets.shape
+    vertices = np.empty((n_targets * n_patterns * capacity, 3))
+    rows = np.empty(n_targets * n_patterns * capacity, dtype=np.uint64)
+    numbers = np.zeros((n_targets, n_patterns), dtype=np.int64)
+    points, lost, slack = np.zeros((capacity, 3)), np.zeros((capacity, 4)), np.zeros(capacity)
+    facets, lost_facets = np.zeros(capacity, dtype=np.uint64), np.zeros(capacity, dtype=np.uint64)
+    total = 0
+    for j in range(n_targets):
+        for p in range(n_patterns):
+            for i in range(8):
+                facets[i] = 0
+                for t in range(3):
+                    high = (i >> t) & 1
+                    points[i, t] = -offsets[j, p, 3 + t] if high else offsets[j, p, t]
+                    facets[i] |= np.uint64(1) << np.uint64(t + 3 * high)
+            n = 8
+            for row in range(6, n_rows):
+                n = _cut(normals[j, row], offsets[j, p, row], row, points, facets, slack, lost, lost_facets, n)
+                if n <= 0:
+                    break
+            numbers[j, p] = max(n, 0)
+            for i in range(max(n, 0)):
+                rows[total + i] = facets[i]
+                for s in range(3):
+                    vertices[total + i, s] = 0.0
+                    for t in range(3):
+                        vertices[total + i, s] += factors[j, s, t] * points[i, t]
+            total += max(n, 0)
+    return vertices[:total].copy(), rows[:total].copy(), numbers
+
+
+@numba.njit(cache=True)
+def point_values(kind: int, weights: Any, prior: Any, starts: Any, points: Any, numbers: Any) -> Any:  # noqa: PLR0917
+    """Value of each target's information ``starts[j, p]`` plus a point (V, 3) of polytope ``(j, p)`` -> (V,).
+
+    Trace or log-det; minus infinity where the information is not positive definite.
+    """
+    values = np.empty(len(points))
+    v = 0
+    for j in range(starts.shape[0]):
+        zero = prior[j, 0] * prior[j, 2] - prior[j, 1] ** 2
+        least = (prior[j, 0] + prior[j, 2]) / zero
+        for p in range(starts.shape[1]):
+            for _ in range(numbers[j, p]):
+                a, b, c = starts[j, p, 0] + points[v, 0], starts[j, p, 1] + points[v, 1], starts[j, p, 2] + points[v, 2]
+                determinant = a * c - b * b
+                if not (determinant > 1e-12 * (a + c) ** 2 and a + c > 0):
+                    values[v] = -np.inf
+                elif kind == 0:
+                    values[v] = weights[j] * (least - (a + c) / determinant)
+                else:
+                    values[v] = weights[j] * np.log(determinant / zero)
+                v += 1
+    return values
+
+
+@numba.njit(cache=True)
+def row_weights(first: Any, closeness: Any, rows: Any, n_rows: int) -> Any:
+    """Sum of the points' ``closeness`` (V,) over each row that they lie on -> (M, n_rows)."""
+    weights = np.zeros((len(first) - 1, n_rows))
+    for j in range(len(first) - 1):
+        for v in range(first[j], first[j + 1]):
+            if closeness[v] > 0:
+                for row in range(n_rows):
+                    if rows[v] >> np.uint64(row) & np.uint64(1):
+                        weights[j, row] += closeness[v]
+    return weights

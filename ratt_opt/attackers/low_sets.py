@@ -77,7 +77,9 @@ class LowSets:
     def next_within(self, threshold: float, nodes: int, budget: Budget) -> frozenset[int] | None:
         """Spend up to ``nodes`` more of the budget on :meth:`next_below`; raises ``OutOfBudget`` where none is left."""
         before = self.nodes
-        found = self.next_below(threshold, before + budget.nodes_left(nodes))
+        found = self.next_below(threshold, before)  # the last steps of a search may need no node
+        if found is None and not self.finished:
+            found = self.next_below(threshold, before + budget.nodes_left(nodes))
         budget.nodes += self.nodes - before
         return found
 

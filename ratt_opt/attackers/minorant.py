@@ -5,9 +5,8 @@ Target ``j``'s criterion is concave in its information matrix, and ``Lambda_j(R)
 it for every ``R``. The concavity of ``phi_j`` comes mostly from the few robots next to the target: these "heavy"
 ones are enumerated and get scores of their own.
 
-The best minorants at the weakest fractional set come from one linear program: its multipliers are the
-minorant's slopes. Its columns (the vertices) are generated as they are needed. The minorant's constant is
-recomputed here from all vertices, so nothing depends on the solver, nor on solving to the end.
+Slopes and scores are raised by a smoothed ascent (``smoothed_dual.py``). The minorant's constant is recomputed
+here from all vertices, so nothing depends on the ascent, nor on its end.
 """
 
 from __future__ import annotations
@@ -18,44 +17,43 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.compact import TRACE
-from ratt_opt.attackers.linear_program import EqualityProgram
-from ratt_opt.attackers.outer_points import OuterPoints, SetFamily, outer_points, target_values
+from ratt_opt.attackers.compiled import row_weights
+from ratt_opt.attackers.outer_points import RANK_ONE, OuterPoints, SetFamily, outer_points, target_values
+from ratt_opt.attackers.smoothed_dual import DualProgram, Multipliers
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
 __all__ = ["Minorant", "affine_minorant"]
 
-FIRST_COLUMNS, NEW_COLUMNS = 5, 2
-"""Vertices per polytope in the first linear program and added in each further round."""
+KEPT, NEW = 24, 4
+"""Half-spaces per target that a node hands to its children: those that bind there, and new ones."""
 
-CUTS = 12
-"""Half-spaces per target that a node hands to its children."""
-
-NEW_CUTS = 4
-ROUNDS = 12
-NEARLY_SOLVED = 0.02
-"""Rounds end when the program's value exceeds the bound by this share of what the goal exceeds it."""
-
-PENALTY = 4.0
-"""Cost of violating a row, in the largest value of a target: keeps the restricted programs feasible."""
+BINDING = 1e-2
+"""Vertices this close to the least of their target, relative to it, count as binding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Minorant:
     """``value(R) >= constant + sum of scores over R`` for every set of the family.
 
-    ``scores`` : (F,); ``slopes`` : (M, 3) in the information; ``fraction`` : (F,) where the linear program puts
-    the weakest set; ``tension`` : (F,) each robot's share of what concavity hides there; ``normals`` : (M, A, 3)
-    half-spaces that would cut off the vertices that bind here (guides, not claims).
+    ``shares`` : (F, M) parts of the ``scores`` that each target gives; ``slopes`` : (M, 3) in the information;
+    ``fraction`` : (F,) where a relaxation puts the weakest set; ``tension`` : (F,) each robot's share of what
+    concavity hides there; ``normals`` : (M, A, 3) half-spaces that would cut off the vertices that bind here
+    (guides, not claims).
     """
 
     constant: float
-    scores: FloatArray
+    shares: FloatArray
     slopes: FloatArray
     fraction: FloatArray
     tension: FloatArray
     normals: FloatArray
+
+    @property
+    def scores(self) -> FloatArray:
+        """(F,) what each robot adds."""
+        return np.asarray(self.shares.sum(axis=1))
 
     def bound(self, size: int) -> float:
         """No set of ``size`` robots is worth less."""
@@ -67,7 +65,7 @@ class Minorant:
         return replace(
             self,
             constant=constant,
-            scores=self.scores[free],
+            shares=self.shares[free],
             fraction=self.fraction[free],
             tension=self.tension[free],
         )
@@ -82,16 +80,43 @@ def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minora
     goal : no better bound is needed
     parent : a minorant of a larger family, whose slopes and half-spaces are a good start
     """
-    idle = np.zeros((len(family.weights), CUTS, 3))
-    points = outer_points(family, n_heavy, idle if parent is None else parent.normals)
+    points = outer_points(family, n_heavy, None if parent is None else parent.normals)
+    program = _program(family, points)
     fraction = np.full(len(family.information), family.size / len(family.information))
-    mean = family.start + np.einsum("f,fmt->mt", fraction, family.information)
-    slopes = _gradient(family, np.arange(len(mean)), mean) if parent is None else parent.slopes
-    best = _recompute(family, points, slopes, np.zeros(points.heavy.shape), fraction)
-    best = replace(best, normals=idle if parent is None else parent.normals)
-    if best.bound(family.size) >= goal:
-        return best
-    return _generate(family, points, best, goal)
+    start = _start(family, points, fraction, parent)
+    # No bound is better than a relaxation's value at any fractions.
+    goal = min(goal, float(target_values(family, _mean(family, fraction)).sum()))
+    unsound = float(target_values(family, family.start)[~points.sound].sum())
+    better, fraction = program.ascend(start, goal - unsound, cold=parent is None)
+    return _recompute(family, points, program, better, fraction)
+
+
+def _mean(family: SetFamily, fraction: FloatArray) -> FloatArray:
+    return np.asarray(family.start + np.einsum("f,fmt->mt", fraction, family.information))
+
+
+def _start(family: SetFamily, points: OuterPoints, fraction: FloatArray, parent: Minorant | None) -> Multipliers:
+    """The parent's multipliers, or the gradient where every robot has the same share."""
+    n_targets = len(family.weights)
+    slopes = _gradient(family, np.arange(n_targets), _mean(family, fraction)) if parent is None else parent.slopes
+    slopes = slopes * points.sound[:, None]
+    shares = np.einsum("fmt,mt->fm", family.information, slopes) if parent is None else parent.shares
+    return Multipliers(slopes, np.take_along_axis(shares.T, points.heavy, axis=1) * points.sound[:, None])
+
+
+def _program(family: SetFamily, points: OuterPoints) -> DualProgram:
+    information = family.information * points.sound[:, None]
+    np.put_along_axis(information.transpose(1, 0, 2), points.heavy[..., None], 0.0, axis=1)
+    return DualProgram(
+        first=points.first,
+        pattern=points.pattern,
+        values=points.values,
+        light=points.light,
+        patterns=points.patterns.astype(np.float64),
+        heavy=points.heavy,
+        information=information,
+        size=family.size,
+    )
 
 
 def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:
@@ -104,111 +129,57 @@ def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> Floa
     return np.asarray(family.weights[target, None] * np.stack([p, 2 * q, r], axis=-1))
 
 
-def _generate(family: SetFamily, points: OuterPoints, best: Minorant, goal: float) -> Minorant:
-    """Solve the linear program by rounds of column generation and keep the best minorant met.
-
-    minimise sum of values * share  over shares of the vertices and fractions x of the robots, where each
-    target's shares sum to 1, reproduce ``sum_e x_e I_ej`` and, for heavy robots, their ``x_e``.
-    """
-    n_targets = len(family.weights)
-    rows_each = 4 + points.heavy.shape[1]
-    scale = np.maximum(np.abs(family.information).max(axis=(0, 2)), 1e-300)
-    program = _program(family, points, scale)
-    shares = np.concatenate(
-        [points.sums / scale[points.target, None], np.ones((len(points.target), 1)), points.patterns[points.pattern]],
-        axis=1,
-    )
-    used = np.zeros(len(points.target), dtype=np.bool_)
-    rest = _rest(points, best.slopes, np.zeros(points.heavy.shape))
-    fresh = _lowest(points, rest, FIRST_COLUMNS)
-    for _ in range(ROUNDS):
-        used[fresh] = True
-        program.add(shares[fresh], points.target[fresh] * rows_each, points.values[fresh])
-        fraction, duals, value = program.solve()
-        slopes = duals[:-1].reshape(n_targets, rows_each) * points.sound[:, None]
-        own = slopes[:, 4:]
-        found = _recompute(family, points, slopes[:, :3] / scale[:, None], own, fraction)
-        found = replace(found, normals=best.normals)
-        if found.bound(family.size) >= best.bound(family.size):
-            best = found
-        bound = best.bound(family.size)
-        rest = _rest(points, found.slopes, own)
-        fresh = _lowest(points, np.where(used, np.inf, rest - slopes[points.target, 3]), NEW_COLUMNS, below=-1e-9)
-        if bound >= goal or not len(fresh) or value - bound <= NEARLY_SOLVED * (goal - bound):
-            break
-    return replace(best, normals=_normals(family, points, found, rest))
+def _normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, rest: FloatArray) -> FloatArray:
+    """(M, KEPT + NEW, 3) normals of the half-spaces that bind here, and of new ones."""
+    constants = _least(points, rest)
+    counts = np.diff(points.first)
+    closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(BINDING * np.abs(constants), counts)
+    weights = row_weights(points.first, closeness, points.rows, points.normals.shape[1])
+    weights[:, 6 : 6 + RANK_ONE] = 0.0  # those are there anyway
+    order = np.argsort(-weights, axis=1, kind="stable")[:, :KEPT, None]
+    kept = np.take_along_axis(points.normals, order, axis=1)
+    kept *= np.take_along_axis(weights[..., None], order, axis=1) > 0
+    return np.concatenate([kept, _new_normals(family, points, slopes, closeness)], axis=1)
 
 
-def _normals(family: SetFamily, points: OuterPoints, found: Minorant, rest: FloatArray) -> FloatArray:
-    """At the vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
-    binding = points.values - rest  # the minorant without its constant
-    constants = np.full(len(family.weights), np.inf)
-    np.minimum.at(constants, points.target, rest)
-    close = np.where(rest <= constants[points.target] + 1e-6, -binding, np.inf)
-    order = np.lexsort((close, points.target))
-    order = order[np.isfinite(close[order])]
-    target = points.target[order]
+def _new_normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
+    """At vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
+    target = points.target
+    close = np.flatnonzero(closeness > 0)
+    order = close[np.lexsort((-closeness[close], target[close]))]
+    target = target[order]
     starts = np.flatnonzero(np.diff(target, prepend=-1))
     rank = np.arange(len(order)) - np.repeat(starts, np.diff(np.append(starts, len(order))))
-    order, rank = order[rank < NEW_CUTS], rank[rank < NEW_CUTS]
-    target = points.target[order]
-    fresh = np.zeros((len(family.weights), NEW_CUTS, 3))
-    matrices = family.start[target] + points.sums[order]
-    fresh[target, rank] = _gradient(family, target, matrices) - found.slopes[target]
-    return np.concatenate([fresh, found.normals], axis=1)[:, :CUTS]
+    order, target, rank = order[rank < NEW], target[rank < NEW], rank[rank < NEW]
+    fresh = np.zeros((len(family.weights), NEW, 3))
+    matrices = family.start[target] + points.base[target, points.pattern[order]] + points.light[order]
+    fresh[target, rank] = _gradient(family, target, matrices) - slopes[target]
+    return fresh
 
 
-def _program(family: SetFamily, points: OuterPoints, scale: FloatArray) -> EqualityProgram:
-    n_free, n_targets, _ = family.information.shape
-    rows_each = 4 + points.heavy.shape[1]
-    block = np.zeros((n_targets, rows_each, n_free))
-    block[:, :3] = -(family.information / scale[:, None]).transpose(1, 2, 0)
-    j, q = np.indices(points.heavy.shape)
-    block[j, 4 + q, points.heavy] = -1.0
-    block[~points.sound] = 0.0
-    robots = np.vstack([block.reshape(-1, n_free), np.ones((1, n_free))])
-    right = np.zeros(n_targets * rows_each + 1)
-    right[3:-1:rows_each] = points.sound
-    right[-1] = family.size
-    highest = np.zeros(n_targets)
-    np.maximum.at(highest, points.target, points.values)
-    penalties = np.repeat(PENALTY * highest + 1e-6, rows_each).reshape(n_targets, rows_each)
-    penalties[:, 3] = np.inf
-    return EqualityProgram(robots, right, np.append(penalties.ravel(), np.inf))
-
-
-def _rest(points: OuterPoints, slopes: FloatArray, own: FloatArray) -> FloatArray:
-    """(V,) value of each vertex minus what slopes (M, 3) and the heavy robots' own scores (M, h) say."""
-    rest = points.values - (points.sums * slopes[points.target]).sum(axis=1)
-    return np.asarray(rest - (points.patterns[points.pattern] * own[points.target]).sum(axis=1))
-
-
-def _lowest(points: OuterPoints, rest: FloatArray, count: int, below: float = np.inf) -> IntArray:
-    """The ``count`` vertices of each polytope with the lowest ``rest``, as far as that is less than ``below``."""
-    polytope = points.target * len(points.patterns) + points.pattern
-    order = np.lexsort((rest, polytope))
-    starts = np.flatnonzero(np.diff(polytope[order], prepend=-1))
-    rank = np.arange(len(order)) - np.repeat(starts, np.diff(np.append(starts, len(order))))
-    return np.sort(order[(rank < count) & (rest[order] < below)])
+def _least(points: OuterPoints, rest: FloatArray) -> FloatArray:
+    """(M,) the least over each target's vertices; infinite where there is none."""
+    least = np.full(len(points.sound), np.inf)
+    if points.sound.any():
+        least[points.sound] = np.minimum.reduceat(rest, points.first[:-1][points.sound])
+    return least
 
 
 def _recompute(
-    family: SetFamily, points: OuterPoints, slopes: FloatArray, own: FloatArray, fraction: FloatArray
+    family: SetFamily, points: OuterPoints, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
 ) -> Minorant:
-    """The minorant with these slopes (M, 3) and heavy robots' own scores (M, h): its constant from the vertices."""
-    slopes = slopes * points.sound[:, None]
-    scores = np.einsum("fmt,mt->f", family.information, slopes)
-    np.add.at(scores, points.heavy.ravel(), own.ravel())
-    constants = target_values(family, family.start)  # without a sound polytope: what is chosen already
-    for_sound = np.full(len(constants), np.inf)
-    np.minimum.at(for_sound, points.target, _rest(points, slopes, own))
-    constants = np.where(points.sound, for_sound, constants)
-    mean = family.start + np.einsum("f,fmt->mt", fraction, family.information)
-    envelope = constants + np.einsum("f,fmt,mt->m", fraction, family.information, slopes)
-    envelope += (own * fraction[points.heavy]).sum(axis=1)
-    hidden = np.maximum(target_values(family, mean) - envelope, 0.0)
-    no_cuts = np.zeros((len(mean), 0, 3))
-    return Minorant(float(constants.sum()), scores, slopes, fraction, _tension(family, mean, hidden), no_cuts)
+    """The minorant with these multipliers: its constant from the vertices; targets without any get none."""
+    shares = np.einsum("fmt,mt->fm", program.information, multipliers.slopes)
+    np.put_along_axis(shares.T, points.heavy, multipliers.own, axis=1)
+    shares *= points.sound
+    without = target_values(family, family.start)  # without a sound polytope: what is chosen already
+    rest = program.rest(multipliers)
+    constants = np.where(points.sound, _least(points, rest), without)
+    mean = _mean(family, fraction)
+    hidden = np.maximum(target_values(family, mean) - constants - fraction @ shares, 0.0)
+    normals = _normals(family, points, multipliers.slopes, rest)
+    tension = _tension(family, mean, hidden)
+    return Minorant(float(constants.sum()), shares, multipliers.slopes, fraction, tension, normals)
 
 
 def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:

@@ -13,17 +13,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.compact import LOG_DET, TRACE
-from ratt_opt.attackers.compiled import cut_polytopes
+from ratt_opt.attackers.compiled import cut_polytopes, point_values
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
 __all__ = ["OuterPoints", "SetFamily", "outer_points", "target_values"]
 
-SPHERE_DIRECTIONS = 10
-RANK_ONE_DIRECTIONS = 12
-CAPACITY = 128
-"""Vertices kept per polytope: 28 half-spaces have at most 52, the rest is for repeated points."""
+SPHERE, RANK_ONE = 10, 8
+CAPACITY = 160
+"""Vertices kept per polytope: with up to 64 half-spaces, rarely more than 100."""
 
 SAFETY = 1e-9
 """Relative amount by which every half-space is widened against rounding; distinct per row, so no two meet."""
@@ -63,25 +62,37 @@ def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class OuterPoints:
-    """Vertices of all outer polytopes; ``sound[j]`` says that target ``j``'s are all positive definite.
+    """Vertices of all outer polytopes, target by target; ``sound[j]`` says that ``j``'s are all positive definite.
 
-    ``target``, ``pattern`` : (V,); ``sums`` : (V, 3) information of the set; ``values`` : (V,);
-    ``heavy`` : (M, h) robots enumerated for each target; ``patterns`` : (P, h) which of them are in the set
+    ``first`` : (M + 1,) target ``j`` owns vertices ``first[j]:first[j + 1]``, none unless sound;
+    ``pattern``, ``values`` : (V,); ``light`` : (V, 3) information of the set's light robots;
+    ``rows`` : (V,) bits of the half-spaces a vertex bounds; ``normals`` : (M, D, 3) of these, as slopes in (a, b, c);
+    ``heavy`` : (M, h) robots enumerated for each target; ``patterns`` : (P, h) which of them are in the set;
+    ``base`` : (M, P, 3) their information
     """
 
-    target: IntArray
+    first: IntArray
     pattern: IntArray
-    sums: FloatArray
     values: FloatArray
+    light: FloatArray
+    rows: IntArray
+    normals: FloatArray
     sound: BoolArray
     heavy: IntArray
     patterns: IntArray
+    base: FloatArray
+
+    @property
+    def target(self) -> IntArray:
+        """(V,)"""
+        return np.repeat(np.arange(len(self.heavy)), np.diff(self.first))
 
 
-def outer_points(family: SetFamily, n_heavy: int, normals: FloatArray) -> OuterPoints:
+def outer_points(family: SetFamily, n_heavy: int, further: FloatArray | None = None) -> OuterPoints:
     """Vertices of the outer polytopes of a family, with ``n_heavy`` robots per target enumerated.
 
-    ``normals`` : (M, A, 3) further half-space normals, as slopes in (a, b, c); zero rows are idle; A <= 36
+    ``further`` : (M, A, 3) half-space normals, as slopes in (a, b, c), beside a box and ``RANK_ONE`` directions;
+    zero rows are idle; A <= 50. By default some are spread evenly.
     """
     gains = target_values(family, family.start[None] + family.information)
     n_heavy = min(n_heavy, family.size, len(gains) - family.size)
@@ -89,42 +100,40 @@ def outer_points(family: SetFamily, n_heavy: int, normals: FloatArray) -> OuterP
     light = np.ones(gains.shape, dtype=np.bool_)
     np.put_along_axis(light, heavy.T, False, axis=0)
     patterns = np.arange(2**n_heavy)[:, None] >> np.arange(n_heavy) & 1
-    return _cut_out(family, heavy, light, patterns, normals)
+    return _cut_out(family, heavy, light, patterns, further)
 
 
 def _cut_out(
-    family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray, further: FloatArray
+    family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray, further: FloatArray | None
 ) -> OuterPoints:
-    n_free, n_targets, _ = family.information.shape
+    n_free = len(family.information)
+    by_target = family.information.transpose(1, 0, 2)
     factor = _whitening(family, light)
-    white = np.linalg.solve(factor, family.information.transpose(1, 2, 0))  # (M, 3, F)
-    normals = _directions(factor, further)
-    heights = np.where(light.T[:, None, :], normals @ white, np.inf)
+    white = _directions(factor, further)
+    normals = white @ np.linalg.inv(factor)
+    heights = normals @ by_target.transpose(0, 2, 1)  # (M, D, F)
+    heights[np.broadcast_to(~light.T[:, None, :], heights.shape)] = np.inf
     heights.sort(axis=-1)
     sums = np.concatenate([np.zeros((*heights.shape[:2], 1)), np.cumsum(heights, axis=-1)], axis=-1)
     counts = family.size - patterns.sum(axis=1)
-    feasible = (counts >= 0) & (counts <= n_free - heavy.shape[1])
-    kept, counts = patterns[feasible], counts[feasible]
-    picked = np.take_along_axis(white, heavy[:, None, :], axis=2)  # (M, 3, h)
-    base = picked @ kept.T  # (M, 3, P)
-    support = sums[:, :, counts] + normals @ base  # (M, D, P)
+    possible = np.flatnonzero((counts >= 0) & (counts <= n_free - heavy.shape[1]))
+    support = sums[:, :, counts[possible]].transpose(0, 2, 1)  # (M, P, D)
     widen = SAFETY * (1 + np.arange(normals.shape[1]) / normals.shape[1])
-    support -= widen[None, :, None] * (1 + np.abs(support))
-    n_patterns = len(kept)
-    vertices, numbers = cut_polytopes(
-        np.repeat(normals, n_patterns, axis=0),
-        np.ascontiguousarray(support.transpose(0, 2, 1)).reshape(n_targets * n_patterns, -1),
-        CAPACITY,
-    )
-    owner, slot = np.nonzero(np.arange(CAPACITY) < numbers[:, None])
-    target = owner // n_patterns
-    points = np.einsum("vst,vt->vs", factor[target], vertices[owner, slot])
-    values = _point_values(family, target, points)
-    sound = (numbers.reshape(n_targets, n_patterns) > 0).all(axis=1)
-    sound[target[np.isneginf(values)]] = False
-    used = sound[target]
-    which = np.flatnonzero(feasible)[owner % n_patterns]
-    return OuterPoints(target[used], which[used], points[used], values[used], sound, heavy, patterns)
+    support = np.ascontiguousarray(support - widen * (1 + np.abs(support)))
+    points, rows, numbers = cut_polytopes(white, support, factor, CAPACITY)
+    base = patterns @ np.take_along_axis(by_target, heavy[..., None], axis=1)  # (M, P, 3)
+    starts = family.start[:, None] + base[:, possible]
+    values = point_values(family.kind, family.weights, family.prior, starts, points, numbers)
+    last = np.cumsum(numbers.sum(axis=1))
+    first = np.concatenate([[0], last])
+    pattern = np.repeat(np.tile(possible, len(heavy)), numbers.ravel())
+    sound = (numbers > 0).all(axis=1)
+    sound[np.searchsorted(last, np.flatnonzero(np.isneginf(values)), side="right")] = False
+    if not sound.all():
+        used = np.repeat(sound, np.diff(first))
+        points, rows, pattern, values = points[used], rows[used], pattern[used], values[used]
+        first = np.concatenate([[0], np.cumsum(np.diff(first) * sound)])
+    return OuterPoints(first, pattern, values, points, rows, normals, sound, heavy, patterns, base)
 
 
 def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
@@ -136,23 +145,20 @@ def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
     return np.asarray(np.linalg.cholesky(spread + 1e-8 * size[:, None, None] * np.eye(3)))
 
 
-def _directions(factor: FloatArray, further: FloatArray) -> FloatArray:
-    """(M, D, 3) normals in whitened coordinates: a box, a sphere's points, rank-one directions, further ones."""
-    index = np.arange(SPHERE_DIRECTIONS) + 0.5
-    height, turn = 1 - 2 * index / SPHERE_DIRECTIONS, np.pi * (1 + 5**0.5) * index
-    flat = np.sqrt(1 - height**2)
-    sphere = np.stack([np.cos(turn) * flat, np.sin(turn) * flat, height], axis=-1)
-    angle = (np.arange(RANK_ONE_DIRECTIONS) + 0.5) * np.pi / RANK_ONE_DIRECTIONS
+def _directions(factor: FloatArray, further: FloatArray | None) -> FloatArray:
+    """(M, D, 3) normals in whitened coordinates: a box, rank-one directions, further ones."""
+    box = np.broadcast_to(np.concatenate([np.eye(3), -np.eye(3)]), (len(factor), 6, 3))
+    angle = (np.arange(RANK_ONE) + 0.5) * np.pi / RANK_ONE
     rank_one = np.stack([np.cos(angle) ** 2, np.sin(2 * angle), np.sin(angle) ** 2], axis=-1) @ factor
-    rank_one /= np.linalg.norm(rank_one, axis=-1, keepdims=True)
-    fixed = np.concatenate([np.eye(3), -np.eye(3), sphere])
-    given = further @ factor
-    given /= np.maximum(np.linalg.norm(given, axis=-1, keepdims=True), 1e-300)
-    return np.concatenate([np.broadcast_to(fixed, (len(factor), *fixed.shape)), rank_one, given], axis=1)
+    given = np.broadcast_to(_sphere(), (len(factor), SPHERE, 3)) if further is None else further @ factor
+    others = np.concatenate([rank_one, given], axis=1)
+    others /= np.maximum(np.linalg.norm(others, axis=-1, keepdims=True), 1e-300)
+    return np.concatenate([box, others], axis=1)
 
 
-def _point_values(family: SetFamily, target: IntArray, points: FloatArray) -> FloatArray:
-    one = SetFamily(
-        family.kind, family.weights[target], family.prior[target], family.start[target], family.information, family.size
-    )
-    return target_values(one, one.start + points)
+def _sphere() -> FloatArray:
+    """(SPHERE, 3) unit vectors."""
+    index = np.arange(SPHERE) + 0.5
+    height, turn = 1 - 2 * index / SPHERE, np.pi * (1 + 5**0.5) * index
+    flat = np.sqrt(1 - height**2)
+    return np.stack([np.cos(turn) * flat, np.sin(turn) * flat, height], axis=-1)

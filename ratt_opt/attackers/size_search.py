@@ -42,13 +42,16 @@ before it is split: more after successes, fewer after failures."""
 UNINTERRUPTED = 100_000_000
 """Criteria of single targets between two looks at the clock and at interrupts (about half a second)."""
 
-HEAVY_ROBOTS = ((50, 2), (80, 3), (10**9, 4))
+HEAVY_ROBOTS = ((50, 4), (10**9, 5))
 """(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class SizeNode:
-    """Sets of robots that contain ``inside`` and avoid ``outside``; none is worth less than ``bound``."""
+    """Sets of robots that contain ``inside`` and avoid ``outside``; none is worth less than ``bound``.
+
+    ``parent`` : a minorant over the undecided robots, strongest first
+    """
 
     bound: float
     serial: int
@@ -205,15 +208,17 @@ class SizeSearch:
 
     def _split(self, node: SizeNode, bound: float, robots: IntArray, minorant: Minorant | None) -> list[SizeNode]:
         """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant)."""
-        pick = 0
+        pick, with_it, without = 0, None, None
         if minorant is not None:
             x = minorant.fraction
             pick = int(np.argmax(minorant.tension * (0.05 + x * (1 - x))))
+            it = np.arange(len(robots)) == pick
+            with_it, without = minorant.restricted(~it, it), minorant.restricted(~it, np.zeros_like(it))
         robot = int(robots[pick])
         self._serial += 2
         return [
-            SizeNode(bound, self._serial - 1, node.inside | {robot}, node.outside, minorant),
-            SizeNode(bound, self._serial, node.inside, node.outside | {robot}, minorant),
+            SizeNode(bound, self._serial - 1, node.inside | {robot}, node.outside, with_it),
+            SizeNode(bound, self._serial, node.inside, node.outside | {robot}, without),
         ]
 
 

@@ -1,0 +1,286 @@
+"""Raise the bound of an affine minorant over its multipliers, by smoothing.
+
+The bound is concave and piecewise linear: per target the least of ``value - multipliers . vertex`` over an outer
+polytope's vertices, plus the sum of the smallest scores over the robots. Each least value is replaced by a soft
+minimum of falling temperature (Nesterov, Math. Program. 103, 2005) and the smooth function is maximised by L-BFGS
+(SciPy). It starts well from a related family's multipliers, where a simplex method would start afresh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numba
+import numpy as np
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+
+__all__ = ["DualProgram", "Multipliers"]
+
+COLD, WARM = (0.5, 0.3, 0.15, 0.1, 0.05, 0.03, 0.015), (0.05, 0.02)
+"""Temperatures, in the room left per target, from a first guess and from a related family's multipliers."""
+
+STEPS = 25
+"""L-BFGS steps at each temperature."""
+
+MEMORY = 20
+NEGLIGIBLE = 14.0
+"""Points this many temperatures above the least have no weight worth computing."""
+
+SCREENED = 200.0
+"""Points this many temperatures above the least are left out until the next temperature."""
+
+BISECTIONS = 60
+FLAT = 1e-6
+"""Directions in which points spread by less, relative to all (squared), count as if they did by so much."""
+
+
+@dataclass(frozen=True, slots=True)
+class Multipliers:
+    """``slopes`` : (M, 3) in the light robots' information; ``own`` : (M, h) scores of the heavy robots."""
+
+    slopes: FloatArray
+    own: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class DualProgram:
+    """The function to maximise.
+
+    ``first`` : (M + 1,) target ``j`` owns points ``first[j]:first[j + 1]``; ``pattern``, ``values`` : (V,);
+    ``light`` : (V, 3) information of the light robots there; ``patterns`` : (P, h); ``heavy`` : (M, h);
+    ``information`` : (F, M, 3), zero for each target's heavy robots; ``size`` robots are chosen
+    """
+
+    first: IntArray
+    pattern: IntArray
+    values: FloatArray
+    light: FloatArray
+    patterns: FloatArray
+    heavy: IntArray
+    information: FloatArray
+    size: int
+
+    def ascend(self, start: Multipliers, goal: float, *, cold: bool) -> tuple[Multipliers, FloatArray]:
+        """Better multipliers, and the fractions (F,) in which the smoothed weakest set holds the robots.
+
+        Ends early where the bound reaches ``goal``.
+        """
+        n_targets, n_robots = len(self.heavy), len(self.information)
+        best, fraction = start, np.full(n_robots, self.size / n_robots)
+        rest = self.rest(start)
+        bound = self.bound(start, rest)
+        room = goal - bound
+        factor = np.asarray(np.linalg.inv(self._spread()).transpose(0, 2, 1), dtype=np.float64)
+        for share in COLD if cold else WARM:
+            if bound >= goal:
+                break
+            temperature = max(share * room / n_targets, 1e-12)
+            screened = self._screened(rest, SCREENED * temperature)
+            ascent = _Ascent(screened, factor, start, temperature, goal)
+            start, reached = ascent.run()
+            rest = self.rest(start)
+            if (true := self.bound(start, rest)) >= bound:
+                best, bound, fraction = start, true, reached
+        return best, fraction
+
+    def rest(self, multipliers: Multipliers) -> FloatArray:
+        """(V,) value of each point minus what the multipliers say."""
+        return np.asarray(
+            _rest(self.first, self.pattern, self.values, self.light, self.patterns, multipliers.slopes, multipliers.own)
+        )
+
+    def bound(self, multipliers: Multipliers, rest: FloatArray) -> float:
+        """What the multipliers prove; targets without points have no part in it."""
+        used = np.diff(self.first) > 0
+        scores = np.einsum("fmt,mt->f", self.information, multipliers.slopes)
+        np.add.at(scores, self.heavy[used].ravel(), multipliers.own[used].ravel())
+        least = np.minimum.reduceat(rest, self.first[:-1][used]) if used.any() else np.zeros(0)
+        return float(least.sum() + np.partition(scores, self.size - 1)[: self.size].sum())
+
+    def _screened(self, rest: FloatArray, margin: float) -> DualProgram:
+        """The same without the points whose ``rest`` is more than ``margin`` above their target's least."""
+        counts = np.diff(self.first)
+        used = counts > 0
+        if not used.any():
+            return self
+        least = np.repeat(np.minimum.reduceat(rest, self.first[:-1][used]), counts[used])
+        near = rest <= least + margin
+        first = np.concatenate([[0], np.cumsum(near)])[self.first]
+        return replace(self, first=first, pattern=self.pattern[near], values=self.values[near], light=self.light[near])
+
+    def _spread(self) -> FloatArray:
+        """(M, 3, 3) lower-triangular factors of the covariance of each target's points; 1 without points."""
+        covariance = np.tile(np.eye(3), (len(self.heavy), 1, 1))
+        counts = np.diff(self.first)
+        used = counts > 0
+        if used.any():
+            counts, starts = counts[used], self.first[:-1][used]
+            mean = np.add.reduceat(self.light, starts, axis=0) / counts[:, None]
+            centred = self.light - np.repeat(mean, counts, axis=0)
+            for s in range(3):
+                for t in range(3):
+                    covariance[used, s, t] = np.add.reduceat(centred[:, s] * centred[:, t], starts) / counts
+            size = np.trace(covariance[used], axis1=1, axis2=2) + 1e-12 * (mean**2).sum(axis=1) + 1e-300
+            covariance[used] += FLAT * size[:, None, None] * np.eye(3)
+        return np.asarray(np.linalg.cholesky(covariance))
+
+
+class _Ascent:
+    """L-BFGS at one temperature, in coordinates in which every target's points spread alike."""
+
+    def __init__(
+        self, program: DualProgram, factor: FloatArray, start: Multipliers, temperature: float, goal: float
+    ) -> None:
+        self._program, self._factor, self._temperature, self._goal = program, factor, temperature, goal
+        slopes = np.linalg.solve(self._factor, start.slopes[..., None])[..., 0]
+        self._best = np.concatenate([slopes, start.own], axis=1).ravel()
+        self._bound = -np.inf
+        self._fraction = np.zeros(len(program.information))
+
+    def run(self) -> tuple[Multipliers, FloatArray]:
+        """The multipliers of the best bound met, and the fractions there."""
+        from scipy.optimize import minimize
+
+        minimize(
+            self._negated,
+            self._best,
+            jac=True,
+            method="L-BFGS-B",
+            callback=self._stop_at_goal,
+            options={"maxiter": STEPS, "maxcor": MEMORY},
+        )
+        return self._multipliers(self._best), self._fraction
+
+    def _stop_at_goal(self, _: Any) -> None:
+        if self._bound >= self._goal:
+            raise StopIteration
+
+    def _negated(self, point: Any) -> tuple[float, Any]:
+        """Minus the smoothed bound, and its gradient; the best point is kept by the bound itself."""
+        program, multipliers = self._program, self._multipliers(point)
+        gradient, fraction = np.zeros((len(program.heavy), 3 + multipliers.own.shape[1])), np.zeros(len(self._fraction))
+        bound, value = _smoothed(
+            program.first,
+            program.pattern,
+            program.values,
+            program.light,
+            program.patterns,
+            program.heavy,
+            program.information,
+            program.size,
+            multipliers.slopes,
+            multipliers.own,
+            self._temperature,
+            gradient,
+            fraction,
+        )
+        if bound > self._bound:
+            self._bound, self._best, self._fraction = bound, point.copy(), fraction
+        gradient[:, :3] = np.einsum("mst,ms->mt", self._factor, gradient[:, :3])
+        return -value, -gradient.ravel()
+
+    def _multipliers(self, point: FloatArray) -> Multipliers:
+        shaped = point.reshape(len(self._program.heavy), -1)
+        return Multipliers(np.einsum("mst,mt->ms", self._factor, shaped[:, :3]), shaped[:, 3:])
+
+
+@numba.njit(cache=True)
+def _rest(  # noqa: PLR0917
+    first: Any, pattern: Any, values: Any, light: Any, patterns: Any, slopes: Any, own: Any
+) -> Any:
+    rest = np.empty(len(values))
+    for j in range(len(slopes)):
+        of_pattern = (patterns * own[j]).sum(axis=1)
+        a, b, c = slopes[j, 0], slopes[j, 1], slopes[j, 2]
+        for v in range(first[j], first[j + 1]):
+            rest[v] = values[v] - (a * light[v, 0] + b * light[v, 1] + c * light[v, 2]) - of_pattern[pattern[v]]
+    return rest
+
+
+@numba.njit(cache=True)
+def _smoothed(  # noqa: PLR0917
+    first: Any,
+    pattern: Any,
+    values: Any,
+    light: Any,
+    patterns: Any,
+    heavy: Any,
+    information: Any,
+    size: int,
+    slopes: Any,
+    own: Any,
+    temperature: float,
+    gradient: Any,
+    fraction: Any,
+) -> Any:
+    """The bound and its smoothed value; fills ``gradient`` (M, 3 + h) and ``fraction`` (F,)."""
+    rest = _rest(first, pattern, values, light, patterns, slopes, own)
+    bound, total = 0.0, 0.0
+    scores = (information * slopes).sum(axis=2).sum(axis=1)
+    for j in range(len(own)):
+        start, stop = first[j], first[j + 1]
+        if start < stop:
+            mine = slice(start, stop)
+            least, soft = _soft_least(rest[mine], pattern[mine], light[mine], patterns, temperature, gradient[j])
+            bound += least
+            total += soft
+            for t, robot in enumerate(heavy[j]):
+                scores[robot] += own[j, t]
+    ordered = np.sort(scores)
+    bound += ordered[:size].sum()
+    total += _soft_choice(scores, ordered, size, temperature, fraction)
+    for j in range(len(own)):
+        for i, share in enumerate(fraction):
+            for t in range(3):
+                gradient[j, t] += share * information[i, j, t]
+        if first[j] < first[j + 1]:
+            for t, robot in enumerate(heavy[j]):
+                gradient[j, 3 + t] += fraction[robot]
+    return bound, total
+
+
+@numba.njit(cache=True)
+def _soft_least(rest: Any, pattern: Any, light: Any, patterns: Any, temperature: float, gradient: Any) -> Any:  # noqa: PLR0917
+    """One target's least ``rest``, and the soft one; fills its gradient (3 + h,)."""
+    least = rest.min()
+    limit = least + NEGLIGIBLE * temperature
+    weight = np.zeros(len(patterns))
+    mass = 0.0
+    for v in range(len(rest)):
+        if rest[v] <= limit:
+            share = np.exp((least - rest[v]) / temperature)
+            mass += share
+            weight[pattern[v]] += share
+            for t in range(3):
+                gradient[t] -= share * light[v, t]
+    for q in range(len(patterns)):
+        if weight[q] > 0:
+            for t in range(patterns.shape[1]):
+                gradient[3 + t] -= weight[q] * patterns[q, t]
+    gradient /= mass
+    return least, least - temperature * np.log(mass)
+
+
+@numba.njit(cache=True)
+def _soft_choice(scores: Any, ordered: Any, size: int, temperature: float, fraction: Any) -> float:
+    """Smoothed sum of the ``size`` smallest scores: its dual value at the level where the fractions add up to it."""
+    low, high = ordered[0] - 40 * temperature, ordered[-1] + 40 * temperature
+    for _ in range(BISECTIONS):
+        level = (low + high) / 2
+        count = 0.0
+        for score in scores:
+            count += 1 / (1 + np.exp((score - level) / temperature))
+        if count < size:
+            low = level
+        else:
+            high = level
+    level = (low + high) / 2
+    total = level * size
+    for i, score in enumerate(scores):
+        above = (level - score) / temperature
+        fraction[i] = 1 / (1 + np.exp(-above))
+        total -= temperature * (max(above, 0.0) + np.log1p(np.exp(-abs(above))))
+    return float(total)

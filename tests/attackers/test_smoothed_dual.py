@@ -1,0 +1,153 @@
+"""The minorant's parts: outer polytopes hold every set, and the ascent reaches the linear program's optimum."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from scipy.optimize import approx_fprime, linprog
+
+from ratt_opt.attackers.compact import LOG_DET, TRACE, CompactTeam
+from ratt_opt.attackers.minorant import affine_minorant
+from ratt_opt.attackers.outer_points import SetFamily, outer_points
+from ratt_opt.attackers.smoothed_dual import DualProgram, Multipliers, _smoothed
+from tests.strategies import OBJECTIVES, range_bearing
+
+NAMES = {TRACE: "trace", LOG_DET: "logdet"}
+
+
+def sensor_family(kind, seed, n_robots=9, n_targets=4, size=None):
+    rng = np.random.default_rng(seed)
+    team = CompactTeam.of(OBJECTIVES[NAMES[kind]](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
+    size = int(rng.integers(2, n_robots - 2)) if size is None else size
+    return team, SetFamily(kind, team.weights, team.prior, team.prior, team.information, size)
+
+
+def dual_program(family, n_heavy):
+    points = outer_points(family, n_heavy)
+    assert points.sound.all()
+    information = family.information.copy()
+    for j, robots in enumerate(points.heavy):
+        information[robots, j] = 0.0
+    return DualProgram(
+        first=points.first,
+        pattern=points.pattern,
+        values=points.values,
+        light=points.light,
+        patterns=points.patterns.astype(float),
+        heavy=points.heavy,
+        information=information,
+        size=family.size,
+    )
+
+
+def optimum(program):
+    """The least value of shares of points and fractions of robots that agree on light information and heavy robots."""
+    n_points, n_robots, n_heavy = len(program.values), len(program.information), program.heavy.shape[1]
+    target = np.repeat(np.arange(len(program.heavy)), np.diff(program.first))
+    rows, right = [], []
+    for j, robots in enumerate(program.heavy):
+        mine = target == j
+        rows.append(np.concatenate([mine, np.zeros(n_robots)]))
+        right.append(1.0)
+        for t in range(3):
+            scale = np.abs(program.information[:, j, t]).max() + 1e-300
+            column = np.where(mine, program.light[:, t], 0.0)
+            rows.append(np.concatenate([column, -program.information[:, j, t]]) / scale)
+            right.append(0.0)
+        for q in range(n_heavy):
+            held = np.where(mine, program.patterns[program.pattern, q], 0.0)
+            rows.append(np.concatenate([held, -(np.arange(n_robots) == robots[q]).astype(float)]))
+            right.append(0.0)
+    rows.append(np.concatenate([np.zeros(n_points), np.ones(n_robots)]))
+    right.append(program.size)
+    costs = np.concatenate([program.values, np.zeros(n_robots)])
+    bounds = [(0, None)] * n_points + [(0, 1)] * n_robots
+    found = linprog(costs, A_eq=np.array(rows), b_eq=right, bounds=bounds)
+    assert found.status == 0
+    return found.fun
+
+
+@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("seed", range(8))
+def test_outer_polytopes_hold_every_set(kind, seed):
+    team, family = sensor_family(kind, seed)
+    rng = np.random.default_rng(seed)
+    points = outer_points(family, 2)
+    functionals = rng.normal(size=(40, 3)) / np.abs(team.information).max(axis=(0, 1))
+    for chosen in combinations(range(9), family.size):
+        for j, robots in enumerate(points.heavy):
+            pattern = sum(2**q for q, robot in enumerate(robots) if robot in chosen)
+            light = team.information[[i for i in chosen if i not in robots], j].sum(axis=0)
+            mine = slice(points.first[j], points.first[j + 1])
+            vertices = points.light[mine][points.pattern[mine] == pattern]
+            assert ((vertices @ functionals.T).min(axis=0) <= functionals @ light + 1e-9).all()
+
+
+@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_smoothed_bound_is_smooth_and_near(kind, seed):
+    _, family = sensor_family(kind, seed)
+    program = dual_program(family, 2)
+    rng = np.random.default_rng(seed)
+    n_targets, n_robots = len(program.heavy), len(program.information)
+    scale = 1 / np.abs(program.information).max()
+
+    def evaluate(point, temperature):
+        shaped = point.reshape(n_targets, 5)
+        gradient, fraction = np.zeros((n_targets, 5)), np.zeros(n_robots)
+        bound, value = _smoothed(
+            program.first, program.pattern, program.values, program.light, program.patterns, program.heavy,
+            program.information, program.size, scale * shaped[:, :3], shaped[:, 3:].copy(), temperature,
+            gradient, fraction,
+        )  # fmt: skip
+        gradient[:, :3] *= scale
+        return bound, value, gradient.ravel(), fraction
+
+    point = rng.normal(size=n_targets * 5)
+    bound, _, gradient, fraction = evaluate(point, 0.3)
+    assert fraction.sum() == pytest.approx(program.size)
+    assert gradient == pytest.approx(approx_fprime(point, lambda x: evaluate(x, 0.3)[1], 1e-6), abs=2e-5)
+    multipliers = Multipliers(scale * point.reshape(n_targets, 5)[:, :3], point.reshape(n_targets, 5)[:, 3:])
+    assert bound == pytest.approx(program.bound(multipliers, program.rest(multipliers)))
+    most = np.log(np.diff(program.first)).sum() + n_robots * np.log(2)
+    for temperature in (1.0, 1e-2, 1e-4):
+        assert bound - temperature * most - 1e-9 <= evaluate(point, temperature)[1] <= bound + 1e-9
+
+
+@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("seed", range(10))
+def test_the_ascent_comes_near_the_linear_program(kind, seed):
+    """And never passes it; a warm start loses nothing."""
+    _, family = sensor_family(kind, seed)
+    program = dual_program(family, 2)
+    best = optimum(program)
+    start = Multipliers(np.zeros((len(program.heavy), 3)), np.zeros(program.heavy.shape))
+    first = program.bound(start, program.rest(start))
+    reached, fraction = program.ascend(start, best, cold=True)
+    bound = program.bound(reached, program.rest(reached))
+    assert first <= bound <= best + 1e-7 * abs(best)
+    assert best - bound <= 0.05 * (best - first)
+    assert fraction.sum() == pytest.approx(program.size)
+    again, _ = program.ascend(reached, best, cold=False)
+    assert program.bound(again, program.rest(again)) >= bound
+
+
+@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_restricted_minorant_and_its_child_hold_below_every_set_left(kind, seed):
+    team, family = sensor_family(kind, seed, size=4)
+    parent = affine_minorant(family, 2, np.inf)
+    robot = int(np.argmax(parent.tension))
+    it = np.arange(9) == robot
+    others = np.flatnonzero(~it)
+    for inside in (True, False):
+        start = team.prior + team.information[robot] if inside else team.prior
+        smaller = SetFamily(kind, team.weights, team.prior, start, team.information[others], 4 - inside)
+        restricted = parent.restricted(~it, it if inside else np.zeros_like(it))
+        child = affine_minorant(smaller, 3, np.inf, restricted)
+        for chosen in combinations(range(8), 4 - inside):
+            value = team.value([*others[list(chosen)], robot][: 4 if inside else -1])
+            for minorant in (restricted, child):
+                assert minorant.constant + minorant.scores[list(chosen)].sum() <= value + 1e-9
