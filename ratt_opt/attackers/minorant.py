@@ -1,4 +1,4 @@
-"""An affine minorant of the value of sets of robots of one size, from a linear program.
+"""An affine minorant of the value of sets of robots of one size, from outer polytopes.
 
 Target ``j``'s criterion is concave in its information matrix, and ``Lambda_j(R)`` lies in an outer polytope
 (``outer_points.py``). An affine function of ``Lambda`` that is below the value ``phi_j`` at its vertices is below
@@ -37,23 +37,20 @@ BINDING = 1e-2
 class Minorant:
     """``value(R) >= constant + sum of scores over R`` for every set of the family.
 
-    ``shares`` : (F, M) parts of the ``scores`` that each target gives; ``slopes`` : (M, 3) in the information;
-    ``fraction`` : (F,) where a relaxation puts the weakest set; ``tension`` : (F,) each robot's share of what
-    concavity hides there; ``normals`` : (M, A, 3) half-spaces that would cut off the vertices that bind here
-    (guides, not claims).
+    ``scores`` : (F,); ``slopes`` : (M, 3) in the information; ``own`` : (M, h) scores of the ``heavy`` robots (M, h)
+    of each target, -1 for those no longer there; ``fraction`` : (F,) where a relaxation puts the weakest set;
+    ``tension`` : (F,) each robot's share of what concavity hides there; ``normals`` : (M, A, 3) half-spaces that
+    bind here, and some that would cut off the vertices that do (single precision: guides, not claims).
     """
 
     constant: float
-    shares: FloatArray
+    scores: FloatArray
     slopes: FloatArray
+    own: FloatArray
+    heavy: IntArray
     fraction: FloatArray
     tension: FloatArray
     normals: FloatArray
-
-    @property
-    def scores(self) -> FloatArray:
-        """(F,) what each robot adds."""
-        return np.asarray(self.shares.sum(axis=1))
 
     def bound(self, size: int) -> float:
         """No set of ``size`` robots is worth less."""
@@ -61,11 +58,12 @@ class Minorant:
 
     def restricted(self, free: BoolArray, chosen: BoolArray) -> Minorant:
         """The minorant of the sets that hold the ``chosen`` robots and else only ``free`` ones (masks (F,))."""
-        constant = self.constant + float(self.scores[chosen].sum())
+        place = np.where(free, np.cumsum(free) - 1, -1)
         return replace(
             self,
-            constant=constant,
-            shares=self.shares[free],
+            constant=self.constant + float(self.scores[chosen].sum()),
+            scores=self.scores[free],
+            heavy=np.where(self.heavy >= 0, place[self.heavy], -1),
             fraction=self.fraction[free],
             tension=self.tension[free],
         )
@@ -99,9 +97,12 @@ def _start(family: SetFamily, points: OuterPoints, fraction: FloatArray, parent:
     """The parent's multipliers, or the gradient where every robot has the same share."""
     n_targets = len(family.weights)
     slopes = _gradient(family, np.arange(n_targets), _mean(family, fraction)) if parent is None else parent.slopes
-    slopes = slopes * points.sound[:, None]
-    shares = np.einsum("fmt,mt->fm", family.information, slopes) if parent is None else parent.shares
-    return Multipliers(slopes, np.take_along_axis(shares.T, points.heavy, axis=1) * points.sound[:, None])
+    shares = np.einsum("fmt,mt->mf", family.information, slopes)
+    if parent is not None:
+        target, place = np.nonzero(parent.heavy >= 0)
+        shares[target, parent.heavy[target, place]] = parent.own[target, place]
+    own = np.take_along_axis(shares, points.heavy, axis=1)
+    return Multipliers(slopes * points.sound[:, None], own * points.sound[:, None])
 
 
 def _program(family: SetFamily, points: OuterPoints) -> DualProgram:
@@ -133,7 +134,8 @@ def _normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, rest: F
     """(M, KEPT + NEW, 3) normals of the half-spaces that bind here, and of new ones."""
     constants = _least(points, rest)
     counts = np.diff(points.first)
-    closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(BINDING * np.abs(constants), counts)
+    width = np.maximum(BINDING * np.abs(constants), 1e-300)
+    closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(width, counts)
     weights = row_weights(points.first, closeness, points.rows, points.normals.shape[1])
     weights[:, 6 : 6 + RANK_ONE] = 0.0  # those are there anyway
     order = np.argsort(-weights, axis=1, kind="stable")[:, :KEPT, None]
@@ -169,17 +171,24 @@ def _recompute(
     family: SetFamily, points: OuterPoints, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
 ) -> Minorant:
     """The minorant with these multipliers: its constant from the vertices; targets without any get none."""
-    shares = np.einsum("fmt,mt->fm", program.information, multipliers.slopes)
-    np.put_along_axis(shares.T, points.heavy, multipliers.own, axis=1)
-    shares *= points.sound
+    slopes, own = multipliers.slopes * points.sound[:, None], multipliers.own * points.sound[:, None]
+    shares = np.einsum("fmt,mt->mf", program.information, slopes)
+    np.put_along_axis(shares, points.heavy, own, axis=1)
     without = target_values(family, family.start)  # without a sound polytope: what is chosen already
     rest = program.rest(multipliers)
     constants = np.where(points.sound, _least(points, rest), without)
     mean = _mean(family, fraction)
-    hidden = np.maximum(target_values(family, mean) - constants - fraction @ shares, 0.0)
-    normals = _normals(family, points, multipliers.slopes, rest)
-    tension = _tension(family, mean, hidden)
-    return Minorant(float(constants.sum()), shares, multipliers.slopes, fraction, tension, normals)
+    hidden = np.maximum(target_values(family, mean) - constants - shares @ fraction, 0.0)
+    return Minorant(
+        constant=float(constants.sum()),
+        scores=shares.sum(axis=0),
+        slopes=slopes,
+        own=own,
+        heavy=points.heavy,
+        fraction=fraction,
+        tension=_tension(family, mean, hidden),
+        normals=_normals(family, points, slopes, rest).astype(np.float32),
+    )
 
 
 def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:

@@ -154,7 +154,7 @@ class _Ascent:
         )
         return self._multipliers(self._best), self._fraction
 
-    def _stop_at_goal(self, _: Any) -> None:
+    def _stop_at_goal(self, xk: FloatArray) -> None:  # noqa: ARG002  (the name SciPy looks for)
         if self._bound >= self._goal:
             raise StopIteration
 
