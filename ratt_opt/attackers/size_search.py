@@ -1,7 +1,7 @@
 """Branch and bound over the largest group of an outcome on a complete graph.
 
 Every attack leaves a group with at least ``k`` seeing robots (``forced_group_size``), so the smallest
-value of any ``k`` robots is a lower bound. Teams of up to some forty robots are decided by a compiled
+value of any ``k`` robots is a lower bound. Teams of up to some thirty robots are decided by a compiled
 depth-first search alone (``compiled.py``). In larger ones nodes fix robots inside or outside that group; an affine
 minorant (``minorant.py``) bounds them, fixes more robots by reduced cost, and guides the same
 depth-first search that finishes small nodes. Whenever a set below the incumbent is found, the
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SizeNode", "SizeSearch"]
 
-AT_ONCE = 48
+AT_ONCE = 34
 """Teams of so many robots are first enumerated whole, without a minorant."""
 WHOLE_ENUMERATION = 4_000_000_000
 SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 10_000_000, 40_000_000
