@@ -26,11 +26,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.problem import Problem
-    from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.incumbent import Incumbent
     from ratt_opt.solvers.node_program import RelaxedPlan
     from ratt_opt.solvers.outcome_pool import OutcomePool
+    from ratt_opt.solvers.pair_outcomes import PairOutcomes
 
 __all__ = ["BranchAndBound"]
 
@@ -51,11 +50,9 @@ NEGLIGIBLE = 1e-12
 class BranchAndBound:
     """The search; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
-    def __init__(
-        self, problem: Problem, objective: InformationObjective, pool: OutcomePool, incumbent: Incumbent, gap: float
-    ) -> None:
-        self.problem, self.objective = problem, objective
-        self.pool, self.incumbent, self.gap = pool, incumbent, gap
+    def __init__(self, pool: OutcomePool, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> None:
+        self.problem, self.objective = problem, objective = pool.problem, pool.objective
+        self.pool, self.incumbent, self.gap, self._pairs = pool, incumbent, gap, pairs
         self.nodes = 0
         self.classes = equal_elements(problem, objective)
         representatives = tuple(np.array(sorted(own), dtype=np.int64) for own in self.classes)
@@ -111,6 +108,10 @@ class BranchAndBound:
 
     def _explore(self, node: TreeNode) -> bool:
         """Bound one node by rounds of cuts, then close it or divide it; False when time ran out."""
+        narrowed = self._narrow(node)
+        if narrowed is None:
+            return True
+        self._current = node = narrowed
         stalls = 0
         allowed_stalls = STALLS_AT_ROOT if self.nodes == 1 else STALLS_ELSEWHERE
         usable = self._cuts.usable(self._winners.at(node))
@@ -139,6 +140,13 @@ class BranchAndBound:
                 if self.nodes & (self.nodes - 1) == 0:  # the first nodes, and ever fewer
                     self.incumbent.improve(self._rounded(relaxed))
                 return self._divide(node, relaxed)
+
+    def _narrow(self, node: TreeNode) -> TreeNode | None:
+        """What remains of a node once elements that are weak in some pair are split off, if anything does."""
+        level = self.incumbent.level
+        if self._pairs is None or not level > 0:
+            return node
+        return self._pairs.narrow(node, level / (1 - min(self.gap, 0.5)), self._winners, self.pool)
 
     def _seed(self, node: TreeNode) -> None:
         """Give a node without a usable cut one on every outcome whose winner is decided there."""

@@ -81,9 +81,9 @@ class Incumbent:
             heapq.heapreplace(self._candidates, (-self.pool.plan_value(plan), serial, known, plan))
         return self._candidates[0] if self._candidates else (np.inf, 0, known, self.elements)
 
-    def start(self) -> None:
-        """Improve the most promising of RATT's, the greedy and the myopic plan by local search, and beat all three."""
-        plans = [planner(self.problem).elements for planner in (ratt, greedy, myopic)]
+    def start(self, *more: IntArray) -> None:
+        """Improve the most promising of RATT's, the greedy, the myopic and ``more`` plans, and beat all of them."""
+        plans = [*(planner(self.problem).elements for planner in (ratt, greedy, myopic)), *more]
         for plan in plans:
             self._learn(plan)
         self.improve(max(plans, key=self.pool.plan_value))

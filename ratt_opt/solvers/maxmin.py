@@ -18,7 +18,9 @@ from ratt_opt.solvers.branch_and_bound import BranchAndBound
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.outcome_pool import OutcomePool
+from ratt_opt.solvers.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.result import MaxMinResult
+from ratt_opt.solvers.search_tree import equal_elements
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -71,9 +73,10 @@ def solve_maxmin(
     search: BranchAndBound | None = None
     try:
         _list_outcomes(problem, pool)
-        incumbent.start()
+        pairs = PairOutcomes.of(problem, objective, equal_elements(problem, objective))
+        incumbent.start(*([] if pairs is None else [pairs.strongest_plan()]))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = BranchAndBound(problem, objective, pool, incumbent, max(gap - PROVED, 0.0))
+        search = BranchAndBound(pool, incumbent, max(gap - PROVED, 0.0), pairs)
         stop = _search_and_prove(search, incumbent, max_nodes, progress)
     except KeyboardInterrupt:
         stop = Stop.INTERRUPTED
