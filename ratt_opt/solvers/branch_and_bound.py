@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import worst_targets
-from ratt_opt.solvers.branching import divide_elements, mixing_gains
+from ratt_opt.solvers.branching import divide_by_scores, divide_elements, mixing_gains, rounding_losses
 from ratt_opt.solvers.cut_store import CutStore
 from ratt_opt.solvers.node_program import NodeProgram
 from ratt_opt.solvers.proof import Leaf, UpperProof
@@ -40,8 +40,9 @@ STALL = 0.03
 STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
 PATIENCE = 30
 """Solves without a multiplier after which a cut leaves the program; it stays stored."""
-FLAT = 1e-3
-"""Mixtures that gain less than this share of the gap do not explain it; what falls short in rounding may."""
+FLAT = 1e-2
+"""Mixtures that cost less than this share of the gap in every cut do not explain it; known outcomes that a rounded plan
+falls short in may."""
 SHORT_OUTCOMES = 16
 NEGLIGIBLE = 1e-12
 """Multipliers below this are left out of a leaf."""
@@ -252,35 +253,31 @@ class BranchAndBound:
             choice = node.choices[open_robots[0]]
             return open_robots[0], (choice[:1], choice[1:])
         active = relaxed.duals > NEGLIGIBLE
-        cuts, weights = relaxed.cuts[active], relaxed.duals[active]
-        points = self.pool.group_points(self._mixed(relaxed.selection))
-        groups, targets = self._cuts.groups[cuts], [self._cuts.target(k) for k in cuts.tolist()]
-        gains = self._gains(relaxed, points, groups, weights, targets)
-        if gains.max() < FLAT * (node.bound - self.incumbent.level):
-            groups, weights = self._short(node, relaxed)
-            targets = [worst_targets(self.objective, points[g], -np.inf, 1)[0] for g in groups.tolist()]
-            gains = self._gains(relaxed, points, groups, weights, targets)
-        i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(self._singles[node.choices[r]]))))
-        heaviest = points[groups[int(weights.argmax())]] if len(weights) else self.objective.prior_information
-        return i, divide_elements(self.objective, node.choices[i], relaxed.selection, heaviest)
+        scores = self._cuts.scores(relaxed.cuts[active])
+        losses = rounding_losses(node.choices, relaxed.selection, scores)
+        i = int(losses.argmax())
+        if losses[i] > FLAT * (node.bound - self.incumbent.level):
+            return i, divide_by_scores(node.choices[i], relaxed.selection, scores, relaxed.duals[active])
+        return self._branch_on_short(node, relaxed, open_robots)
 
-    def _gains(
-        self,
-        relaxed: RelaxedPlan,
-        points: FloatArray,
-        groups: IntArray,
-        weights: FloatArray,
-        targets: list[int | None],
-    ) -> FloatArray:
-        return mixing_gains(
+    def _branch_on_short(
+        self, node: TreeNode, relaxed: RelaxedPlan, open_robots: list[int]
+    ) -> tuple[int, tuple[IntArray, ...]]:
+        """The robot whose mixture gains most where the rounded plan falls short of the relaxed level."""
+        points = self.pool.group_points(self._mixed(relaxed.selection))
+        groups, weights = self._short(node, relaxed)
+        gains = mixing_gains(
             self.problem,
             self.objective,
             selection=relaxed.selection,
             inside=self.pool.membership()[groups] > 0,
             points=points[groups],
             weights=weights,
-            targets=targets,
+            targets=[worst_targets(self.objective, points[g], -np.inf, 1)[0] for g in groups.tolist()],
         )
+        i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(self._singles[node.choices[r]]))))
+        heaviest = points[groups[int(weights.argmax())]] if len(weights) else self.objective.prior_information
+        return i, divide_elements(self.objective, node.choices[i], relaxed.selection, heaviest)
 
     def _short(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[IntArray, FloatArray]:
         """Groups that fall short of the relaxed level once the relaxed plan is rounded, and by how much."""

@@ -1,12 +1,18 @@
 """Which robot to branch on, and how to divide its elements.
 
-A relaxed plan mixes elements. The criteria are concave, so a mixture is worth more than its
-elements on average, and what a robot's mixture gains is about what deciding that robot takes off the bound:
+A relaxed plan mixes elements. At its level ``t`` all cuts with a multiplier are tight, and a robot that takes one
+element ``e`` of its mixture while the others do not adapt lowers cut ``k`` by ``sum_e' z_e' s_ke' - s_ke``. (The
+*combined* scores say nothing here: at an optimum all elements in a mixture have the same.) What the robot loses at
+least, whichever element it takes, is about what deciding it takes off the bound:
+
+    loss_i = min over e in the mixture of max_k [ sum_e' z_e' s_ke' - s_ke ].
+
+Where cuts do not tell elements apart, the criteria themselves do: they are concave, so a mixture is worth
+more to a group than its elements on average,
 
     gain_i = sum_k w_k [ value_k(Lambda_k) - sum_e z_e value_k(Lambda_k + I_e - sum_e' z_e' I_e') ],
 
-over the groups ``k`` in the bound's convex combination, with its weights ``w_k``. (The combined
-scores say nothing here: at an optimum all elements in a mixture have the same.)
+over groups ``k`` with weights ``w_k``.
 """
 
 from __future__ import annotations
@@ -24,10 +30,45 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["divide_elements", "mixing_gains"]
+__all__ = ["divide_by_scores", "divide_elements", "mixing_gains", "rounding_losses"]
 
 SUPPORT = 1e-6
 """Elements with less weight are not part of a mixture."""
+
+
+def rounding_losses(choices: Sequence[IntArray], selection: FloatArray, scores: FloatArray) -> FloatArray:
+    """(N,) what some cut loses at least when a robot takes one element of its mixture.
+
+    Parameters
+    ----------
+    selection : (E,) weights of elements, summing to one for each robot; scores : (E, K) of the tight cuts
+    """
+    losses = np.zeros(len(choices))
+    if not scores.shape[1]:
+        return losses
+    for i, choice in enumerate(choices):
+        mixed = choice[(selection[choice] > SUPPORT) & (selection[choice] < 1 - SUPPORT)]
+        if len(mixed) > 1:
+            mean = selection[mixed] @ scores[mixed] / selection[mixed].sum()
+            losses[i] = (mean - scores[mixed]).max(axis=1).min()
+    return losses
+
+
+def divide_by_scores(
+    choice: IntArray, selection: FloatArray, scores: FloatArray, weights: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """Divide a robot's elements between the two of largest weight, each with those of the most similar scores.
+
+    Parameters
+    ----------
+    scores : (E, K) of cuts; weights : (K,) of their squared differences
+    """
+    order = np.argsort(-selection[choice], kind="stable")
+    own = scores[choice]
+    distances = [((own - own[seed]) ** 2) @ weights for seed in order[:2]]
+    near = distances[0] <= distances[1]
+    near[order[1]] = False
+    return choice[near], choice[~near]
 
 
 def mixing_gains(

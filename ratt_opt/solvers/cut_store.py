@@ -54,8 +54,8 @@ class CutStore:
         """(K,) constants."""
         return self._constants[: len(self._cuts)]
 
-    def scores(self, cut: int) -> FloatArray:
-        """(E,) scores of one cut."""
+    def scores(self, cut: int | IntArray) -> FloatArray:
+        """(E,) scores of one cut, or (E, K) of some."""
         return self._scores[:, cut]
 
     def bounds(self, selection: FloatArray) -> FloatArray:
