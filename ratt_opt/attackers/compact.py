@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LOG_DET", "MAX_EIGENVALUE", "TRACE", "CompactTeam"]
+__all__ = ["LOG_DET", "MAX_EIGENVALUE", "TRACE", "CompactTeam", "triples"]
 
 TRACE, LOG_DET, MAX_EIGENVALUE = 0, 1, 2
 
@@ -47,8 +47,8 @@ class CompactTeam:
         kind = KINDS.get(type(objective))
         if kind is None or not isinstance(objective, InformationObjective) or objective.dimension != 2:
             return None
-        weights, prior = np.array(objective.weights), _triples(objective.prior_information)
-        information = _triples(objective.information[plan])
+        weights, prior = np.array(objective.weights), triples(objective.prior_information)
+        information = triples(objective.information[plan])
         single = _criterion(kind, weights, prior) - _criterion(kind, weights, prior + information)
         return cls(kind, weights, prior, information, single)
 
@@ -65,7 +65,8 @@ class CompactTeam:
         return float(self.values(self.sums(robots)))
 
 
-def _triples(matrices: FloatArray) -> FloatArray:
+def triples(matrices: FloatArray) -> FloatArray:
+    """(..., 2, 2) symmetric matrices as (..., 3)."""
     return np.ascontiguousarray(np.stack([matrices[..., 0, 0], matrices[..., 0, 1], matrices[..., 1, 1]], axis=-1))
 
 

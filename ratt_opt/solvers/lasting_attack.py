@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.compact import CompactTeam
+from ratt_opt.attackers.compact import CompactTeam, triples
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
@@ -27,14 +28,12 @@ class LastingAttacks:
     """Exchanges the smaller groups of attacks on one problem."""
 
     def __init__(self, problem: Problem) -> None:
-        single = problem.objective.singletons()
-        strongest = np.array([choice[single[choice].argmax()] for choice in problem.choices])
         self._threat = problem.threat
-        self._team = CompactTeam.of(problem.objective, strongest) if problem.threat.is_symmetric else None
+        self._team = _at_their_best(problem) if problem.threat.is_symmetric else None
         self._known: dict[tuple[frozenset[int], tuple[int, ...]], Attack] = {}
 
     def of(self, attack: Attack) -> Attack:
-        """An attack with the same largest group, whose other groups, of the same sizes, are weak at their strongest.
+        """An attack with the same largest group, whose other groups, of the same sizes, are weak at their best.
 
         The attack itself where robots or links differ to the adversary.
         """
@@ -61,7 +60,25 @@ class LastingAttacks:
         groups = []
         for size in sizes:
             among = replace(team, information=team.information[left], single=team.single[left])
-            chosen = sorted(weak_sets(among, size)[0])
+            chosen = sorted(weak_sets(among, size)[0]) if size > 1 else [int(among.single.argmin())]
             groups.append(frozenset(left[chosen].tolist()))
             left = np.delete(left, chosen)
         return groups
+
+
+def _at_their_best(problem: Problem) -> CompactTeam | None:
+    """A team in which each robot sees every target as with whichever of its elements sees that target best.
+
+    No one element need do all of that; its ``single`` values are those of the robots' individually best elements. With
+    those elements' information instead, groups counted as weak that other elements make strong: what makes the best
+    lone robot need not help a group most.
+    """
+    single = problem.objective.singletons()
+    strongest = np.array([choice[single[choice].argmax()] for choice in problem.choices])
+    team = CompactTeam.of(problem.objective, strongest)
+    if team is None or not isinstance(problem.objective, InformationObjective):
+        return None
+    traces = np.trace(problem.objective.information, axis1=-2, axis2=-1)
+    best = np.array([choice[traces[choice].argmax(axis=0)] for choice in problem.choices])
+    targets = np.arange(traces.shape[1])
+    return replace(team, information=triples(problem.objective.information[best, targets]))
