@@ -80,30 +80,24 @@ class Winners:
             self._winner = np.concatenate([self._winner, np.full(missing, UNKNOWN)])
 
     def _decide(self, outcome: int) -> None:
-        """Close all groups of an outcome but one by bounds that hold for every plan, if that works.
-
-        The strongest group stays where it can; closing it too is only tried where another cannot be closed.
-        """
-        values = {g: self._value(g) for g in self.pool.of_outcome[outcome]}
-        *others, strongest = sorted(values, key=lambda g: (values[g], -g))
-        closed: list[tuple[int, ClosedGroup]] = []
-        left: list[int] = []
-        for group in (*others, strongest):
-            if len(left) > 1 or (group == strongest and not left):
-                left.append(group)
+        """Close all groups of an outcome but the strongest by bounds that hold for every plan, if that works."""
+        groups = self.pool.of_outcome[outcome]
+        values = {g: self._value(g) for g in groups}
+        winner = max(groups, key=lambda g: (values[g], -g))
+        closed = []
+        for group in groups:
+            if group == winner:
                 continue
-            proof = self._close(group, self._everything) if self.closes(values[group]) else None
+            proof = self._close(group, self._everything)
             if proof is None:
-                left.append(group)
-            else:
-                closed.append((group, proof))
-        if len(left) > 1:
-            self._winner[outcome] = UNDECIDED
-            return
-        self.finished = max([self.finished, *(proof.bound for _, proof in closed)])
+                self._winner[outcome] = UNDECIDED
+                return
+            closed.append((group, proof))
+        for _, proof in closed:
+            self.finished = max(self.finished, proof.bound)
         if closed:
             self._closed[outcome] = closed
-        self._winner[outcome] = left[0]
+        self._winner[outcome] = winner
 
     def close_by(self, node: TreeNode, outcome: int) -> bool:
         """Close a node by bounds on the winner of one outcome alone; False where that does not work."""

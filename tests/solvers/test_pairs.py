@@ -104,3 +104,13 @@ def test_a_larger_team_with_its_certificate(kind: str, gap: float, tmp_path) -> 
     proved = verify_certificate(tmp_path / "proof.json")
     assert proved.upper >= proved.lower >= result.lower * (1 - 1e-8)
     assert proved.upper <= result.upper * (1 + 1e-8)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_where_lone_robots_decide_the_first_node_is_enough(kind: str) -> None:
+    """The pair of two robots that see next to nothing is closed, although it is the largest group."""
+    problem = threatened(ragged(np.random.default_rng(4), 14, 4, kind, weak=2), 9, 40)
+    assert PairOutcomes.of(problem, problem.objective, equal_elements(problem, problem.objective)) is not None
+    result = solve_maxmin(problem, gap=1e-6, max_nodes=1)
+    assert result.stop in {Stop.GAP, Stop.CLOSED}
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
