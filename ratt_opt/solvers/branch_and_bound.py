@@ -38,7 +38,7 @@ TARGETS_A_CUT = 4
 STALL = 0.03
 """A round that closes less than this share of the remaining gap counts as a stall; two stalls end the rounds."""
 STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
-PATIENCE = 14
+PATIENCE = 8
 """Solves without a multiplier after which a cut leaves the program; it stays stored."""
 FLAT = 1e-2
 """Mixtures that cost less than this share of the gap in every cut do not explain it; known outcomes that a rounded plan
