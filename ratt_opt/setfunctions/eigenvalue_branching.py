@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.setfunctions.level_bounds import Average
-from ratt_opt.setfunctions.level_program import NO_CUTS, relax
+from ratt_opt.setfunctions.level_program import LevelProgram
 from ratt_opt.setfunctions.planar import along, levels
 from ratt_opt.setfunctions.planar_descent import PlanarDescent
 from ratt_opt.setfunctions.planar_parts import Part
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.setfunctions.level_program import Relaxed
     from ratt_opt.setfunctions.planar_parts import Side
 
 __all__ = ["PlanarSearch"]
@@ -51,7 +52,7 @@ class PlanarSearch:
         self.attained.offer(self.attained.picks)
         self.nodes = 0
         self.averages: list[Average] = []
-        self._last_cuts = NO_CUTS
+        self._last: FloatArray | None = None
         self._open = side.roots()
         side.recycle(self._open, averages)
         self._keep(self._open)
@@ -59,16 +60,14 @@ class PlanarSearch:
     @property
     def exhausted(self) -> bool:
         """Whether no part can hold a better marginal: the ends meet."""
-        best = self.side.sign * self.attained.value
-        return all(part.key >= best for part in self._open)
+        return self._weakest >= self.side.sign * self.attained.value
 
     @property
     def bound(self) -> float:
         """Proved end: below every smallest marginal, above every largest one."""
-        best = self.side.sign * self.attained.value
-        return self.side.sign * min((part.key for part in self._open), default=best)
+        return self.side.sign * min(self._weakest, self.side.sign * self.attained.value)
 
-    def refine(self) -> None:
+    def refine(self, aim: float) -> None:
         """Bound the weakest part by a linear program, or split it; an interrupt leaves every part covered."""
         if self.exhausted:
             return
@@ -78,47 +77,46 @@ class PlanarSearch:
             self.nodes += 1
             self.attained.enumerate(part.allowed)
             self._keep([other for other in self._open if other is not part])
+        elif part.relaxed is None:
+            found = self._relax(part, aim)
+            self.attained.offer(self._rounded(part.allowed, found.mixture))
+            self._share(part, found)
+            self._keep(self._open)
+        else:
+            children = self._children(part, part.relaxed)
+            self._keep([other for other in self._open if other is not part] + children)
+
+    def _share(self, part: Part, found: Relaxed) -> None:
+        """Bound other parts by what bounded this one."""
+        if part.allowed is not self.side.everything:
             return
-        kept = [part] if part.relaxed is None else self._children(part)
-        for piece in kept:
-            mixture = self._relax(piece)
-            self.attained.offer(self._rounded(piece.allowed, mixture))
-        rest = [other for other in self._open if other is not part]
-        self._keep(rest + kept)
-        if part.relaxed is not None and part.allowed is self.side.everything:
-            self.averages.append(Average(part.relaxed.average, part.relaxed.slope))
-            fresh = [other for other in self._open if other.relaxed is None]
-            self.side.recycle(fresh, self.averages[-1:])
+        self.averages.append(Average(found.average, found.slope))
+        fresh = [other for other in self._open if other.relaxed is None and other.allowed is self.side.everything]
+        self.side.recycle(fresh, self.averages[-1:])
 
     def _keep(self, parts: list[Part]) -> None:
         """Drop the parts that hold nothing better."""
         best = self.side.sign * self.attained.value
         self._open = [part for part in parts if part.key < best]
+        self._weakest = min((part.key for part in self._open), default=np.inf)
 
-    def _relax(self, part: Part) -> FloatArray:
-        """Raise a part's bound; the last mixture."""
+    def _relax(self, part: Part, aim: float) -> Relaxed:
+        """Raise a part's bound towards an aim; the last program's solution."""
         self.nodes += 1
-        side, sector = self.side, self.side.sector(part)
-        cuts = part.cuts.joined(self._last_cuts)
+        side = self.side
+        start = self._last if part.start is None else part.start
+        program = LevelProgram(
+            side.options, side.base, side.own_base, side.sector(part), allowed=part.allowed, start=start
+        )
         low, high = 0.0, np.inf
-        best = side.sign * self.attained.value
         for _ in range(SLOPES):
-            found = relax(
-                side.options,
-                side.base,
-                side.own_base,
-                sector,
-                slope=part.slope,
-                allowed=part.allowed,
-                cuts=cuts,
-                closes=lambda ceiling: side.key(part, ceiling, part.slope) >= best,
-            )
+            found = program.bound(part.slope, side.enough(part, aim, part.slope))
             key = side.key(part, found.ceiling, part.slope)
             if part.relaxed is None or key >= part.key:
                 part.relaxed = found
             part.key = max(part.key, key)
-            part.cuts = self._last_cuts = cuts = found.cuts
-            gap = best - key
+            self._last = found.average
+            gap = aim - key
             if gap <= 0 or not 0 < found.level < np.inf or found.own <= 0:
                 break
             # The second is the key that the best slope could reach, at most.
@@ -131,7 +129,7 @@ class PlanarSearch:
             if abs(wanted - slope) <= 0.02 * abs(slope - 1):
                 break
             part.slope = wanted
-        return found.mixture
+        return found
 
     def _rounded(self, allowed: BoolArray, mixture: FloatArray) -> IntArray:
         """The heaviest allowed option of each robot."""
@@ -140,10 +138,9 @@ class PlanarSearch:
         ends = np.append(first[1:], len(weight))
         return np.array([a + int(weight[a:b].argmax()) for a, b in zip(first, ends, strict=True)], dtype=np.int64)
 
-    def _children(self, part: Part) -> list[Part]:
+    def _children(self, part: Part, found: Relaxed) -> list[Part]:
         """Halve the sector, or one robot's options."""
-        assert part.relaxed is not None
-        side, found = self.side, part.relaxed
+        side = self.side
         total = side.own_base[:, part.target] + found.mixture @ side.options.parts[:, :, part.target]
         mixed = float(along(np.arctan2(-total[2], -total[1])) @ side.added[:, part.target])
         added = side.sign * max(side.sign * mixed, side.sign * part.added)
@@ -151,38 +148,38 @@ class PlanarSearch:
         # What the bound would be if the sector were just the mixture's own direction.
         exact = side.key(part, ceiling, found.slope, added)
         owed = exact - part.key > HALVING_SHARE * (side.sign * self.attained.value - exact)
-        spread = self._spread(part)
-        if part.high - part.low > NARROWEST and (owed or spread.max() <= 0):
-            middle = (part.low + part.high) / 2
-            return [
-                self._child(part, part.allowed, low, high) for low, high in ((part.low, middle), (middle, part.high))
-            ]
-        return self._divide(part, int(spread.argmax()))
+        spread = self._spread(part.allowed, found)
+        if part.high - part.low <= NARROWEST or not (owed or spread.max() <= 0):
+            divided = self._divided(part.allowed, found, part.target, int(spread.argmax()))
+            return [self._child(part, found, allowed, part.low, part.high) for allowed in divided]
+        middle = (part.low + part.high) / 2
+        ends = (part.low, middle), (middle, part.high)
+        halves = [self._child(part, found, part.allowed, low, high) for low, high in ends]
+        side.recycle(halves, [Average(found.average, found.slope)])
+        return halves
 
-    def _spread(self, part: Part) -> FloatArray:
+    def _spread(self, allowed: BoolArray, found: Relaxed) -> FloatArray:
         """(R,) how much the mixture of each robot's options spreads over the binding cuts; -1 with one option."""
-        assert part.relaxed is not None
-        options, found = self.side.options, part.relaxed
+        options = self.side.options
         values = np.einsum("kpc,cp->kc", options.parts[:, :, found.cuts.targets], along(found.cuts.angles))
         mean = np.add.reduceat(found.mixture[:, None] * values, options.first)
         square = found.mixture * ((values - mean[options.robot]) ** 2 @ found.multipliers)
-        counts = np.add.reduceat(part.allowed.astype(np.int64), options.first)
+        counts = np.add.reduceat(allowed.astype(np.int64), options.first)
         return np.where(counts > 1, np.add.reduceat(square, options.first), -1.0)
 
-    def _divide(self, part: Part, robot: int) -> list[Part]:
-        """Options that tell the sector's target less than the mixture does, and those that tell more."""
-        assert part.relaxed is not None
-        mine = np.flatnonzero((self.side.options.robot == robot) & part.allowed)
-        order = np.argsort(levels(self.side.options.parts[mine])[:, part.target], kind="stable")
-        share = np.cumsum(part.relaxed.mixture[mine][order])
+    def _divided(self, allowed: BoolArray, found: Relaxed, target: int, robot: int) -> list[BoolArray]:
+        """Options of a robot that tell a target less than the mixture does, and those that tell more."""
+        mine = np.flatnonzero((self.side.options.robot == robot) & allowed)
+        order = np.argsort(levels(self.side.options.parts[mine])[:, target], kind="stable")
+        share = np.cumsum(found.mixture[mine][order])
         cut = int(np.clip(np.searchsorted(share, share[-1] / 2) + 1, 1, len(mine) - 1))
-        children = []
+        divided = []
         for gone in (order[cut:], order[:cut]):
-            allowed = part.allowed.copy()
-            allowed[mine[gone]] = False
-            children.append(self._child(part, allowed, part.low, part.high))
-        return children
+            kept = allowed.copy()
+            kept[mine[gone]] = False
+            divided.append(kept)
+        return divided
 
-    def _child(self, part: Part, allowed: BoolArray, low: float, high: float) -> Part:
+    def _child(self, part: Part, found: Relaxed, allowed: BoolArray, low: float, high: float) -> Part:
         added = self.side.extreme_added(part.target, low, high)
-        return Part(part.key, part.target, low, high, added, allowed, part.slope, part.cuts)
+        return Part(part.key, part.target, low, high, added, allowed, part.slope, found.average)

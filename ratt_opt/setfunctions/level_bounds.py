@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.planar import Options
 
 __all__ = ["Average", "Forms", "ceilings", "least_marginal", "most_marginal"]
@@ -69,19 +69,56 @@ def most_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, low
     return np.asarray(np.maximum.reduce(values))
 
 
-def ceilings(
-    options: Options, base: FloatArray, own_base: FloatArray, forms: Forms, averages: Sequence[Average]
+def least_enough(target: float, added: float, slope: float, highest: float) -> float:
+    """Largest ``ceiling`` for which :func:`least_marginal` is at least ``target > 0``.
+
+    The pairs with a smaller marginal, ``Q < P / (1 - target P)``, lie between a line and a convex curve, so
+    ``P - slope Q`` is smallest where these meet, or at ``highest``.
+    """
+    meet = _meet(target, added)
+    if highest <= meet:
+        return np.inf
+    if target * highest >= 1:
+        return -np.inf
+    return min(meet - slope * (meet + added), highest - slope * highest / (1 - target * highest))
+
+
+def most_enough(target: float, added: float, slope: float, lowest: float) -> float:
+    """Largest ``ceiling`` for which :func:`most_marginal` is at most ``target > 0``.
+
+    The pairs with a larger marginal lie above the convex curve ``Q = P / (1 - target P)``, on which ``Q - slope P``
+    is smallest where ``Q = sqrt(slope) P``.
+    """
+    meet = _meet(target, added)
+    if lowest >= meet:
+        return np.inf
+    p = min(max((1 - slope**-0.5) / target, lowest), meet)
+    return float(p / (1 - target * p) - slope * p)
+
+
+def _meet(target: float, added: float) -> float:
+    """The ``P`` at which ``1/P - 1/(P + added)`` is ``target``."""
+    product = target * added
+    return 2 * added / (product + float(np.sqrt(product * (product + 4))))
+
+
+def ceilings(  # noqa: PLR0917
+    options: Options,
+    base: FloatArray,
+    own_base: FloatArray,
+    forms: Forms,
+    averages: Sequence[Average],
+    allowed: BoolArray,
 ) -> FloatArray:
-    """(B, S) bounds on ``t - slope own`` over all contexts, from each average's cuts, with its slope."""
+    """(B, S) bounds on ``t - slope own`` over all contexts of allowed options, from each average's cuts and slope."""
+    from ratt_opt.setfunctions.compiled_planar import raise_ceilings
+
+    parts, robot = options.parts[allowed], options.robot[allowed]
     cuts = np.stack([average.cuts for average in averages])
-    slope = np.array([average.slope for average in averages])[:, None]
-    level = np.tensordot(options.parts, cuts, axes=((1, 2), (1, 2)))  # (K, B)
+    slope = np.array([average.slope for average in averages])
+    level = np.tensordot(cuts, parts, axes=((1, 2), (1, 2)))  # (B, K)
     start = np.tensordot(cuts, base, axes=((1, 2), (0, 1)))[:, None]
-    own = np.einsum("kps,sp->ks", options.parts[:, :, forms.target], forms.direction)
-    own_start = slope * np.einsum("ps,sp->s", own_base[:, forms.target], forms.direction)
-    total, size = start - own_start, np.abs(start) + np.abs(own_start)
-    if len(options.first):
-        scores = level[:, :, None] - slope * own[:, None, :]
-        best = np.maximum.reduceat(scores, options.first, axis=0)
-        total, size = total + best.sum(axis=0), size + np.abs(best).sum(axis=0)
+    own_start = slope[:, None] * np.einsum("ps,sp->s", own_base[:, forms.target], forms.direction)
+    best, size = raise_ceilings(parts, robot, level, slope, forms.target, forms.direction)
+    total, size = start - own_start + best, np.abs(start) + np.abs(own_start) + size
     return np.asarray(total + MARGIN * size)

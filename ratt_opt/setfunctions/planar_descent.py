@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +10,8 @@ import numpy as np
 from ratt_opt.setfunctions.planar import marginals
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.planar import Options
 
@@ -24,8 +26,7 @@ class PlanarDescent:
 
     def __init__(self, options: Options, base: FloatArray, added: FloatArray, *, sign: float) -> None:
         self._options, self._base, self._added, self._sign = options, base, added, sign
-        sizes = np.diff(np.append(options.first, len(options.robot)))
-        self._own = [np.arange(start, start + size) for start, size in zip(options.first, sizes, strict=True)]
+        self._ends = np.append(options.first, len(options.robot))
         self._starts: set[tuple[int, ...]] = set()
         self._paired: tuple[int, ...] | None = None
         self.picks = options.first.copy()
@@ -37,13 +38,11 @@ class PlanarDescent:
         if key in self._starts:
             return
         self._starts.add(key)
-        value = self._best(self._total(picks)[None])[1]
-        self._keep(picks, value)
-        self._descend(picks.copy(), value)
+        self._descend(picks)
 
     def enumerate(self, allowed: BoolArray) -> None:
         """Try every context of the allowed options."""
-        own = [part[allowed[part]] for part in self._own]
+        own = [start + np.flatnonzero(allowed[start:end]) for start, end in pairwise(self._ends.tolist())]
         totals = self._base
         for part in own:
             totals = totals[..., None, :, :] + self._parts(part)
@@ -54,31 +53,22 @@ class PlanarDescent:
 
     def pairs(self) -> None:
         """Descend from the best context over two robots at a time, until it is the best of its neighbours."""
+        from ratt_opt.setfunctions.compiled_planar import descend_pairs
+
         while self._paired != tuple(self.picks.tolist()):
             self._paired = tuple(self.picks.tolist())
-            for i, j in combinations(range(len(self._own)), 2):
-                rest = self._total(self.picks) - self._parts(self.picks[i]) - self._parts(self.picks[j])
-                both = self._parts(self._own[i])[:, None] + self._parts(self._own[j])[None]
-                where, value = self._best(rest + both)
-                if self._better(value, self.value):
-                    a, b = np.unravel_index(where, both.shape[:2])
-                    moved = self.picks.copy()
-                    moved[[i, j]] = self._own[i][a], self._own[j][b]
-                    self._keep(moved, value)
-            self._descend(self.picks.copy(), self.value)
+            self._run(descend_pairs, self.picks)
+            self._descend(self.picks)
 
-    def _descend(self, picks: IntArray, value: float) -> None:
-        total = self._total(picks)
-        improved = True
-        while improved:
-            improved = False
-            for i, own in enumerate(self._own):
-                rest = total - self._parts(picks[i])
-                where, found = self._best(rest + self._parts(own))
-                if self._better(found, value):
-                    picks[i], value, improved = own[where], found, True
-                    total = rest + self._parts(picks[i])
-        self._keep(picks, value)
+    def _descend(self, picks: IntArray) -> None:
+        from ratt_opt.setfunctions.compiled_planar import descend
+
+        self._run(descend, picks)
+
+    def _run(self, compiled: Callable[..., None], picks: IntArray) -> None:
+        picks = picks.copy()
+        compiled(self._options.parts, self._ends, self._total(picks), self._added, self._sign, picks)
+        self._keep(picks, self._best(self._total(picks)[None])[1])
 
     def _keep(self, picks: IntArray, value: float) -> None:
         if self._better(value, self.value):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.setfunctions.eigenvalue_branching import PlanarSearch
-from ratt_opt.setfunctions.level_program import NO_CUTS, relax
+from ratt_opt.setfunctions.level_program import LevelProgram
 from ratt_opt.setfunctions.marginals import Marginals
 from ratt_opt.setfunctions.planar import Options, Planar, levels
 from ratt_opt.setfunctions.planar_parts import Side
@@ -35,6 +35,8 @@ STUCK = 8
 LONG_STUCK = 40
 """The same for elements whose ratio is more than ``CONTENDER`` times the smallest one seen."""
 CONTENDER = 1.1
+PATIENCE = 20
+"""Parts bounded on one side before its number of parts counts against it."""
 MARGIN = 1e-9
 """Relative safety margin for rounding."""
 
@@ -42,6 +44,7 @@ MARGIN = 1e-9
 class PlanarBrackets:
     """(n,) ``least`` <= smallest marginals <= ``seen_least``, ``seen_most`` <= largest marginals <= ``most``.
 
+    ``nodes`` : parts bounded so far.
     ``against_own`` : the ratio that matters is to ``f({x})``, so the largest marginals are left as they are.
     """
 
@@ -52,17 +55,14 @@ class PlanarBrackets:
         self._highest: dict[int, float] = {}
         self._searches: dict[int, tuple[PlanarSearch, PlanarSearch]] = {}
         self._pools: tuple[list[Average], list[Average]] = [], []
+        self.nodes = 0
+        self._done = np.zeros(f.n, dtype=np.bool_)
         single = f.singletons()
         self.least, self.most = self._first_bounds()
         self.most = np.maximum(self.most, single)
         self.seen_least, self.seen_most = single.copy(), single.copy()
         if against_own:
             self.most = single.copy()
-
-    @property
-    def nodes(self) -> int:
-        """Linear programs' parts so far."""
-        return sum(side.nodes for pair in self._searches.values() for side in pair)
 
     def run(self) -> Stop:
         """Search until the deciding ratio is known within the gap, or the budget is spent."""
@@ -88,17 +88,18 @@ class PlanarBrackets:
         safe = np.where(self.most > 0, self.least / most, np.inf)
         shown = self._shown()
         target = float(shown.min(initial=np.inf)) / (1 + self._budget.gap)
-        open_ = [int(x) for x in np.flatnonzero(safe < target) if not self._closed(int(x))]
-        if not open_:
+        open_ = np.flatnonzero((safe < target) & ~self._done)
+        if not len(open_):
             return Stop.GAP if (safe < shown).any() else Stop.CLOSED
         if stop := self._budget.spent(self.nodes):
             return stop
-        x = min(open_, key=lambda e: (safe[e], e))
+        x = int(open_[safe[open_].argmin()])
         if x not in self._searches:
             self._open(x)
         else:
-            self._refine(x)
+            self._refine(x, target)
         self._record(x)
+        self._done[x] = self._closed(x)
         return None
 
     def _shown(self) -> FloatArray:
@@ -126,20 +127,29 @@ class PlanarBrackets:
         low, high = (PlanarSearch(*start) for start in zip(sides, self._pools, strict=True))
         self._searches[x] = low, high
 
-    def _refine(self, x: int) -> None:
+    def _refine(self, x: int, target: float) -> None:
         low, high = self._searches[x]
         doubt_low = low.attained.value / low.bound if low.bound > 0 else np.inf
         doubt_high = high.bound / high.attained.value if high.attained.value > 0 else np.inf
-        first = low.exhausted or (doubt_high > doubt_low and not high.exhausted)
-        side = high if first and not self._against_own else low
+        first = low.exhausted or (_pressing(doubt_high, high.nodes) > _pressing(doubt_low, low.nodes))
+        side = high if first and not high.exhausted and not self._against_own else low
+        aim = side.attained.value * self._spare(x, target) ** (-side.side.sign / (1 if self._against_own else 2))
         close = self.seen_least[x] <= CONTENDER * self.seen_most[x] * self._shown().min()
         if side.nodes >= (STUCK if close else LONG_STUCK):
             side.attained.pairs()
-        side.refine()
+        before = side.nodes
+        side.refine(side.side.sign * aim)
+        self.nodes += side.nodes - before
         pool = self._pools[int(side is high)]
         pool += side.averages
         side.averages.clear()
         del pool[:-POOL]
+
+    def _spare(self, x: int, target: float) -> float:
+        """How many times what is proved of an element may fall short of what is seen: at least 1."""
+        if not (self.seen_most[x] > 0 and 0 < target < np.inf):
+            return 1.0
+        return max(float(self.seen_least[x] / self.seen_most[x]) / target, 1.0)
 
     def _record(self, x: int) -> None:
         low, high = self._searches[x]
@@ -160,7 +170,12 @@ class PlanarBrackets:
         return smallest * (1 - MARGIN) / self._planar.scale, largest * (1 + MARGIN) / self._planar.scale
 
 
+def _pressing(doubt: float, nodes: int) -> float:
+    """Which side of an element to refine: the more doubtful one, less so the more parts it has taken."""
+    return float(np.log(doubt) / np.sqrt(nodes + PATIENCE))
+
+
 def _highest_level(options: Options, prior: FloatArray) -> float:
     """Proved upper bound on the smallest level of any context."""
     everything = np.ones(len(options.elements), dtype=np.bool_)
-    return relax(options, prior, prior, None, slope=0.0, allowed=everything, cuts=NO_CUTS).ceiling
+    return LevelProgram(options, prior, prior, None, allowed=everything).bound(0.0).ceiling

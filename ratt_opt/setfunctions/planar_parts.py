@@ -20,8 +20,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.level_bounds import Forms, ceilings, least_marginal, most_marginal
-from ratt_opt.setfunctions.level_program import NO_CUTS, Sector, own_direction
+from ratt_opt.setfunctions.level_bounds import (
+    Forms,
+    ceilings,
+    least_enough,
+    least_marginal,
+    most_enough,
+    most_marginal,
+)
+from ratt_opt.setfunctions.level_program import Sector, own_direction
 from ratt_opt.setfunctions.planar import levels
 
 if TYPE_CHECKING:
@@ -29,7 +36,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.setfunctions.level_bounds import Average
-    from ratt_opt.setfunctions.level_program import Cuts, Relaxed
+    from ratt_opt.setfunctions.level_program import Relaxed
     from ratt_opt.setfunctions.planar import Options
 
 __all__ = ["Part", "Side"]
@@ -44,7 +51,8 @@ MARGIN = 1e-9
 class Part:
     """``key`` : its bound, negated for the largest marginal; sector ``low`` to ``high`` off the target's reference.
 
-    ``added`` : ``d`` above. ``relaxed`` : what the linear program said, once there was one.
+    ``added`` : ``d`` above. ``slope``, ``start`` : what to start from: the slope, and the average (3, M) of cuts, that
+    bounded the part so far. ``relaxed`` : what the linear program said, once there was one.
     """
 
     key: float
@@ -54,7 +62,7 @@ class Part:
     added: float
     allowed: BoolArray
     slope: float
-    cuts: Cuts = NO_CUTS
+    start: FloatArray | None = None
     relaxed: Relaxed | None = None
 
 
@@ -94,6 +102,14 @@ class Side:
         numbers = np.array([[ceiling], [part.added if added is None else added], [slope]])
         return float(self._keys(np.array([part.target]), *numbers)[0])
 
+    def enough(self, part: Part, target: float, slope: float) -> float:
+        """The ceiling at which a part's key reaches a target."""
+        if self.sign * target <= 0 or part.added <= 0:
+            return -np.inf
+        if self.largest:
+            return most_enough(-target * (1 - 2 * MARGIN), part.added, slope, float(self._lowest[part.target]))
+        return least_enough(target * (1 + 2 * MARGIN), part.added, slope, self.highest)
+
     def roots(self) -> list[Part]:
         """Parts that cover every context, bounded by ``d`` alone."""
         ends = [(-EDGES[0], EDGES[0])]
@@ -102,17 +118,20 @@ class Side:
         return [self._alone(j, low, high) for j in range(len(self._lowest)) for low, high in ends]
 
     def recycle(self, parts: Sequence[Part], averages: Sequence[Average]) -> None:
-        """Raise the bounds of parts that hold every context of a sector, by averages of cuts found elsewhere."""
+        """Raise the bounds of parts with the same options left, by averages of cuts found elsewhere."""
         if not parts or not averages:
             return
         target = np.array([part.target for part in parts])
         ends = np.array([(part.low, part.high) for part in parts])
         middle, half = self._reference[target] + ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2
-        ceiling = ceilings(self.options, self.base, self.own_base, Forms(target, own_direction(middle, half)), averages)
+        forms, allowed = Forms(target, own_direction(middle, half)), parts[0].allowed
+        ceiling = ceilings(self.options, self.base, self.own_base, forms, averages, allowed)
         added = np.broadcast_to([part.added for part in parts], ceiling.shape)
         slope = np.broadcast_to([[average.slope] for average in averages], ceiling.shape)
-        for part, key in zip(parts, self._keys(target, ceiling, added, slope).max(axis=0), strict=True):
-            part.key = max(part.key, float(key))
+        keys = self._keys(target, ceiling, added, slope)
+        for part, key, best in zip(parts, keys.max(axis=0).tolist(), keys.argmax(axis=0).tolist(), strict=True):
+            if key > part.key:
+                part.key, part.start, part.slope = key, averages[best].cuts, averages[best].slope
 
     def _alone(self, target: int, low: float, high: float) -> Part:
         added = self.extreme_added(target, low, high)

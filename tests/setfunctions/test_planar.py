@@ -6,13 +6,23 @@ from itertools import product
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 import ratt_opt as ro
 from ratt_opt.setfunctions import eigenvalue_branching
 from ratt_opt.setfunctions.eigenvalue_branching import PlanarSearch
-from ratt_opt.setfunctions.level_bounds import Average, Forms, ceilings, least_marginal, most_marginal
-from ratt_opt.setfunctions.level_program import NO_CUTS, Sector, own_direction, relax
-from ratt_opt.setfunctions.planar import Options, Planar, levels, marginals
+from ratt_opt.setfunctions.level_bounds import (
+    Average,
+    Forms,
+    ceilings,
+    least_enough,
+    least_marginal,
+    most_enough,
+    most_marginal,
+)
+from ratt_opt.setfunctions.level_program import LevelProgram, Sector, own_direction
+from ratt_opt.setfunctions.planar import Options, Planar, along, levels, marginals
+from ratt_opt.setfunctions.planar_descent import PlanarDescent
 from ratt_opt.setfunctions.planar_parts import Side
 from ratt_opt.stopping import Stop
 from tests.strategies import information_data, range_bearing
@@ -65,11 +75,19 @@ def test_ceilings_hold_for_every_context_of_the_sector():
         slope = float(rng.choice([0.0, 0.7, 1.0, 2.5]))
         allowed = rng.random(len(options.robot)) < 0.7
         allowed[options.first] |= np.bincount(options.robot, allowed) == 0
-        found = relax(options, base, own_base, sector, slope=slope, allowed=allowed, cuts=NO_CUTS)
+        program = LevelProgram(options, base, own_base, sector, allowed=allowed)
+        if trial % 2:
+            program.bound(slope + 0.5)
+        found = program.bound(slope)
         other = Sector(0, rng.uniform(-4, 4), 0.3)
         forms = Forms(np.array([0]), own_direction(np.array([other.middle]), np.array([other.half])))
-        recycled = ceilings(options, base, own_base, forms, [Average(found.average, slope)])[0, 0]
-        free = relax(options, base, own_base, None, slope=0.0, allowed=allowed, cuts=NO_CUTS).ceiling
+        recycled = ceilings(options, base, own_base, forms, [Average(found.average, slope)], allowed)[0, 0]
+        contexts = every_context(options)
+        totals = options.parts[contexts[allowed[contexts].all(axis=1)]].sum(axis=1)
+        exact = ((base + totals) * found.average).sum(axis=(1, 2))
+        exact -= slope * (own_base + totals)[:, :, 0] @ forms.direction[0]
+        assert recycled == pytest.approx(exact.max(), abs=1e-9 * (1 + np.abs(totals).max()))
+        free = LevelProgram(options, base, own_base, None, allowed=allowed).bound(0.0).ceiling
         for picks in every_context(options):
             parts = options.parts[picks].sum(axis=0)
             level, own, own_total = levels(base + parts).min(), levels(own_base + parts), own_base + parts
@@ -79,9 +97,112 @@ def test_ceilings_hold_for_every_context_of_the_sector():
                 if abs(away[0, sector.target]) <= sector.half:
                     inside += 1
                     assert level - slope * own[sector.target] <= found.ceiling
-            if abs(away[1, 0]) <= other.half:
-                assert level - slope * own[0] <= recycled
+                if abs(away[1, 0]) <= other.half:
+                    assert level - slope * own[0] <= recycled
     assert inside > 500
+
+
+def sector_rows(options, own_base, sector):
+    """Coefficients and constants of the bound on a target's level, and of its two edges, from their definitions."""
+    parts, start = options.parts[:, :, sector.target], own_base[:, sector.target]
+    toward = np.array([np.cos(sector.middle), np.sin(sector.middle)])
+    own = parts[:, 0] + parts[:, 1:] @ toward / np.cos(sector.half)
+    angle = sector.middle + np.array([[1.0], [-1.0]]) * (np.pi / 2 - sector.half)
+    sides = -np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
+    constant = np.append(start[0] + start[1:] @ toward / np.cos(sector.half), sides @ start[1:])
+    return np.concatenate([own[None], sides @ parts[:, 1:].T]), constant
+
+
+def linear_program(options, base, cuts, *, rows, constants, slope):
+    """``max t - slope own - 100 (violations of the edges)`` over mixtures under some cuts."""
+    count, n = len(options.first), len(options.robot)
+    directions = along(cuts.angles)
+    scores = np.einsum("kpc,cp->ck", options.parts[:, :, cuts.targets], directions)
+    above = np.einsum("pc,cp->c", base[:, cuts.targets], directions)
+    unequal = np.zeros((len(scores) + 2, n + 3))
+    unequal[:-2, :n], unequal[:-2, n] = -scores, 1.0
+    unequal[-2:, :n], unequal[-2:, n + 1 :] = -rows[1:], -np.eye(2)
+    shares = np.zeros((count, n + 3))
+    shares[options.robot, np.arange(n)] = 1.0
+    solved = linprog(
+        np.concatenate([slope * rows[0], [-1.0, 100.0, 100.0]]),
+        A_ub=unequal,
+        b_ub=np.append(above, constants[1:]),
+        A_eq=shares,
+        b_eq=np.ones(count),
+        bounds=[(0, None)] * n + [(None, None)] + [(0, None)] * 2,
+    )
+    return -solved.fun - slope * constants[0]
+
+
+def test_the_program_over_its_last_cuts_is_solved_and_nearly_no_cut_is_missing():
+    rng = np.random.default_rng(5)
+    tight = 0
+    for trial in range(120):
+        planar = Planar.of(instance(rng, trial))
+        options, added = Options.beside(planar, OWNERS, 0), planar.parts[1]
+        base, own_base = (planar.prior + added, planar.prior) if trial % 3 else (planar.prior, planar.prior + added)
+        own_total = own_base + options.parts[rng.choice(every_context(options))].sum(axis=0)
+        target = int(rng.integers(base.shape[1]))
+        middle = np.arctan2(-own_total[2], -own_total[1])[target] + rng.uniform(-0.2, 0.2)
+        sector, slope = Sector(target, float(middle), rng.uniform(0.05, 0.8)), float(rng.choice([0.7, 1.0, 2.5]))
+        everything = np.ones(len(options.robot), dtype=bool)
+        program = LevelProgram(options, base, own_base, sector, allowed=everything)
+        first, found = program.bound(0.9), program.bound(slope)
+        rows, constants = sector_rows(options, own_base, sector)
+        plain = linear_program(options, base, found.cuts, rows=rows, constants=constants, slope=slope)
+        size = 1 + np.abs(base).max() + np.abs(options.parts).max()
+        assert found.ceiling == pytest.approx(plain, abs=1e-8 * size)
+        assert np.bincount(options.robot, found.mixture) == pytest.approx(1)
+        missed = found.level - levels(base + np.tensordot(found.mixture, options.parts, axes=1)).min()
+        assert missed >= -1e-8 * size
+        tight += missed <= 0.031 * abs(found.level - found.own) + 1e-9 * size
+        # Every start leads there, and a ceiling that is low enough ends the search.
+        again = LevelProgram(options, base, own_base, sector, allowed=everything, start=first.average)
+        assert again.bound(slope).ceiling <= found.ceiling + 0.031 * abs(found.level - found.own) + 1e-8 * size
+        early = LevelProgram(options, base, own_base, sector, allowed=everything).bound(slope, found.ceiling + 0.1)
+        assert found.ceiling - 0.031 * abs(found.level - found.own) - 1e-8 * size <= early.ceiling
+    assert tight > 100
+
+
+def test_a_ceiling_is_enough_exactly_where_the_marginal_reaches_its_target():
+    rng = np.random.default_rng(6)
+    closed = 0
+    for _ in range(400):
+        added, target, end = rng.uniform(0.01, 0.5), rng.uniform(0.01, 1), rng.uniform(0.3, 3)
+        low_slope, high_slope = rng.uniform(0.3, 1), rng.uniform(1, 6)
+        least = least_enough(target, added, low_slope, end)
+        most = most_enough(target, added, high_slope, end)
+        for ceiling in rng.uniform(-2, 2, 20):
+            numbers = np.array([[ceiling], [added]])
+            low = least_marginal(*numbers, np.array([low_slope]), end)[0]
+            high = most_marginal(*numbers, np.array([high_slope]), np.array([end]))[0]
+            assert abs(ceiling - least) < 1e-9 or (low >= target) == (ceiling < least)
+            assert abs(ceiling - most) < 1e-9 or (high <= target) == (ceiling < most)
+            closed += (ceiling < least < np.inf) + (ceiling < most < np.inf)
+    assert closed > 1000
+
+
+def test_descents_end_where_no_change_of_one_or_two_robots_is_better():
+    rng = np.random.default_rng(7)
+    for trial in range(60):
+        planar = Planar.of(instance(rng, trial))
+        options, added, sign = Options.beside(planar, OWNERS, 0), planar.parts[1], float(1 - 2 * (trial % 2))
+        contexts = every_context(options)
+        values = sign * marginals(planar.prior + options.parts[contexts].sum(axis=1), added)
+        found = PlanarDescent(options, planar.prior, added, sign=sign)
+        start = contexts[rng.integers(len(contexts))]
+        found.offer(start)
+        slack = 1e-11 * np.abs(values).max()
+        for changes in (1, 2):
+            if changes == 2:
+                found.pairs()
+            assert sign * found.value == pytest.approx(values[(contexts == found.picks).all(axis=1)][0], rel=1e-12)
+            assert sign * found.value <= values[(contexts == start).all(axis=1)][0] + slack
+            near = (contexts != found.picks).sum(axis=1) <= changes
+            assert sign * found.value <= values[near].min() + slack
+        found.enumerate(np.ones(len(options.robot), dtype=bool))
+        assert sign * found.value == pytest.approx(values.min(), abs=slack)
 
 
 def test_two_inequalities_leave_no_better_pair_than_the_formulas_say():
@@ -110,7 +231,7 @@ def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
         planar = Planar.of(instance(rng, trial))
         options = Options.beside(planar, OWNERS, 0)
         everything = np.ones(len(options.robot), dtype=bool)
-        highest = relax(options, planar.prior, planar.prior, None, slope=0.0, allowed=everything, cuts=NO_CUTS).ceiling
+        highest = LevelProgram(options, planar.prior, planar.prior, None, allowed=everything).bound(0.0).ceiling
         added = planar.parts[0]
         totals = planar.prior + options.parts[every_context(options)].sum(axis=1)
         values = marginals(totals, added)
@@ -124,7 +245,7 @@ def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
             assert low - slack <= exact <= high + slack
             if search.exhausted:
                 break
-            search.refine()
+            search.refine(search.side.sign * search.attained.value)
         ended += search.exhausted
         search.attained.pairs()
         if search.exhausted:
@@ -150,15 +271,16 @@ def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
     f, owners = section_six(3, 4, 5)
     exact = ro.total_curvature(f, owners)
     monkeypatch.setattr(LIMIT, 1)
-    plain, calls = relax, [0]
+    calls = [0]
 
-    def interrupted(*arguments, **options):
-        calls[0] += 1
-        if calls[0] > after:
-            raise KeyboardInterrupt
-        return plain(*arguments, **options)
+    class Interrupted(LevelProgram):
+        def bound(self, *arguments):
+            calls[0] += 1
+            if calls[0] > after:
+                raise KeyboardInterrupt
+            return super().bound(*arguments)
 
-    monkeypatch.setattr(eigenvalue_branching, "relax", interrupted)
+    monkeypatch.setattr(eigenvalue_branching, "LevelProgram", Interrupted)
     for after in (0, 3, 10, 40):  # noqa: B007  (read by the function above)
         calls[0] = 0
         found = ro.total_curvature(f, owners, gap=0.0, time_limit=None)
