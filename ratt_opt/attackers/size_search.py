@@ -207,11 +207,15 @@ class SizeSearch:
         return threshold
 
     def _split(self, node: SizeNode, bound: float, robots: IntArray, minorant: Minorant | None) -> list[SizeNode]:
-        """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant)."""
+        """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant).
+
+        Rather one whose side is clear: its other side is soon closed, and its own hides less. Preferring robots on
+        neither side took ten times as long at 60 robots.
+        """
         pick, with_it, without = 0, None, None
         if minorant is not None:
             x = minorant.fraction
-            pick = int(np.argmax(minorant.tension * (0.05 + x * (1 - x))))
+            pick = int(np.argmax(minorant.tension * (1 - 3 * x * (1 - x))))
             it = np.arange(len(robots)) == pick
             with_it, without = minorant.restricted(~it, it), minorant.restricted(~it, np.zeros_like(it))
         robot = int(robots[pick])
