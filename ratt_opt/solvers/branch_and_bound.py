@@ -18,7 +18,7 @@ from ratt_opt.solvers.branching import divide_by_scores, divide_elements, mixing
 from ratt_opt.solvers.cut_store import CutStore
 from ratt_opt.solvers.node_program import NodeProgram
 from ratt_opt.solvers.proof import Leaf, UpperProof
-from ratt_opt.solvers.search_tree import TreeNode, divide, equal_elements, freeze, used_cuts, with_choice
+from ratt_opt.solvers.search_tree import TreeNode, divide, freeze, representatives, used_cuts, with_choice
 from ratt_opt.solvers.winners import Winners
 from ratt_opt.stopping import Stop
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.node_program import RelaxedPlan
     from ratt_opt.solvers.outcome_pool import OutcomePool
     from ratt_opt.solvers.pair_outcomes import PairOutcomes
+    from ratt_opt.solvers.search_tree import Classes
 
 __all__ = ["BranchAndBound"]
 
@@ -51,13 +52,14 @@ NEGLIGIBLE = 1e-12
 class BranchAndBound:
     """The search; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
-    def __init__(self, pool: OutcomePool, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> None:
+    def __init__(
+        self, pool: OutcomePool, incumbent: Incumbent, classes: Classes, gap: float, pairs: PairOutcomes | None
+    ) -> None:
         self.problem, self.objective = problem, objective = pool.problem, pool.objective
         self.pool, self.incumbent, self.gap, self._pairs = pool, incumbent, gap, pairs
         self.nodes = 0
-        self.classes = equal_elements(problem, objective)
-        representatives = tuple(np.array(sorted(own), dtype=np.int64) for own in self.classes)
-        self._program = NodeProgram(problem.objective.n, representatives)
+        self.classes, everything = classes, representatives(classes)
+        self._program = NodeProgram(problem.objective.n, everything)
         self._cuts = CutStore(problem, objective, pool)
         self._winners = Winners(objective, self._cuts, incumbent, self.classes, closes=self._closes, close=self._close)
         self._singles = objective.singletons()
@@ -66,7 +68,7 @@ class BranchAndBound:
         self._closed: list[TreeNode] = []
         self._finished = self._decided = -np.inf
         self._current: TreeNode | None = None
-        self._root = self._first_node(representatives)
+        self._root = self._first_node(everything)
         self._push(self._root)
 
     # -- the bracket -------------------------------------------------------------------------------------------

@@ -63,10 +63,6 @@ class CutStore:
         chosen = np.flatnonzero(selection)
         return np.asarray(self.constants + selection[chosen] @ self._scores[chosen, : len(self._cuts)])
 
-    def target(self, cut: int) -> int | None:
-        """The target a cut of the max-eigenvalue criterion is about."""
-        return self._cuts[cut].target
-
     def tangent(self, outcome: int, group: int, point: FloatArray, target: int | None = None) -> int:
         """Add the tangent of a group's value at the posterior information ``point``; return its index."""
         return self.add(

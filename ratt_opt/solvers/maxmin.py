@@ -73,10 +73,11 @@ def solve_maxmin(
     search: BranchAndBound | None = None
     try:
         _list_outcomes(problem, pool)
-        pairs = PairOutcomes.of(problem, objective, equal_elements(problem, objective))
+        classes = equal_elements(problem, objective)
+        pairs = PairOutcomes.of(problem, objective, classes)
         incumbent.start(*([] if pairs is None else [pairs.strongest_plan()]))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = BranchAndBound(pool, incumbent, max(gap - PROVED, 0.0), pairs)
+        search = BranchAndBound(pool, incumbent, classes, max(gap - PROVED, 0.0), pairs)
         stop = _search_and_prove(search, incumbent, max_nodes, progress)
     except KeyboardInterrupt:
         stop = Stop.INTERRUPTED

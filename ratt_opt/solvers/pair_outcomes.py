@@ -15,7 +15,7 @@ from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 from ratt_opt.problem import Attack
 from ratt_opt.solvers.pair_values import PairValues
-from ratt_opt.solvers.search_tree import divide, with_choice
+from ratt_opt.solvers.search_tree import divide, representatives, with_choice
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -33,7 +33,7 @@ class PairOutcomes:
 
     def __init__(self, problem: Problem, objective: InformationObjective, classes: Classes, alone: int) -> None:
         self.problem, self.classes, self.alone = problem, classes, alone
-        self.values = PairValues(objective, _representatives(classes))
+        self.values = PairValues(objective, representatives(classes))
         single = objective.singletons()
         strongest = [single[choice].max() for choice in problem.choices]
         self._weakest_first = np.argsort(strongest, kind="stable").tolist()
@@ -42,7 +42,7 @@ class PairOutcomes:
     def of(cls, problem: Problem, objective: InformationObjective, classes: Classes) -> PairOutcomes | None:
         """``None`` where no attack leaves just one pair, robots differ to the adversary, or pairs are too many."""
         threat = problem.threat
-        if not threat.is_symmetric or not PairValues.affordable(objective, _representatives(classes)):
+        if not threat.is_symmetric or not PairValues.affordable(objective, representatives(classes)):
             return None
         alone = problem.n_robots - threat.n_blinded - 2
         if alone < 0 or (2, *[1] * alone) not in non_dominated_sizes(
@@ -76,7 +76,3 @@ class PairOutcomes:
         alone = [i for i in self._weakest_first if i not in pair][: self.alone]
         outcome = sorted((pair, *(frozenset((i,)) for i in alone)), key=min)
         return Attack(*realise(self.problem.threat, tuple(outcome)))
-
-
-def _representatives(classes: Classes) -> list[IntArray]:
-    return [np.array(sorted(own), dtype=np.int64) for own in classes]

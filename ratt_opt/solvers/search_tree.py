@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.solvers.proof import ElementBranch, Leaf, WinnerBranch
 
 if TYPE_CHECKING:
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.proof import Node
 
-__all__ = ["Classes", "TreeNode", "divide", "equal_elements", "freeze", "used_cuts", "with_choice"]
+__all__ = ["Classes", "TreeNode", "divide", "equal_elements", "freeze", "representatives", "used_cuts", "with_choice"]
 
 Classes = list[dict[int, list[int]]]
 """Per robot, lowest element -> all elements with the same information: one of each is searched."""
@@ -56,6 +58,11 @@ def equal_elements(problem: Problem, objective: InformationObjective) -> Classes
             own.setdefault(first, []).append(e)
         classes.append(own)
     return classes
+
+
+def representatives(classes: Classes) -> tuple[IntArray, ...]:
+    """The first element of each class of each robot: all that a search has to choose from."""
+    return tuple(np.array(sorted(own), dtype=np.int64) for own in classes)
 
 
 def with_choice(choices: tuple[IntArray, ...], robot: int, elements: IntArray) -> tuple[IntArray, ...]:

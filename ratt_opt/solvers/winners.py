@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt.solvers.closed_group import close_group
 from ratt_opt.solvers.proof import Leaf
-from ratt_opt.solvers.search_tree import TreeNode, divide, with_choice
+from ratt_opt.solvers.search_tree import TreeNode, divide, representatives, with_choice
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,7 +50,7 @@ class Winners:
         self.incumbent, self.classes = incumbent, classes
         self.closes, self.close = closes, close
         self.finished = -np.inf
-        self._everything = tuple(np.array(sorted(own), dtype=np.int64) for own in classes)
+        self._everything = representatives(classes)
         self._winner = np.zeros(0, dtype=np.int64)
         self._closed: dict[int, list[tuple[int, ClosedGroup]]] = {}
         self._attempts: dict[tuple[int, bytes], tuple[float, ClosedGroup | None]] = {}
