@@ -18,6 +18,7 @@ __all__ = [
     "SearchState",
     "criterion",
     "cut_polytopes",
+    "matrix_values",
     "point_values",
     "row_weights",
     "search",
@@ -239,26 +240,37 @@ def cut_polytopes(normals: Any, offsets: Any, factors: Any, capacity: int) -> An
 
 
 @numba.njit(cache=True)
-def point_values(kind: int, weights: Any, prior: Any, starts: Any, points: Any, numbers: Any) -> Any:  # noqa: PLR0917
-    """Value of each target's information ``starts[j, p]`` plus a point (V, 3) of polytope ``(j, p)`` -> (V,).
+def _value(kind: int, weight: float, prior: Any, a: float, b: float, c: float) -> float:  # noqa: PLR0917
+    """One target's value, trace or log-det, of ``[[a, b], [b, c]]``; minus infinity where not positive definite."""
+    zero, determinant = prior[0] * prior[2] - prior[1] ** 2, a * c - b * b
+    if not (determinant > 1e-12 * (a + c) ** 2 and a + c > 0):
+        return -np.inf
+    if kind == 0:
+        return float(weight * ((prior[0] + prior[2]) / zero - (a + c) / determinant))
+    return float(weight * np.log(determinant / zero))
 
-    Trace or log-det; minus infinity where the information is not positive definite.
-    """
+
+@numba.njit(cache=True)
+def matrix_values(kind: int, weights: Any, prior: Any, matrices: Any) -> Any:
+    """Each target's value (:func:`_value`) of information matrices (K, M, 3) -> (K, M)."""
+    values = np.empty(matrices.shape[:2])
+    for k in range(matrices.shape[0]):
+        for j in range(matrices.shape[1]):
+            a, b, c = matrices[k, j, 0], matrices[k, j, 1], matrices[k, j, 2]
+            values[k, j] = _value(kind, weights[j], prior[j], a, b, c)
+    return values
+
+
+@numba.njit(cache=True)
+def point_values(kind: int, weights: Any, prior: Any, starts: Any, points: Any, numbers: Any) -> Any:  # noqa: PLR0917
+    """The same of the information ``starts[j, p]`` plus each point (V, 3) of polytope ``(j, p)`` -> (V,)."""
     values = np.empty(len(points))
     v = 0
     for j in range(starts.shape[0]):
-        zero = prior[j, 0] * prior[j, 2] - prior[j, 1] ** 2
-        least = (prior[j, 0] + prior[j, 2]) / zero
         for p in range(starts.shape[1]):
             for _ in range(numbers[j, p]):
                 a, b, c = starts[j, p, 0] + points[v, 0], starts[j, p, 1] + points[v, 1], starts[j, p, 2] + points[v, 2]
-                determinant = a * c - b * b
-                if not (determinant > 1e-12 * (a + c) ** 2 and a + c > 0):
-                    values[v] = -np.inf
-                elif kind == 0:
-                    values[v] = weights[j] * (least - (a + c) / determinant)
-                else:
-                    values[v] = weights[j] * np.log(determinant / zero)
+                values[v] = _value(kind, weights[j], prior[j], a, b, c)
                 v += 1
     return values
 

@@ -130,9 +130,13 @@ def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> Floa
     return np.asarray(family.weights[target, None] * np.stack([p, 2 * q, r], axis=-1))
 
 
-def _normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, rest: FloatArray) -> FloatArray:
-    """(M, KEPT + NEW, 3) normals of the half-spaces that bind here, and of new ones."""
-    constants = _least(points, rest)
+def _normals(
+    family: SetFamily, points: OuterPoints, slopes: FloatArray, rest: FloatArray, constants: FloatArray
+) -> FloatArray:
+    """(M, KEPT + NEW, 3) normals of the half-spaces that bind here, and of new ones.
+
+    ``constants`` : (M,) the least ``rest`` of each target
+    """
     counts = np.diff(points.first)
     width = np.maximum(BINDING * np.abs(constants), 1e-300)
     closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(width, counts)
@@ -159,14 +163,6 @@ def _new_normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, clo
     return fresh
 
 
-def _least(points: OuterPoints, rest: FloatArray) -> FloatArray:
-    """(M,) the least over each target's vertices; infinite where there is none."""
-    least = np.full(len(points.sound), np.inf)
-    if points.sound.any():
-        least[points.sound] = np.minimum.reduceat(rest, points.first[:-1][points.sound])
-    return least
-
-
 def _recompute(
     family: SetFamily, points: OuterPoints, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
 ) -> Minorant:
@@ -176,7 +172,7 @@ def _recompute(
     np.put_along_axis(shares, points.heavy, own, axis=1)
     without = target_values(family, family.start)  # without a sound polytope: what is chosen already
     rest = program.rest(multipliers)
-    constants = np.where(points.sound, _least(points, rest), without)
+    constants = np.where(points.sound, program.least(rest), without)
     mean = _mean(family, fraction)
     hidden = np.maximum(target_values(family, mean) - constants - shares @ fraction, 0.0)
     return Minorant(
@@ -187,7 +183,7 @@ def _recompute(
         heavy=points.heavy,
         fraction=fraction,
         tension=_tension(family, mean, hidden),
-        normals=_normals(family, points, slopes, rest).astype(np.float32),
+        normals=_normals(family, points, slopes, rest, constants).astype(np.float32),
     )
 
 

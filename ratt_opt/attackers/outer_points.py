@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.compact import LOG_DET, TRACE
-from ratt_opt.attackers.compiled import cut_polytopes, point_values
+from ratt_opt.attackers.compiled import cut_polytopes, matrix_values, point_values
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -46,18 +46,10 @@ class SetFamily:
 
 def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
     """Value of each target's information (..., M, 3) -> (..., M); minus infinity where it is not positive definite."""
-    a, b, c = matrices[..., 0], matrices[..., 1], matrices[..., 2]
-    determinant = a * c - b * b
-    safe = (determinant > 1e-12 * (a + c) ** 2) & (a + c > 0)
-    determinant = np.where(safe, determinant, 1.0)
-    prior = family.prior
-    zero = prior[:, 0] * prior[:, 2] - prior[:, 1] ** 2
-    if family.kind == TRACE:
-        value = (prior[:, 0] + prior[:, 2]) / zero - (a + c) / determinant
-    else:
-        assert family.kind == LOG_DET
-        value = np.log(determinant / zero)
-    return np.where(safe, family.weights * value, -np.inf)
+    assert family.kind in {TRACE, LOG_DET}
+    flat = np.ascontiguousarray(matrices).reshape(-1, *matrices.shape[-2:])
+    values = matrix_values(family.kind, family.weights, family.prior, flat)
+    return np.asarray(values.reshape(matrices.shape[:-1]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,22 +92,24 @@ class DualProgram:
             _rest(self.first, self.pattern, self.values, self.light, self.patterns, multipliers.slopes, multipliers.own)
         )
 
+    def least(self, rest: FloatArray) -> FloatArray:
+        """(M,) the least over each target's points; infinite where there is none."""
+        used = np.diff(self.first) > 0
+        least = np.full(len(used), np.inf)
+        if used.any():
+            least[used] = np.minimum.reduceat(rest, self.first[:-1][used])
+        return least
+
     def bound(self, multipliers: Multipliers, rest: FloatArray) -> float:
         """What the multipliers prove; targets without points have no part in it."""
         used = np.diff(self.first) > 0
         scores = np.einsum("fmt,mt->f", self.information, multipliers.slopes)
         np.add.at(scores, self.heavy[used].ravel(), multipliers.own[used].ravel())
-        least = np.minimum.reduceat(rest, self.first[:-1][used]) if used.any() else np.zeros(0)
-        return float(least.sum() + np.partition(scores, self.size - 1)[: self.size].sum())
+        return float(self.least(rest)[used].sum() + np.partition(scores, self.size - 1)[: self.size].sum())
 
     def _screened(self, rest: FloatArray, margin: float) -> DualProgram:
         """The same without the points whose ``rest`` is more than ``margin`` above their target's least."""
-        counts = np.diff(self.first)
-        used = counts > 0
-        if not used.any():
-            return self
-        least = np.repeat(np.minimum.reduceat(rest, self.first[:-1][used]), counts[used])
-        near = rest <= least + margin
+        near = rest <= np.repeat(self.least(rest), np.diff(self.first)) + margin
         first = np.concatenate([[0], np.cumsum(near)])[self.first]
         return replace(self, first=first, pattern=self.pattern[near], values=self.values[near], light=self.light[near])
 

@@ -9,9 +9,9 @@ import pytest
 from scipy.optimize import approx_fprime, linprog
 
 from ratt_opt.attackers.compact import LOG_DET, TRACE, CompactTeam
-from ratt_opt.attackers.minorant import affine_minorant
+from ratt_opt.attackers.minorant import _program, affine_minorant
 from ratt_opt.attackers.outer_points import SetFamily, outer_points
-from ratt_opt.attackers.smoothed_dual import DualProgram, Multipliers, _smoothed
+from ratt_opt.attackers.smoothed_dual import Multipliers, _smoothed
 from tests.strategies import OBJECTIVES, range_bearing
 
 NAMES = {TRACE: "trace", LOG_DET: "logdet"}
@@ -27,19 +27,7 @@ def sensor_family(kind, seed, n_robots=9, n_targets=4, size=None):
 def dual_program(family, n_heavy):
     points = outer_points(family, n_heavy)
     assert points.sound.all()
-    information = family.information.copy()
-    for j, robots in enumerate(points.heavy):
-        information[robots, j] = 0.0
-    return DualProgram(
-        first=points.first,
-        pattern=points.pattern,
-        values=points.values,
-        light=points.light,
-        patterns=points.patterns.astype(float),
-        heavy=points.heavy,
-        information=information,
-        size=family.size,
-    )
+    return _program(family, points)
 
 
 def optimum(program):
