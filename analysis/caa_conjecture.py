@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.tables import print_table, write_csv
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.random_attack import random_attack
 from ratt_opt.graph.largest_group import smallest_largest_group
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.scenario.generator import random_scenario

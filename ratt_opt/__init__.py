@@ -10,7 +10,6 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.bounded_rational import bounded_rational_attack as bounded_rational_attack
     from ratt_opt.attackers.breaking_budgets import (
         BreakingBudget as BreakingBudget,
     )
@@ -20,8 +19,9 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.criticality import Criticality as Criticality
     from ratt_opt.attackers.criticality import criticality_ranking as criticality_ranking
     from ratt_opt.attackers.exact import worst_case_attack as worst_case_attack
-    from ratt_opt.attackers.greedy import greedy_attack as greedy_attack
-    from ratt_opt.attackers.random_attack import random_attack as random_attack
+    from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack as bounded_rational_attack
+    from ratt_opt.attackers.heuristics.greedy import greedy_attack as greedy_attack
+    from ratt_opt.attackers.heuristics.random_attack import random_attack as random_attack
     from ratt_opt.attackers.result import AttackResult as AttackResult
     from ratt_opt.attackers.survey import attack_survey as attack_survey
     from ratt_opt.audit.ledger import Ledger as Ledger
@@ -67,6 +67,27 @@ if TYPE_CHECKING:
     )
     from ratt_opt.certificates.write import (
         problem_document as problem_document,
+    )
+    from ratt_opt.curvatures.curvature import (
+        Curvature as Curvature,
+    )
+    from ratt_opt.curvatures.curvature import (
+        curvature as curvature,
+    )
+    from ratt_opt.curvatures.curvature import (
+        total_curvature as total_curvature,
+    )
+    from ratt_opt.curvatures.ratios import (
+        GeneralisedCurvature as GeneralisedCurvature,
+    )
+    from ratt_opt.curvatures.ratios import (
+        SubmodularityRatio as SubmodularityRatio,
+    )
+    from ratt_opt.curvatures.ratios import (
+        generalised_curvature as generalised_curvature,
+    )
+    from ratt_opt.curvatures.ratios import (
+        submodularity_ratio as submodularity_ratio,
     )
     from ratt_opt.errors import FileFormatError as FileFormatError
     from ratt_opt.errors import InputError as InputError
@@ -117,15 +138,6 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.simulation import Tracking as Tracking
     from ratt_opt.scenario.simulation import simulate_tracking as simulate_tracking
     from ratt_opt.setfunctions.base import SetFunction as SetFunction
-    from ratt_opt.setfunctions.curvature import (
-        Curvature as Curvature,
-    )
-    from ratt_opt.setfunctions.curvature import (
-        curvature as curvature,
-    )
-    from ratt_opt.setfunctions.curvature import (
-        total_curvature as total_curvature,
-    )
     from ratt_opt.setfunctions.information import (
         LogDetObjective as LogDetObjective,
     )
@@ -152,18 +164,6 @@ if TYPE_CHECKING:
     )
     from ratt_opt.setfunctions.properties import (
         find_submodularity_violation as find_submodularity_violation,
-    )
-    from ratt_opt.setfunctions.ratios import (
-        GeneralisedCurvature as GeneralisedCurvature,
-    )
-    from ratt_opt.setfunctions.ratios import (
-        SubmodularityRatio as SubmodularityRatio,
-    )
-    from ratt_opt.setfunctions.ratios import (
-        generalised_curvature as generalised_curvature,
-    )
-    from ratt_opt.setfunctions.ratios import (
-        submodularity_ratio as submodularity_ratio,
     )
     from ratt_opt.setfunctions.reference import (
         ConcaveOfModular as ConcaveOfModular,
@@ -208,7 +208,7 @@ if TYPE_CHECKING:
         random_plan as random_plan,
     )
     from ratt_opt.solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
-    from ratt_opt.solvers.maxmin import solve_maxmin as solve_maxmin
+    from ratt_opt.solvers.maxmin.solve import solve_maxmin as solve_maxmin
     from ratt_opt.solvers.ratt import ratt as ratt
     from ratt_opt.solvers.result import MaxMinResult as MaxMinResult
     from ratt_opt.stopping import Stop as Stop
@@ -223,11 +223,11 @@ _HOME = {
     "ConcaveOfModular": "setfunctions.reference",
     "Coverage": "setfunctions.reference",
     "Criticality": "attackers.criticality",
-    "Curvature": "setfunctions.curvature",
+    "Curvature": "curvatures.curvature",
     "Cut": "setfunctions.reference",
     "FacilityLocation": "setfunctions.reference",
     "FileFormatError": "errors",
-    "GeneralisedCurvature": "setfunctions.ratios",
+    "GeneralisedCurvature": "curvatures.ratios",
     "Guarantee": "bounds.guarantees",
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
@@ -252,7 +252,7 @@ _HOME = {
     "Sensor": "scenario.sensor",
     "SetFunction": "setfunctions.base",
     "Stop": "stopping",
-    "SubmodularityRatio": "setfunctions.ratios",
+    "SubmodularityRatio": "curvatures.ratios",
     "TableFunction": "setfunctions.table",
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.information",
@@ -264,13 +264,13 @@ _HOME = {
     "all_guarantees": "bounds.guarantees",
     "attack_survey": "attackers.survey",
     "bound": "main_job",
-    "bounded_rational_attack": "attackers.bounded_rational",
+    "bounded_rational_attack": "attackers.heuristics.bounded_rational",
     "breaking_budgets": "attackers.breaking_budgets",
     "caa": "graph.caa",
     "certify": "certificates.write",
     "count_outcomes": "graph.outcomes",
     "criticality_ranking": "attackers.criticality",
-    "curvature": "setfunctions.curvature",
+    "curvature": "curvatures.curvature",
     "exhaustive_optimum": "solvers.exhaustive",
     "find_modularity_violation": "setfunctions.properties",
     "find_monotonicity_violation": "setfunctions.properties",
@@ -279,9 +279,9 @@ _HOME = {
     "find_subadditivity_violation": "setfunctions.properties",
     "find_submodularity_violation": "setfunctions.properties",
     "from_mrclam": "scenario.mrclam",
-    "generalised_curvature": "setfunctions.ratios",
+    "generalised_curvature": "curvatures.ratios",
     "greedy": "solvers.baselines",
-    "greedy_attack": "attackers.greedy",
+    "greedy_attack": "attackers.heuristics.greedy",
     "inapplicable_guarantees": "bounds.guarantees",
     "instance_bound": "bounds.instance",
     "load_input": "scenario.files",
@@ -292,7 +292,7 @@ _HOME = {
     "nonrobust_optimum": "solvers.baselines",
     "pattern_free_bound": "bounds.guarantees",
     "problem_document": "certificates.write",
-    "random_attack": "attackers.random_attack",
+    "random_attack": "attackers.heuristics.random_attack",
     "random_plan": "solvers.baselines",
     "random_scenario": "scenario.generator",
     "ratt": "solvers.ratt",
@@ -307,10 +307,10 @@ _HOME = {
     "sensing_only_bound": "bounds.guarantees",
     "simulate_tracking": "scenario.simulation",
     "smallest_largest_group": "graph.largest_group",
-    "solve_maxmin": "solvers.maxmin",
-    "submodularity_ratio": "setfunctions.ratios",
+    "solve_maxmin": "solvers.maxmin.solve",
+    "submodularity_ratio": "curvatures.ratios",
     "theorem1_bound": "bounds.guarantees",
-    "total_curvature": "setfunctions.curvature",
+    "total_curvature": "curvatures.curvature",
     "verify_certificate": "certificates.verify",
     "worst_case_attack": "attackers.exact",
     "worst_case_ratio": "audit.ratio",

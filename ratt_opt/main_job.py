@@ -13,15 +13,15 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.guarantees import all_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.certificates.write import certify, why_not_certifiable
+from ratt_opt.curvatures.curvature import curvature, total_curvature
+from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.scenario.threat_fields import OBJECTIVES
 from ratt_opt.setfunctions.base import LARGEST_TABLE
-from ratt_opt.setfunctions.contexts import LARGEST_ENUMERATION
-from ratt_opt.setfunctions.curvature import curvature, total_curvature
 from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_search, random_plan
-from ratt_opt.solvers.maxmin import check_limits, solve_maxmin
+from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks, ratt
 from ratt_opt.stopping import Stop
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.write import Certificate
-    from ratt_opt.setfunctions.curvature import Curvature
+    from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["BoundReport", "PlanAssessment", "bound"]

@@ -21,11 +21,11 @@ import numpy as np
 from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
 from ratt_opt.attackers.bracket import Bracket, Budget
-from ratt_opt.attackers.compact import CompactTeam
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.forced_group import forced_group_bound
-from ratt_opt.attackers.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.weakest_set.compact import CompactTeam
+from ratt_opt.attackers.weakest_set.forced_group import forced_group_bound
 from ratt_opt.graph.largest_group import smallest_largest_group
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.scenario.generator import random_scenario

@@ -17,7 +17,7 @@ from analysis.tables import print_table
 from ratt_opt.certificates.verify import verify_certificate
 from ratt_opt.certificates.write import certify
 from ratt_opt.scenario.generator import random_scenario
-from ratt_opt.solvers.maxmin import solve_maxmin
+from ratt_opt.solvers.maxmin.solve import solve_maxmin
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem

@@ -21,7 +21,7 @@ from analysis.tables import print_table
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin import solve_maxmin
+from ratt_opt.solvers.maxmin.solve import solve_maxmin
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import networkx as nx
 
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.greedy import greedy_attack
-from ratt_opt.attackers.random_attack import random_attack
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.sensor import Sensor
@@ -19,7 +19,7 @@ from ratt_opt.scenario.simulation import simulate_tracking
 from ratt_opt.setfunctions.information import InformationObjective, TraceObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin import solve_maxmin
+from ratt_opt.solvers.maxmin.solve import solve_maxmin
 from ratt_opt.solvers.ratt import ratt
 from ratt_opt.stopping import Stop
 

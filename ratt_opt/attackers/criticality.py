@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.isolation import PartialAttack, team_values
+from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
 from ratt_opt.attackers.plan_values import PlanValues
 
 if TYPE_CHECKING:

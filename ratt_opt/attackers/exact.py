@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
-from ratt_opt.attackers.compact import CompactTeam
-from ratt_opt.attackers.forced_group import forced_group_bound
-from ratt_opt.attackers.greedy import greedy_attack
+from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, LARGEST_THRESHOLD_SEARCH, threshold_search
+from ratt_opt.attackers.by_size.unprotected_links import unprotected_bound
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.threshold_search import LARGEST_PLAIN, LARGEST_THRESHOLD_SEARCH, threshold_search
-from ratt_opt.attackers.unprotected_links import unprotected_bound
+from ratt_opt.attackers.weakest_set.compact import CompactTeam
+from ratt_opt.attackers.weakest_set.forced_group import forced_group_bound
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
@@ -100,7 +100,7 @@ def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budg
         return threshold_search(problem, values, bracket, budget)
     team = CompactTeam.of(problem.objective, values.plan)
     if team is not None and problem.threat.links_alike:
-        from ratt_opt.attackers.large_team import LargeTeamSearch  # compiles
+        from ratt_opt.attackers.by_size.large_team import LargeTeamSearch  # compiles
 
         return LargeTeamSearch(problem, team, values, bracket, budget).run()
     better = greedy_attack(problem, values.plan)
@@ -113,7 +113,7 @@ def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budg
     stop = forced_group_bound(problem, values, team, bracket, budget)
     if team is None or groups is None or stop is Stop.CLOSED:
         return stop
-    from ratt_opt.attackers.split_search import SplitSearch  # compiles
+    from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
     return SplitSearch(problem, team, groups, values, bracket, budget).run()
 

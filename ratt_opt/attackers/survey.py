@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.greedy import greedy_attack
-from ratt_opt.attackers.random_attack import random_attack
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.random_attack import random_attack
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

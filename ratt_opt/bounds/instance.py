@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
+from ratt_opt.curvatures.curvature import SECONDS, total_curvature
+from ratt_opt.curvatures.domains import domain_of
+from ratt_opt.curvatures.marginals import domain_values, groups_of
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.contexts import domain_of
-from ratt_opt.setfunctions.curvature import SECONDS, total_curvature
-from ratt_opt.setfunctions.marginals import domain_values, groups_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.problem import Problem
-    from ratt_opt.setfunctions.curvature import Curvature
 
 __all__ = ["instance_bound"]
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.setfunctions.information import MaxEigenvalueObjective
-from ratt_opt.solvers.proof import ElementBranch, Leaf, Node, UpperProof
+from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, Node, UpperProof
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.proof import Cut
+    from ratt_opt.solvers.maxmin.proof import Cut
 
 __all__ = ["upper_record"]
 

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.criticality import Criticality
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.certificates.write import Certificate
+    from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job import BoundReport
     from ratt_opt.problem import Attack
-    from ratt_opt.setfunctions.curvature import Curvature
 
 __all__ = [
     "attack_table",

@@ -70,6 +70,6 @@ def nonrobust_search(problem: Problem, *, time_limit: float | None = None) -> Ma
     few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
     if few or not isinstance(problem.objective, InformationObjective):
         return exhaustive_optimum(unattacked)
-    from ratt_opt.solvers.maxmin import solve_maxmin  # which starts from the planners above
+    from ratt_opt.solvers.maxmin.solve import solve_maxmin  # which starts from the planners above
 
     return solve_maxmin(unattacked, time_limit=time_limit)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.result import AttackResult
-    from ratt_opt.solvers.proof import UpperProof
+    from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.stopping import Stop
 
 __all__ = ["MaxMinResult"]

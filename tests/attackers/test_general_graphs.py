@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.compact import CompactTeam
-from ratt_opt.attackers.forced_group import forced_survivors
+from ratt_opt.attackers.weakest_set.compact import CompactTeam
+from ratt_opt.attackers.weakest_set.forced_group import forced_survivors
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
 

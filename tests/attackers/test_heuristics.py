@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.greedy import greedy_attack
-from ratt_opt.attackers.random_attack import random_attack
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.errors import InputError
 from tests.strategies import random_elements, random_problem
 

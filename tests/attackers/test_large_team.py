@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import size_search
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
-from ratt_opt.attackers.compact import LOG_DET, TRACE, CompactTeam
-from ratt_opt.attackers.large_team import LargeTeamSearch
-from ratt_opt.attackers.low_sets import LowSets
-from ratt_opt.attackers.minorant import affine_minorant
-from ratt_opt.attackers.outer_points import SetFamily
+from ratt_opt.attackers.by_size.large_team import LargeTeamSearch
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.weak_sets import weak_sets
-from ratt_opt.attackers.weakest_axis import weakest_axis
+from ratt_opt.attackers.weakest_set import size_search
+from ratt_opt.attackers.weakest_set.compact import LOG_DET, TRACE, CompactTeam
+from ratt_opt.attackers.weakest_set.low_sets import LowSets
+from ratt_opt.attackers.weakest_set.minorant import affine_minorant
+from ratt_opt.attackers.weakest_set.outer_points import SetFamily
+from ratt_opt.attackers.weakest_set.weak_sets import weak_sets
+from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
 
 

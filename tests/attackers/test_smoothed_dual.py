@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime, linprog
 
-from ratt_opt.attackers.compact import LOG_DET, TRACE, CompactTeam
-from ratt_opt.attackers.minorant import _program, affine_minorant
-from ratt_opt.attackers.outer_points import SetFamily, outer_points
-from ratt_opt.attackers.smoothed_dual import Multipliers, _smoothed
+from ratt_opt.attackers.weakest_set.compact import LOG_DET, TRACE, CompactTeam
+from ratt_opt.attackers.weakest_set.minorant import _program, affine_minorant
+from ratt_opt.attackers.weakest_set.outer_points import SetFamily, outer_points
+from ratt_opt.attackers.weakest_set.smoothed_dual import Multipliers, _smoothed
 from tests.strategies import OBJECTIVES, range_bearing
 
 NAMES = {TRACE: "trace", LOG_DET: "logdet"}

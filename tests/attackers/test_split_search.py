@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import size_search, weak_subsets
-from ratt_opt.attackers.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
-from ratt_opt.attackers.compact import CompactTeam
+from ratt_opt.attackers.by_partition import weak_subsets
+from ratt_opt.attackers.by_partition.split_search import SplitSearch
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.split_search import SplitSearch
+from ratt_opt.attackers.weakest_set import size_search
+from ratt_opt.attackers.weakest_set.compact import CompactTeam
 from ratt_opt.graph.separable_groups import separable_groups
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing

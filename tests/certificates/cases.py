@@ -11,7 +11,7 @@ import numpy as np
 from ratt_opt import Problem, exhaustive_optimum, worst_case_attack
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.write import write_certificate
-from ratt_opt.solvers.proof import Cut, ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.proof import Cut, ElementBranch, Leaf, UpperProof, WinnerBranch
 from tests.strategies import OBJECTIVES
 
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.curvatures.planar.eigenvalue_search import eigenvalue_ends
+from ratt_opt.curvatures.separable import context_search
+from ratt_opt.curvatures.separable.minorants import minorant, others_of
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions import context_search
-from ratt_opt.setfunctions.eigenvalue_search import eigenvalue_ends
-from ratt_opt.setfunctions.minorants import minorant, others_of
 from ratt_opt.stopping import Stop
 from tests.setfunctions import oracle
 from tests.strategies import OBJECTIVES, information_data, monotone_table, random_objective, range_bearing
 
-LIMIT = "ratt_opt.setfunctions.curvature.LARGEST_ENUMERATION"
+LIMIT = "ratt_opt.curvatures.curvature.LARGEST_ENUMERATION"
 KINDS = sorted(OBJECTIVES)
 
 

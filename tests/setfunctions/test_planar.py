@@ -9,9 +9,9 @@ import pytest
 from scipy.optimize import linprog
 
 import ratt_opt as ro
-from ratt_opt.setfunctions import eigenvalue_branching
-from ratt_opt.setfunctions.eigenvalue_branching import PlanarSearch
-from ratt_opt.setfunctions.level_bounds import (
+from ratt_opt.curvatures.planar import eigenvalue_branching
+from ratt_opt.curvatures.planar.eigenvalue_branching import PlanarSearch
+from ratt_opt.curvatures.planar.level_bounds import (
     Average,
     Forms,
     ceilings,
@@ -20,14 +20,14 @@ from ratt_opt.setfunctions.level_bounds import (
     most_enough,
     most_marginal,
 )
-from ratt_opt.setfunctions.level_program import LevelProgram, Sector, own_direction
-from ratt_opt.setfunctions.planar import Options, Planar, along, levels, marginals
-from ratt_opt.setfunctions.planar_descent import PlanarDescent
-from ratt_opt.setfunctions.planar_parts import Side
+from ratt_opt.curvatures.planar.level_program import LevelProgram, Sector, own_direction
+from ratt_opt.curvatures.planar.planar import Options, Planar, along, levels, marginals
+from ratt_opt.curvatures.planar.planar_descent import PlanarDescent
+from ratt_opt.curvatures.planar.planar_parts import Side
 from ratt_opt.stopping import Stop
 from tests.strategies import information_data, range_bearing
 
-LIMIT = "ratt_opt.setfunctions.curvature.LARGEST_ENUMERATION"
+LIMIT = "ratt_opt.curvatures.curvature.LARGEST_ENUMERATION"
 OWNERS = np.array([0, 0, 1, 1, 1, 2, 3])
 
 

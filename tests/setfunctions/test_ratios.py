@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.curvatures import ratios
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions import ratios
 from tests.setfunctions import oracle
 from tests.strategies import monotone_table, random_objective
 
@@ -64,7 +64,7 @@ def test_brackets_hold_the_exact_value_where_the_domain_is_taken_for_too_large(s
     check_ratio(f, ratio, exact[0])
     assert ratio.how.startswith("later marginals")
     monkeypatch.setattr(ratios, "LARGEST_ENUMERATION", 1)
-    monkeypatch.setattr("ratt_opt.setfunctions.curvature.LARGEST_ENUMERATION", 1)
+    monkeypatch.setattr("ratt_opt.curvatures.curvature.LARGEST_ENUMERATION", 1)
     check_ratio(f, ro.submodularity_ratio(f, owners), exact[0])
     check_curvature(f, ro.generalised_curvature(f, owners), exact[1])
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.curvature import curvature, total_curvature
 from ratt_opt.setfunctions.properties import find_monotonicity_violation, find_submodularity_violation
 from ratt_opt.setfunctions.reference import (
     ConcaveOfModular,

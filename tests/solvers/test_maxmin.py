@@ -22,8 +22,8 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
-from ratt_opt.solvers import incumbent, maxmin
-from ratt_opt.solvers.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin import incumbent, solve
+from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_problem
@@ -101,7 +101,7 @@ def test_equals_the_exhaustive_optimum(seed: int) -> None:
 def test_quick_attacks_that_see_nothing_cost_time_only(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Plans look better than they are until they are attacked exactly; what was closed on their word is reopened."""
     monkeypatch.setattr(incumbent, "SEARCHED_BY_SIZE", 0)
-    monkeypatch.setattr(maxmin, "LISTED_ROBOTS", 0)
+    monkeypatch.setattr(solve, "LISTED_ROBOTS", 0)
     monkeypatch.setattr(incumbent.Incumbent, "_quick_attack", lambda *_: Attack())
     rng = np.random.default_rng([6, seed])
     problem = random_problem(rng, int(rng.integers(2, 6)), kind=list(OBJECTIVES)[seed % 3], controls=4)
@@ -157,7 +157,7 @@ def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ratt_opt.solvers.incumbent.worst_case_attack", interrupted)
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.incumbent.worst_case_attack", interrupted)
     result = solve_maxmin(problem)
     assert result.stop is Stop.INTERRUPTED
     assert result.lower <= full.lower <= full.upper <= result.upper

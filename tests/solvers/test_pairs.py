@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import Problem, certify, exhaustive_optimum, solve_maxmin, verify_certificate, worst_case_attack
-from ratt_opt.solvers.pair_outcomes import PairOutcomes
-from ratt_opt.solvers.pair_values import PairValues
-from ratt_opt.solvers.search_tree import equal_elements
+from ratt_opt.solvers.maxmin.pair_outcomes import PairOutcomes
+from ratt_opt.solvers.maxmin.pair_values import PairValues
+from ratt_opt.solvers.maxmin.search_tree import equal_elements
 from ratt_opt.stopping import Stop
 from tests.solvers.test_maxmin import proved_upper
 from tests.strategies import OBJECTIVES, information_data

@@ -1,0 +1,1 @@
+"""Worst attacks on other graphs, by partitions of the team into groups."""

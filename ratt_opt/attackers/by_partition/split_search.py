@@ -1,0 +1,167 @@
+"""The exact attacker of larger teams on sparse graphs: how is the team split, and who is blinded in each group?
+
+``graph/separable_groups.py`` lists every group an attack may leave. For a threshold, a group needs so many
+blinded robots that some subset of the others is worth less (``weak_subsets.py``); the threshold is reachable
+exactly when the team can be partitioned into groups within the link budget whose needs add up to at most the
+robots that may be blinded. Needs are bounded from below first and computed only for groups that a partition
+asks for; a group needs at least what any group inside it needs. Thresholds are bisected, which narrows the
+bracket from both sides.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.by_partition.weak_subsets import WeakSubsets
+from ratt_opt.attackers.weakest_set.compact import MAX_EIGENVALUE
+from ratt_opt.attackers.weakest_set.minorant import affine_minorant
+from ratt_opt.attackers.weakest_set.outer_points import SetFamily
+from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
+from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
+from ratt_opt.problem import Attack
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attackers.bracket import Bracket, Budget
+    from ratt_opt.attackers.plan_values import PlanValues
+    from ratt_opt.attackers.weakest_set.compact import CompactTeam
+    from ratt_opt.graph.separable_groups import SeparableGroups
+    from ratt_opt.problem import Problem
+
+__all__ = ["SplitSearch"]
+
+TOLERANCE = 1e-10
+"""Relative width that counts as closed."""
+
+BISECTED = 2e-3
+"""Relative width below which the incumbent is tested instead of the middle."""
+
+UNINTERRUPTED = 20_000
+CHUNK = 4096
+
+
+class SplitSearch:
+    """Closes ``bracket`` for one plan; relies on a non-decreasing objective."""
+
+    def __init__(  # noqa: PLR0917
+        self,
+        problem: Problem,
+        team: CompactTeam,
+        groups: SeparableGroups,
+        values: PlanValues,
+        bracket: Bracket,
+        budget: Budget,
+    ) -> None:
+        self.problem, self.team, self.groups, self.values = problem, team, groups, values
+        self.bracket, self.budget = bracket, budget
+        self.n_blinded = problem.threat.n_blinded
+        self.subsets = WeakSubsets(team, problem.protected_robots)
+        self._sizes = np.bitwise_count(groups.masks).astype(np.int64)
+        self._floors = np.zeros((0, 0))
+        """(G, n_blinded + 1) no subset of the group with so many robots blinded is worth less."""
+
+    def run(self) -> Stop:
+        """Bisect the threshold; the bracket is valid whenever this stops."""
+        self.budget.spend()
+        self._floors = self._first_floors()
+        bracket = self.bracket
+        while bracket.lower < (goal := bracket.upper - TOLERANCE * abs(bracket.upper)):
+            width = bracket.upper - bracket.lower
+            threshold = goal if width <= BISECTED * abs(bracket.upper) else bracket.lower + width / 2
+            if not self._reach(threshold):
+                bracket.raise_lower(threshold)
+        return Stop.CLOSED
+
+    def _first_floors(self) -> FloatArray:
+        """Values of whole groups, and minorants over the team for those with blinded robots."""
+        floors = np.full((len(self._sizes), self.n_blinded + 1), -np.inf)
+        floors[:, 0] = self._whole()
+        for size in range(self.problem.n_robots - 1, 0, -1):
+            blinded = self._sizes - size
+            rows = np.flatnonzero((blinded >= 1) & (blinded <= self.n_blinded))
+            if len(rows):
+                self.budget.check_time()
+                floors[rows, blinded[rows]] = self._size_floor(rows, size)
+        # Blinding fewer robots leaves no less.
+        return np.asarray(np.maximum.accumulate(floors[:, ::-1], axis=1)[:, ::-1])
+
+    def _whole(self) -> FloatArray:
+        team, robots = self.team, self.groups.robots
+        information = team.information[robots].reshape(len(robots), -1)
+        values = np.empty(len(self._sizes))
+        for first in range(0, len(values), CHUNK):
+            member = self.groups.masks[first : first + CHUNK, None] >> np.arange(len(robots)) & 1
+            sums = team.prior + (member @ information).reshape(-1, *team.prior.shape)
+            values[first : first + CHUNK] = team.values(sums)
+        return values
+
+    def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
+        """No ``size`` robots of the groups ``rows`` are worth less."""
+        team = self.team
+        if team.kind == MAX_EIGENVALUE:
+            return np.full(len(rows), weakest_axis(team, team.prior, team.information, size).bound)
+        family = SetFamily(team.kind, team.weights, team.prior, team.prior, team.information, size)
+        minorant = affine_minorant(family, 2, -np.inf, self.subsets.minorants.get(size + 1))
+        self.subsets.minorants[size] = minorant
+        scores = minorant.scores[self.groups.robots]
+        total, taken = np.full(len(rows), minorant.constant), np.zeros(len(rows), dtype=np.int64)
+        for place in np.argsort(scores, kind="stable").tolist():
+            takes = (self.groups.masks[rows] >> place & 1).astype(np.bool_) & (taken < size)
+            total[takes] += scores[place]
+            taken += takes
+        return total
+
+    def _reach(self, threshold: float) -> bool:
+        """Find an attack below ``threshold``, or prove that there is none."""
+        need = (self._floors >= threshold).sum(axis=1)
+        need[need > self.n_blinded] = IMPOSSIBLE
+        search = PartitionSearch(self.groups, need)
+        exact: dict[int, frozenset[int]] = {}
+        while not search.finished:
+            before = search.nodes
+            chosen = search.next(before + self.budget.nodes_left(UNINTERRUPTED))
+            self.budget.nodes += search.nodes - before
+            if chosen is not None and self._within(chosen, threshold, need, exact):
+                self._accept([(self.groups.members(group), exact[group]) for group in chosen])
+                return True
+        return False
+
+    def _within(self, chosen: list[int], threshold: float, need: IntArray, exact: dict[int, frozenset[int]]) -> bool:
+        """Settle the groups of a partition until their needs exceed the budget, or none is left: it is an attack."""
+        for group in chosen:
+            if group not in exact:
+                self._settle(group, threshold, need, exact)
+            if need[chosen].sum() > self.n_blinded:
+                return False
+        return True
+
+    def _settle(self, group: int, threshold: float, need: IntArray, exact: dict[int, frozenset[int]]) -> None:
+        """Compute what a group needs, and raise the needs of all groups around it."""
+        robots = frozenset(self.groups.members(group).tolist())
+        around = (self.groups.masks & self.groups.masks[group]) == self.groups.masks[group]
+        for blinded in range(int(need[group]), self.n_blinded + 1):
+            seeing = self.subsets.below(robots, len(robots) - blinded, threshold, self.budget)
+            if seeing is not None:
+                exact[group] = seeing
+                return
+            self._floors[around, : blinded + 1] = np.maximum(self._floors[around, : blinded + 1], threshold)
+            need[around] = np.maximum(need[around], blinded + 1 if blinded < self.n_blinded else IMPOSSIBLE)
+
+    def _accept(self, parts: list[tuple[IntArray, frozenset[int]]]) -> None:
+        """Offer the attack, with the robots that may still be blinded spent on the best groups."""
+        homes = [frozenset(robots.tolist()) for robots, _ in parts]
+        seeing = [kept for _, kept in parts]
+        for _ in range(self.n_blinded - self.problem.n_robots + sum(map(len, seeing))):
+            best = max(range(len(seeing)), key=lambda k: self.team.value(seeing[k]))
+            fewer = self.subsets.weak(homes[best], len(seeing[best]) - 1)
+            if fewer is None:
+                break
+            seeing[best] = fewer
+        home = {i: k for k, robots in enumerate(homes) for i in robots}
+        cut = frozenset((i, j) for i, j in self.problem.communication.links if home[i] != home[j])
+        blinded = frozenset(range(self.problem.n_robots)) - frozenset().union(*seeing)
+        attack = Attack(blinded, cut)
+        self.bracket.offer(attack, self.problem.team_value(self.values.plan, attack))

@@ -1,0 +1,1 @@
+"""Worst attacks on complete graphs, where outcomes differ by their group sizes."""

@@ -1,0 +1,44 @@
+"""The greedy attacker: the single step that hurts most, again and again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, heuristic_result, team_values
+from ratt_opt.attackers.plan_values import PlanValues
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.problem import Problem
+
+__all__ = ["greedy_attack"]
+
+
+def greedy_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
+    """Blind robots one by one, then cut robots off one by one, each time leaving the least team value.
+
+    Ties go to the step that cuts the fewest links, then to the lowest robot. A blinded robot may
+    be cut off too: it relays. Steps are taken as long as the budgets allow one.
+
+    Raises
+    ------
+    InputError : an element is not its robot's, or ``elements`` has the wrong shape.
+    """
+    values = PlanValues(problem, elements)
+    attack = PartialAttack.of(problem)
+    for _ in range(problem.threat.n_blinded):
+        robots = [i for i in range(problem.n_robots) if i not in attack.blinded | problem.protected_robots]
+        attack = _best(values, [attack.blind(i) for i in robots])
+    while True:
+        longer = [attack.cut_off(i) for i in range(problem.n_robots)]
+        steps = [step for step in longer if step is not None and len(step.cut) > len(attack.cut)]
+        if not steps:
+            return heuristic_result(problem, values, attack.finished())
+        attack = _best(values, steps)
+
+
+def _best(values: PlanValues, steps: list[PartialAttack]) -> PartialAttack:
+    worth = team_values(values, steps)
+    return steps[min(range(len(steps)), key=lambda k: (worth[k], len(steps[k].cut), k))]

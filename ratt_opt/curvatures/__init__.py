@@ -1,0 +1,1 @@
+"""Curvature, total curvature and ratios of set functions, over every domain."""

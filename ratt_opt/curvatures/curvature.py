@@ -1,0 +1,234 @@
+"""Curvature and total curvature, exact or as a certified bracket, with what attains the ends.
+
+Both compare an element's smallest marginal with a largest one. *Which contexts* the marginals
+range over is the domain: ``"elements"`` (any set of the others, the definition's reading), ``"feasible"`` (at most one
+element per robot: owners are given), or ``"robots"`` (the robots under one plan).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import check_integer, check_number
+from ratt_opt.curvatures.brackets import Budget, bracket_marginals
+from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
+from ratt_opt.curvatures.marginals import Marginals, enumerate_marginals
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.properties import Violation, find_submodularity_violation
+from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.setfunctions.base import SetFunction
+
+__all__ = ["Curvature", "check_monotone", "curvature", "total_curvature"]
+
+GAP = 0.02
+SECONDS = 30.0
+LARGEST_CHECKED = 16
+"""Largest ground set whose submodularity is checked before the closed form is used (milliseconds)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curvature:
+    """Claim: ``lower <= curvature <= upper`` over ``domain``.
+
+    ``element`` attains ``lower``: its marginal in ``smallest_context`` is the smallest found, and the one in
+    ``largest_context`` the largest. ``useless`` : elements whose every marginal is 0, left out by definition
+    (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within the
+    rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
+    ``how`` : what the ends rest on. ``stop`` : why the search stopped; ``nodes`` : parts of the domain bounded.
+    ``marginals`` : what is known of every element of the domain, in ascending order (its contexts name elements by
+    their position in that order).
+    """
+
+    lower: float
+    upper: float
+    domain: str
+    element: int | None
+    smallest_context: tuple[int, ...]
+    largest_context: tuple[int, ...]
+    useless: tuple[int, ...]
+    near_zero: tuple[int, ...]
+    how: str
+    stop: Stop
+    nodes: int
+    marginals: Marginals = field(compare=False, repr=False)
+
+
+def total_curvature(
+    f: SetFunction,
+    owners: ArrayLike | None = None,
+    *,
+    plan: ArrayLike | None = None,
+    gap: float = GAP,
+    time_limit: float | None = SECONDS,
+    max_nodes: int | None = None,
+) -> Curvature:
+    """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
+
+    Exact where the domain can be enumerated (up to 2**24 sets), else for information criteria a certified bracket,
+    tightened by branch and bound: see :mod:`ratt_opt.curvatures.brackets`. An interrupt returns the bracket.
+
+    Parameters
+    ----------
+    f : non-decreasing set function; refused with a witness where an enumeration shows that it is not
+    owners : (n,) robot of each element, for the domain ``"feasible"``; without it the domain is ``"elements"``
+    plan : one element per robot, for the domain ``"robots"`` (``owners`` are then not used)
+    gap : the search stops once ``(1 - lower) / (1 - upper) <= 1 + gap``; not used where everything is enumerated
+    time_limit : seconds for the search; ``None`` for no limit. max_nodes : parts it may bound
+
+    Raises
+    ------
+    InputError : not non-decreasing, or the domain is too large for an enumeration and no bracket is known for ``f``.
+
+    Source: ratt.tex, eq:total_curvature (Sviridenko, Vondrak, Ward 2017, Section 8).
+    """
+    budget = _budget(gap, time_limit, max_nodes)
+    domain = domain_of(f, owners, plan)
+    found = _marginals(domain, budget, against_own=False)
+    return _curvature_from(found, domain)
+
+
+def curvature(
+    f: SetFunction,
+    owners: ArrayLike | None = None,
+    *,
+    plan: ArrayLike | None = None,
+    gap: float = GAP,
+    time_limit: float | None = SECONDS,
+    max_nodes: int | None = None,
+) -> Curvature:
+    """Curvature ``k = 1 - min_x (smallest marginal of x) / f(x)`` of a submodular function.
+
+    Over ``"elements"`` and ``"robots"`` the smallest marginal of a submodular function is the one on top of all
+    others, so the ends of the lattice decide it; over ``"feasible"`` it ranges over every joint choice of the others.
+
+    Parameters
+    ----------
+    f : normalised, non-decreasing and submodular. Over ``"elements"`` and ``"robots"`` that is checked where the table
+        fits, known for log-det, and otherwise relied on, not checked (``how`` says which)
+    owners, plan, gap, time_limit, max_nodes : see :func:`total_curvature`
+
+    Raises
+    ------
+    InputError : not non-decreasing or not submodular (shown), or the domain is too large for an enumeration and no
+        bracket is known for ``f``.
+
+    Source: ratt.tex, eq:curvature (Conforti and Cornuejols 1984).
+    """
+    budget = _budget(gap, time_limit, max_nodes)
+    domain = domain_of(f, owners, plan)
+    if domain.name == "feasible":
+        found = _marginals(domain, budget, against_own=True)
+        if not isinstance(domain.restricted, LogDetObjective):
+            found = replace(found, how=f"{found.how} (submodularity relied on, not checked)")
+    else:
+        found = _Found(_top_of_lattice(domain.restricted), _submodularity(domain), Stop.EXHAUSTED, 0)
+        check_monotone(domain, found.marginals)
+    single = finite_values(domain.restricted.singletons()) - finite_values(np.array([domain.restricted([])]))
+    marginals = replace(found.marginals, largest_lower=single, largest_upper=single)
+    return _curvature_from(replace(found, marginals=marginals), domain)
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    marginals: Marginals
+    how: str
+    stop: Stop
+    nodes: int
+
+
+def _budget(gap: float, time_limit: float | None, max_nodes: int | None) -> Budget:
+    return Budget(
+        gap=check_number("gap", gap, low=0),
+        seconds=None if time_limit is None else check_number("time_limit", time_limit, low=0),
+        nodes=None if max_nodes is None else check_integer("max_nodes", max_nodes, low=0),
+    )
+
+
+def _marginals(domain: Domain, budget: Budget, *, against_own: bool) -> _Found:
+    if domain.count <= LARGEST_ENUMERATION:
+        found = enumerate_marginals(domain)
+        check_monotone(domain, found)
+        return _Found(found, "every context enumerated", Stop.EXHAUSTED, 0)
+    if isinstance(domain.restricted, InformationObjective):
+        searched = bracket_marginals(domain.restricted, domain.owners, budget, against_own=against_own)
+        return _Found(searched.marginals, "separable minorants and attained contexts", searched.stop, searched.nodes)
+    need = f"{domain.count:.3g} contexts, {domain.count * 8 / 2**30:.3g} GiB"
+    raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
+
+
+def _submodularity(domain: Domain) -> str:
+    """Say on what the closed form rests; refuse a function that is shown not to be submodular."""
+    how = "ends of the lattice"
+    if isinstance(domain.restricted, LogDetObjective):
+        return f"{how} (log-det is submodular)"
+    if domain.restricted.n > LARGEST_CHECKED:
+        return f"{how} (submodularity relied on, not checked)"
+    found = find_submodularity_violation(domain.restricted)
+    if isinstance(found, Violation):
+        sets = " and ".join(str(list(domain.named(s))) for s in (found.a, found.b))
+        raise InputError("f", "must be submodular (see total_curvature)", f"slack {found.slack:.6g} at {sets}")
+    return f"{how} (submodularity checked)"
+
+
+def check_monotone(domain: Domain, found: Marginals) -> None:
+    """Refuse a function with a negative marginal (beyond rounding), showing it."""
+    if len(found.smallest_lower) == 0:
+        return
+    scale = max(float(np.abs(found.largest_upper).max(initial=0.0)), 1e-300)
+    worst = int(found.smallest_lower.argmin())
+    if found.smallest_lower[worst] < -1e-9 * scale:
+        context = domain.named(found.smallest_context[worst])
+        shown = f"adding {domain.element(worst)} to {list(context)} changes it by {found.smallest_lower[worst]:.6g}"
+        raise InputError("f", "must be non-decreasing", shown)
+
+
+def _top_of_lattice(f: SetFunction) -> Marginals:
+    """Marginals on top of all other elements."""
+    everything = np.arange(f.n)
+    if isinstance(f, TableFunction):
+        top = f.values[-1] - f.values[(2**f.n - 1) ^ (1 << everything)]
+    else:
+        membership = ~np.eye(f.n, dtype=np.bool_)
+        top = finite_values(np.array([f(everything)])) - finite_values(f.evaluate(membership))
+    contexts = tuple(tuple(int(e) for e in everything if e != x) for x in everything)
+    nothing: tuple[tuple[int, ...], ...] = ((),) * f.n
+    single = finite_values(f.singletons())
+    return Marginals(top, top, single, single, contexts, nothing)
+
+
+def _curvature_from(found: _Found, domain: Domain) -> Curvature:
+    marginals, rounding = found.marginals, domain.rounding
+    most, seen = marginals.largest_upper, marginals.largest_lower
+    useful = most > 0
+    doubtful = useful & (most <= rounding)
+    safe, shown = np.full(len(most), np.inf), np.full(len(most), np.inf)
+    safe[useful] = np.clip(marginals.smallest_lower[useful], 0.0, None) / most[useful]
+    safe[doubtful] = np.clip(marginals.smallest_lower[doubtful] - rounding, 0.0, None) / (most[doubtful] + rounding)
+    sure = useful & (seen > rounding)
+    shown[sure] = np.clip(marginals.smallest_upper[sure], 0.0, None) / seen[sure]
+    upper = 1.0 - float(safe.min(initial=1.0))
+    x = int(shown.argmin()) if sure.any() else None
+    return Curvature(
+        lower=0.0 if x is None else min(max(1.0 - float(shown[x]), 0.0), max(upper, 0.0)),
+        upper=max(upper, 0.0),
+        domain=domain.name,
+        element=None if x is None else domain.element(x),
+        smallest_context=() if x is None else domain.named(marginals.smallest_context[x]),
+        largest_context=() if x is None else domain.named(marginals.largest_context[x]),
+        useless=tuple(domain.element(x) for x in np.flatnonzero(~useful)),
+        near_zero=tuple(domain.element(x) for x in np.flatnonzero(doubtful)),
+        how=found.how if useful.any() else "no element ever adds anything",
+        stop=found.stop,
+        nodes=found.nodes,
+        marginals=marginals,
+    )

@@ -1,0 +1,1 @@
+"""Brackets of max-eigenvalue marginals of two-dimensional targets."""

@@ -1,0 +1,178 @@
+"""How far the smallest level of all targets can rise above one target's own: a linear program over mixtures.
+
+For contexts ``S`` (one option a robot) let ``t(S)`` be the smallest level over all targets of ``base + S``, and
+``own(S)`` the level of target ``j`` of ``own_base + S``, where its weakest direction, at double angle ``a``, lies in a
+sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V >= t(S) - slope own(S)``.
+
+- ``t`` is at most every target's quadratic form in every direction, so at most any average of them (*cuts*).
+- With ``y = -(even, odd)`` of target ``j``, the level is ``mean - |y|``, ``y`` points to ``a``, so in the sector
+  ``|y| <= y . u / cos(half)`` with ``u`` the unit vector at ``middle``: ``own >= mean - y . u / cos(half)``.
+- In the sector ``y . v >= 0`` for the two unit vectors ``v`` at ``middle +- (pi/2 - half)``.
+
+All are linear in ``S``. Whatever multipliers the linear program has, clipped and normalised, give a valid ``V``: a sum
+over robots of their best option (``level_cuts.py``). Where the sector holds no mixture at all ``V`` is merely low, as
+the multipliers of its edges are capped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.curvatures.planar.level_solver import EDGES, LevelSolver
+from ratt_opt.curvatures.planar.planar import along, levels
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.curvatures.planar.planar import Options
+
+__all__ = ["Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
+
+ROUNDS = 12
+"""Most times the violated cuts are added for one slope."""
+NEW_CUTS = 6
+"""Worst targets that get a cut a round."""
+VIOLATION = 3e-2
+"""Cuts violated by less than this, relative to ``|t - own|``, are left."""
+FIRST_CUTS = 10
+"""Targets that get a cut where there is none to start from."""
+SMALLEST_SHARE = 1e-9
+"""Targets with a smaller share of the average to start from get no cut at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sector:
+    """Double angles within ``half`` of ``middle``, of one target."""
+
+    target: int
+    middle: float
+    half: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cuts:
+    """Directions: (C,) targets and (C,) double angles."""
+
+    targets: IntArray
+    angles: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Relaxed:
+    """``ceiling`` is proved; ``mixture`` (K,) attains about that, with ``level`` and ``own``; ``cuts`` bind there.
+
+    ``multipliers`` : (C,) of the binding cuts, with sum 1. ``average`` : (3, M) of them: ``t <= <average, total>``.
+    """
+
+    ceiling: float
+    mixture: FloatArray
+    level: float
+    own: float
+    cuts: Cuts
+    multipliers: FloatArray
+    average: FloatArray
+    slope: float
+
+
+class LevelProgram:
+    """Bounds ``t - slope own`` over the contexts of allowed options, for one slope after another.
+
+    Parameters
+    ----------
+    base, own_base : (3, M) parts of what every context is added to; without a sector ``own`` is 0
+    allowed : (K,), some option of every robot; start : (3, M) average of cuts that bounded something similar
+    """
+
+    def __init__(
+        self,
+        options: Options,
+        base: FloatArray,
+        own_base: FloatArray,
+        sector: Sector | None,
+        *,
+        allowed: BoolArray,
+        start: FloatArray | None = None,
+    ) -> None:
+        self._base, self._allowed = base, allowed
+        self._parts, self._robot = np.ascontiguousarray(options.parts[allowed]), options.robot[allowed]
+        if start is None:
+            shares = 1 / np.bincount(self._robot)[self._robot]
+            start = _worst(base + np.tensordot(shares, self._parts, axes=1))
+        self._scores, self._constants = _sector_forms(self._parts, own_base, sector)
+        self._solver = LevelSolver(self._robot, self._scores[0], (self._scores[1:], self._constants[1:]))
+        self._cuts = Cuts(np.empty(0, dtype=np.int64), np.empty(0))
+        targets = np.flatnonzero(start[0] > SMALLEST_SHARE)
+        self._add(targets, np.arctan2(start[2, targets], start[1, targets]))
+
+    def bound(self, slope: float, enough: float = -np.inf) -> Relaxed:
+        """The bound with one slope; ``enough`` : a ceiling low enough to stop at."""
+        from ratt_opt.curvatures.planar.level_cuts import ceiling, violated
+
+        self._solver.change_slope(slope)
+        for last in [False] * (ROUNDS - 1) + [True]:
+            z, level, weights = self._solver.solve()
+            highest = ceiling(self._scores, self._constants, np.append(-slope, weights), self._robot)
+            own = float(self._constants[0] + self._scores[0] @ z)
+            if last or highest <= enough or not np.isfinite(level):
+                break
+            found = violated(self._parts, self._base, z, level - VIOLATION * abs(level - own), NEW_CUTS)
+            if len(found[0]) == 0:
+                break
+            self._add(*found)
+        mixture = np.zeros(len(self._allowed))
+        mixture[self._allowed] = z
+        binding = weights[EDGES:] > 0
+        cuts = Cuts(self._cuts.targets[binding], self._cuts.angles[binding])
+        multipliers = weights[EDGES:][binding]
+        return Relaxed(
+            ceiling=highest,
+            mixture=mixture,
+            level=level,
+            own=own,
+            cuts=cuts,
+            multipliers=multipliers,
+            average=_average(cuts, multipliers, self._base),
+            slope=slope,
+        )
+
+    def _add(self, targets: IntArray, angles: FloatArray) -> None:
+        directions = along(angles)
+        scores = np.einsum("kpc,cp->ck", self._parts[:, :, targets], directions)
+        constants = np.einsum("pc,cp->c", self._base[:, targets], directions)
+        self._solver.add(scores, constants)
+        self._scores = np.concatenate([self._scores, scores])
+        self._constants = np.append(self._constants, constants)
+        self._cuts = Cuts(np.append(self._cuts.targets, targets), np.append(self._cuts.angles, angles))
+
+
+def _sector_forms(parts: FloatArray, own_base: FloatArray, sector: Sector | None) -> tuple[FloatArray, FloatArray]:
+    """(3, n) scores and (3,) constants: the level of the sector's target, from below, and the sector's two edges."""
+    if sector is None:
+        return np.zeros((3, len(parts))), np.zeros(3)
+    sides = sector.middle + np.array([1.0, -1.0]) * (np.pi / 2 - sector.half)
+    directions = np.concatenate([own_direction(sector.middle, sector.half)[None], -along(sides)])
+    directions[1:, 0] = 0.0
+    return directions @ parts[:, :, sector.target].T, directions @ own_base[:, sector.target]
+
+
+def own_direction(middle: FloatArray | float, half: FloatArray | float) -> FloatArray:
+    """(..., 3) coefficients of the lower bound on a target's level in a sector."""
+    direction = along(middle)
+    direction[..., 1:] /= np.cos(half)[..., None]
+    return direction
+
+
+def _average(cuts: Cuts, weights: FloatArray, base: FloatArray) -> FloatArray:
+    """(3, M) of cuts with weights."""
+    average = np.zeros_like(base)
+    np.add.at(average.T, cuts.targets, weights[:, None] * along(cuts.angles))
+    return average
+
+
+def _worst(total: FloatArray) -> FloatArray:
+    """(3, M) average of the weakest directions of the targets with the smallest levels."""
+    targets = np.argsort(levels(total), kind="stable")[:FIRST_CUTS]
+    cuts = Cuts(targets, np.arctan2(-total[2, targets], -total[1, targets]))
+    return _average(cuts, np.full(len(targets), 1 / len(targets)), total)

@@ -1,0 +1,1 @@
+"""Brackets of marginals by separable minorants."""

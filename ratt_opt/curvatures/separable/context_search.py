@@ -1,0 +1,158 @@
+"""Branch and bound over the contexts of one element: how small its marginal can be.
+
+A node restricts each other robot to some of its elements, or to none. Its bound is the best separable minorant
+(``minorants.py``) over conditional-gradient steps; the minorant's vertices are contexts, and
+the smallest marginal among those tried is the attained end. A node that fixes every robot is evaluated.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.curvatures.attained import Attained
+from ratt_opt.curvatures.separable.minorants import minorant, others_of
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.curvatures.separable.minorants import Separable
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["ContextSearch"]
+
+FIRST_STEPS = 12
+"""Tangents tried at the root; what suffices for most elements."""
+MORE_STEPS = 36
+"""Tangents tried when the root is looked at again, before it is branched."""
+CHILD_STEPS = 8
+MARGIN = 1e-9
+"""Relative safety margin for rounding on every bound: inverses of condition 1e6 lose less."""
+
+
+@dataclass(order=True, slots=True)
+class _Node:
+    """A part of the contexts: ``allowed`` (K,) elements, ``absent`` (R,) robots that may contribute none."""
+
+    bound: float
+    serial: int
+    allowed: BoolArray = field(compare=False)
+    absent: BoolArray = field(compare=False)
+    share: FloatArray = field(compare=False)
+    steps: int = field(compare=False)
+
+
+class ContextSearch:
+    """Claim: ``lower <= smallest marginal of x over contexts <= attained.value``; see :class:`Attained`."""
+
+    def __init__(self, f: InformationObjective, owners: IntArray, x: int) -> None:
+        self.f, self.x = f, x
+        self.others = others_of(f, owners, x)
+        self.attained = Attained(f, x, self.others)
+        self.nodes = 0
+        self._serial = 0
+        self._open: list[_Node] = []
+        robots = len(self.others.first)
+        counts = np.bincount(self.others.robot, minlength=robots)
+        share = 1.0 / counts[self.others.robot]
+        root = _Node(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(robots, dtype=np.bool_), share, 0)
+        if robots and self._bound(root, FIRST_STEPS):
+            self._open = [root]
+        self.attained.descend()
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether no part is left: the ends meet."""
+        return not self._open
+
+    @property
+    def lower(self) -> float:
+        """Proved lower end: the weakest open part."""
+        return min(self._open[0].bound, self.attained.value) if self._open else self.attained.value
+
+    def refine(self) -> None:
+        """Look at the weakest open part again, or split it; an interrupt leaves the parts as they were."""
+        node = self._open[0]
+        if node.serial == 0 and node.steps < MORE_STEPS:
+            kept = [node] if self._bound(node, MORE_STEPS) else []
+        else:
+            kept = [child for child in self._children(node) if self._bound(child, CHILD_STEPS)]
+        parts = [part for part in self._open if part is not node] + kept
+        heapq.heapify(parts)
+        self._open = parts
+
+    def _bound(self, node: _Node, steps: int) -> bool:
+        """Raise a part's bound by more tangents; whether it may still hold a smaller marginal."""
+        self.nodes += 1
+        others = self.others
+        for _ in range(steps):
+            separable = minorant(self.f, self.x, others, node.share)
+            score = np.where(node.allowed, separable.score, -np.inf)
+            best = np.maximum.reduceat(score, others.first)
+            present = np.isfinite(best)
+            worst = np.where(node.absent, np.maximum(best, separable.absent), best)
+            bound = separable.constant - float(worst.sum())
+            node.bound = max(node.bound, bound - MARGIN * _magnitude(separable, worst))
+            picks = self._picks(score, best, present)
+            self.attained.offer(others.elements[picks])
+            node.steps += 1
+            if node.bound >= self.attained.value:
+                return False
+            vertex = np.zeros(len(score))
+            vertex[picks] = 1.0
+            node.share = node.share + 2 / (node.steps + 2) * (vertex - node.share)
+        return not self._single(node)  # the context of a single one has been tried above
+
+    def _picks(self, score: FloatArray, best: FloatArray, present: BoolArray) -> IntArray:
+        """The first element of the best score, of each robot that has one left."""
+        hits = np.flatnonzero((score == best[self.others.robot]) & np.isfinite(score))
+        _, first = np.unique(self.others.robot[hits], return_index=True)
+        assert len(first) == present.sum()
+        return hits[first]
+
+    def _single(self, node: _Node) -> bool:
+        counts = np.add.reduceat(node.allowed.astype(np.int64), self.others.first) + node.absent
+        return bool((counts == 1).all())
+
+    def _children(self, node: _Node) -> list[_Node]:
+        """Split off the likeliest element of the robot whose mixture is spread most, or its absence."""
+        others = self.others
+        counts = np.add.reduceat(node.allowed.astype(np.int64), others.first)
+        mean = np.add.reduceat(node.share[:, None, None, None] * others.information, others.first, axis=0)
+        posterior = self.f.prior_information + mean.sum(axis=0)
+        deviation = others.information - mean[others.robot]
+        relative = np.linalg.solve(posterior[None], deviation)
+        # Each target counts as much as it contributes to the marginal.
+        weight = self.f.criterion(posterior) - self.f.criterion(posterior + self.f.information[self.x])
+        spread = node.share * ((relative**2).sum(axis=(-1, -2)) @ weight)
+        by_robot = np.add.reduceat(spread, others.first)
+        by_robot[(counts + node.absent) < 2] = -1.0
+        i = int(by_robot.argmax())
+        mine = others.robot == i
+        if counts[i] < 2:
+            chosen = np.zeros(len(mine), dtype=np.bool_)
+            parts = [(node.allowed & ~mine, True), (node.allowed, False)]
+        else:
+            chosen = mine & (np.arange(len(mine)) == int(np.where(mine & node.allowed, node.share, -1.0).argmax()))
+            parts = [((node.allowed & ~mine) | chosen, False), (node.allowed & ~chosen, bool(node.absent[i]))]
+        return [self._child(node, allowed, i, absent) for allowed, absent in parts]
+
+    def _child(self, node: _Node, allowed: BoolArray, i: int, absent: bool) -> _Node:
+        others = self.others
+        left = node.absent.copy()
+        left[i] = absent
+        share = np.where(allowed, node.share, 0.0)
+        mass = np.add.reduceat(share, others.first)
+        counts = np.add.reduceat(allowed.astype(np.int64), others.first)
+        empty = (mass <= 0) & (counts > 0)
+        share = np.where(empty[others.robot] & allowed, 1.0, share)
+        mass = np.add.reduceat(share, others.first)
+        share = share / np.where(mass > 0, mass, 1.0)[others.robot]
+        self._serial += 1
+        return _Node(node.bound, self._serial, allowed, left, share, 0)
+
+
+def _magnitude(separable: Separable, worst: FloatArray) -> float:
+    return abs(separable.constant) + float(np.abs(worst).sum())

@@ -1,0 +1,1 @@
+"""The exact max-min search."""
