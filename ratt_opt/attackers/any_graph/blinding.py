@@ -77,8 +77,10 @@ def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, s
     """
     value = gather(team, group & ~blind, sums)
     other = np.empty_like(sums)
-    while value >= threshold:
-        best, leaves, enters = value * (1 - 1e-12), -1, -1
+    for _ in range(len(group)):  # rounding must not make it exchange equals for ever
+        if value < threshold:
+            return True
+        best, leaves, enters = value * (1 - 1e-9), -1, -1
         for i in range(len(group)):
             if not (group[i] and blind[i]):
                 continue
@@ -93,4 +95,4 @@ def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, s
             return False
         blind[leaves], blind[enters] = False, True
         value = gather(team, group & ~blind, sums)
-    return True
+    return bool(value < threshold)

@@ -30,7 +30,7 @@ __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumera
 
 FINISHED, PAUSED, FULL = 0, 1, 2
 
-QUICK, THOROUGH = 2_000, 50_000
+QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node, and for a group that is to be listed."""
 
 
