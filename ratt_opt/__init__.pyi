@@ -43,7 +43,8 @@ from .graph.outcomes import (
     non_dominated_outcomes as non_dominated_outcomes,
     realise as realise,
 )
-from .main_job import BoundReport as BoundReport, PlanAssessment as PlanAssessment, bound as bound
+from .main_job.bound import bound as bound
+from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
 from .problem import Attack as Attack, Plan as Plan, Problem as Problem
 from .scenario.files import (
     load_input as load_input,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from ratt_opt.main_job import BoundReport
+    from ratt_opt.main_job.result import BoundReport
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.scenario.model_free import InformationInput
 
@@ -151,7 +151,7 @@ def attack(
     from ratt_opt.attackers.breaking_budgets import breaking_budgets
     from ratt_opt.attackers.criticality import criticality_ranking
     from ratt_opt.attackers.survey import attack_survey
-    from ratt_opt.report.document import attack_document
+    from ratt_opt.main_job.document import attack_document
     from ratt_opt.report.tables import attack_table, budget_table, critical_table
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan
@@ -292,8 +292,7 @@ def _bound(
     as_json: bool,
 ) -> None:
     from ratt_opt._files import output_directory
-    from ratt_opt.main_job import bound as main_job
-    from ratt_opt.report.document import report_document
+    from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.write import write_report
 
     proof = output_directory(out) / "certificate.json"
@@ -307,7 +306,7 @@ def _bound(
     else:
         files.append(report.certificate.path)
     if as_json:
-        print(json.dumps(report_document(report), indent=1, allow_nan=False))
+        print(json.dumps(report.to_dict(), indent=1, allow_nan=False))
         return
     _print_report(report, source)
     print("written: " + ", ".join(str(file) for file in files))

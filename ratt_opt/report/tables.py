@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ratt_opt.bounds.guarantees import inapplicable_guarantees
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
@@ -18,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.certificates.write import Certificate
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.main_job import BoundReport
+    from ratt_opt.main_job.result import BoundReport
     from ratt_opt.problem import Attack
 
 __all__ = [
@@ -115,11 +113,10 @@ def _planners(report: BoundReport) -> Table:
 def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
     plan = report.recommended
     table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
-    groups = report.problem.communication.groups(plan.worst_case.attack.links)
-    home = {i: k for k, group in enumerate(groups) for i in group}
+    home = {i: k for k, group in enumerate(plan.groups) for i in group}
     for i, element in enumerate(plan.elements.tolist()):
         state = "blinded" if i in plan.worst_case.attack.sensing else "sees"
-        group = f", group {home[i]} of {len(groups)}" if len(groups) > 1 else ""
+        group = f", group {home[i]} of {len(plan.groups)}" if len(plan.groups) > 1 else ""
         table.add_row(str(i), str(element), labels[element] if labels else "", state + group)
     table.caption = f"cut links: {_links(plan.worst_case.attack)}"
     return table
@@ -155,11 +152,11 @@ def _verdict(proof: Certificate | str) -> str:
 
 def _guarantees(report: BoundReport) -> Table:
     table = _table("what was guaranteed before planning", "guarantee", "value", "needs")
-    best = max((float(g) for g in report.guarantees.values()), default=0.0)
+    best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0
         table.add_row(f"{name} *" if strongest else name, f"{float(guarantee):.6g}", "; ".join(guarantee.hypotheses))
-    for name, why in inapplicable_guarantees(report.problem, report.alpha_cs).items():
+    for name, why in report.inapplicable.items():
         table.add_row(name, "none", f"does not apply: {why}")
     table.caption = "* strongest that applies" if best > 0 else "curvature 1: no guarantee says anything here"
     return table
