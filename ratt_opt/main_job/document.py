@@ -64,7 +64,7 @@ def attack_document(
     objective: str,
     elements: IntArray,
     results: Mapping[str, AttackResult],
-    critical: Sequence[Criticality] = (),
+    critical: Sequence[Criticality] | None = None,
     budgets: Sequence[BreakingBudget] | None = None,
 ) -> dict[str, Any]:
     """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
