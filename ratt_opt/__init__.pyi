@@ -54,7 +54,7 @@ from .scenario.files import (
 )
 from .scenario.generator import random_scenario as random_scenario
 from .scenario.model import Robot as Robot, Scenario as Scenario, Target as Target
-from .scenario.model_free import InformationInput as InformationInput
+from .scenario.information_input import InformationInput as InformationInput
 from .scenario.mrclam import from_mrclam as from_mrclam
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.sensor import Sensor as Sensor

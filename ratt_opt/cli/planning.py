@@ -9,8 +9,8 @@ from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, Js
 from ratt_opt.cli.terminal import print_json, print_tables, progress
 
 if TYPE_CHECKING:
+    from ratt_opt.scenario.information_input import InformationInput
     from ratt_opt.scenario.model import Scenario
-    from ratt_opt.scenario.model_free import InformationInput
 
 __all__ = ["bound", "demo"]
 
