@@ -22,6 +22,7 @@ from .bounds.guarantees import (
     sensing_only_bound as sensing_only_bound,
     theorem1_bound as theorem1_bound,
 )
+from .bounds.group_size import group_size_bound as group_size_bound
 from .bounds.instance import instance_bound as instance_bound
 from .bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
 from .bounds.relaxation import RelaxationBound as RelaxationBound, relaxation_bound as relaxation_bound

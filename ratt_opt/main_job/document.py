@@ -43,7 +43,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
         "optimum": {
             "lower": _number(optimum.lower),
             "upper": _number(report.upper),
-            "posterior_gap": optimum.posterior_gap,
+            "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
             "stop": optimum.stop.value,
             **_shared(report, report.best),
         },
@@ -151,4 +151,4 @@ def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:
 
 
 def _number(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return float(value) if math.isfinite(value) else None

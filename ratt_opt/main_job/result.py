@@ -120,11 +120,11 @@ class BoundReport:
     @property
     def upper(self) -> float:
         """Proved upper bound on what any plan can keep."""
-        return max(self.optimum.upper, *(plan.worst_case.lower for plan in self.plans))
+        return float(max(self.optimum.upper, *(plan.worst_case.lower for plan in self.plans)))
 
     def share(self, plan: PlanAssessment) -> float:
         """What a plan keeps at least, as a share of the best possible; 1 when both are 0."""
-        return plan.worst_case.lower / self.upper if self.upper > 0 else 1.0
+        return float(plan.worst_case.lower) / self.upper if self.upper > 0 else 1.0
 
     @property
     def certified_ratio(self) -> float:
