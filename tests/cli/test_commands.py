@@ -17,6 +17,7 @@ from ratt_opt import (
 )
 from ratt_opt.certificates import write
 from ratt_opt.cli import run
+from tests.cli.refusal import refused
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,26 +28,11 @@ REPORT_FIELDS = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def scenario_file(tmp_path: Path) -> Path:
-    path = tmp_path / "scenario.json"
-    save_scenario(random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=5), path)
-    return path
-
-
 def _strict(text: str) -> Any:
     def refuse(name: str) -> None:
         raise AssertionError(f"{name} is not strict JSON")
 
     return json.loads(text, parse_constant=refuse)
-
-
-def _refused(arguments: list[str], capsys: pytest.CaptureFixture[str], text: str) -> None:
-    assert run(arguments) == 2
-    shown = capsys.readouterr().err
-    assert text.lower() in shown.lower()
-    assert shown.startswith("error: ")
-    assert shown.count("\n") == 1
 
 
 def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -222,7 +208,7 @@ def test_attack_says_what_to_protect(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "smallest budgets that leave less than" in printed
     assert run([*command[:-1], "0"]) == 0
     assert "no attack on what is" in capsys.readouterr().out
-    _refused([*command[:-1], "nan"], capsys, "--below must be a finite number; got nan")
+    refused([*command[:-1], "nan"], capsys, "--below must be a finite number; got nan")
 
 
 def test_attack_evaluates_the_users_plan(
@@ -258,61 +244,3 @@ def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
         assert "--help" in capsys.readouterr().out
     assert run(["--version"]) == 0
     assert capsys.readouterr().out.strip() == "0.1.0"
-
-
-NEW = ["new", "--sensing-attacks", "1", "--link-attacks", "1", "--out", "OUT/s.json"]
-BAD = [
-    (["bound", "OUT/none.json", "--out", "OUT/o"], "none.json must be a file that can be read"),
-    (["bound", "FILE", "--out", "FILE"], "out must be a folder that can be written"),
-    (["bound", "FILE", "--out", "OUT/o", "--objective", "area"], "area"),
-    (["bound", "FILE", "--out", "OUT/o", "--time-limit", "0"], "time_limit must be positive"),
-    (["bound", "FILE", "--out", "OUT/o", "--gap", "-1"], "gap must be a number >= 0; got -1.0"),
-    (["bound", "FILE", "--out", "OUT/o", "--time-limit", "soon"], "soon"),
-    (["bound", "FILE", "--colour", "red"], "--colour"),
-    (["bound"], "Missing argument 'file'"),
-    (["plan"], "plan"),
-    (["audit", "--out", "FILE"], "out must be a folder that can be written"),
-    ([*NEW, "--robots", "2", "--targets", "2"], "--seed must be given for a random scenario"),
-    ([*NEW, "--robots", "2", "--targets", "0", "--seed", "1"], "n_targets must be an integer >= 1; got 0"),
-    ([*NEW, "--robots", "1", "--targets", "1", "--seed", "1"], "alpha_c must be an integer in [0, 0]; got 1"),
-    ([*NEW, "--robots", "2", "--mrclam", "OUT", "--time", "0"], "--robots must come with no --mrclam"),
-    ([*NEW, "--mrclam", "OUT"], "--time must be given with --mrclam"),
-    ([*NEW, "--mrclam", "OUT", "--time", "0"], "Landmark_Groundtruth.dat"),
-    (
-        [*NEW, "--time", "3", "--robots", "2", "--targets", "2", "--seed", "1"],
-        "--time must come with --mrclam; got 3.0",
-    ),
-]
-
-
-@pytest.mark.parametrize(("arguments", "text"), BAD, ids=range(len(BAD)))
-def test_bad_command_lines(
-    arguments: list[str], text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    before = sorted(os.listdir(tmp_path))
-    filled = [a.replace("OUT", str(tmp_path)).replace("FILE", str(scenario_file)) for a in arguments]
-    _refused(filled, capsys, text)
-    assert [name for name in sorted(os.listdir(tmp_path)) if name != "o"] == before
-    assert not (tmp_path / "o").exists() or os.listdir(tmp_path / "o") == []
-
-
-@pytest.mark.parametrize(
-    ("plan", "text"),
-    [
-        ("{}", 'must be an object with "elements" or "controls"'),
-        ("[0, 1, 2]", "must be an object"),
-        ('{"elements": [0, 12]}', "elements must be a list of 3 integers, one per robot"),
-        ('{"elements": [0, 12, 13]}', "elements[2] must be an element of robot 2; got 13 of robot 1"),
-        ('{"elements": [0, 12, 99]}', "elements[2] must be an integer in [0, 35]; got 99"),
-        ('{"elements": [0, 12, "x"]}', "elements[2] must be an integer"),
-        ('{"controls": [0, 1, 12]}', "controls[2] must be an integer in [0, 11]; got 12"),
-        ('{"controls": [0, 1, [2]]}', "controls must be a list of 3 integers"),
-        ("{", "line 1"),
-    ],
-)
-def test_bad_plans(
-    plan: str, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "plan.json"
-    path.write_text(plan)
-    _refused(["attack", str(scenario_file), "--plan", str(path)], capsys, text)

@@ -5,18 +5,16 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-import networkx as nx
 import numpy as np
 from pydantic import Field, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
-from ratt_opt.problem import Problem
-from ratt_opt.scenario.record import Positive, Record, Text, Whole
-from ratt_opt.scenario.threat_fields import Link, check_threat_fields, objective_class
+from ratt_opt.scenario.problem_record import Link, ProblemRecord
+from ratt_opt.scenario.record import Positive, Text, Whole
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
+    from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["InformationInput"]
 
@@ -27,7 +25,7 @@ Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY)
 Matrix = tuple[tuple[Entry, ...], ...]
 
 
-class InformationInput(Record):
+class InformationInput(ProblemRecord):
     """A max-min problem given by its matrices.
 
     ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
@@ -54,16 +52,13 @@ class InformationInput(Record):
         if self.labels is not None and len(self.labels) != len(self.robot):
             raise InputError("labels", f"must have {len(self.robot)} entries, one per element", len(self.labels))
         # Before anything is built on the robots: a stray index of 10^9 would ask for a graph of that size.
-        missing = next(i for i in range(len(self.robot) + 1) if i not in self._owners)
+        owners = frozenset(self.robot)
+        missing = next(i for i in range(len(self.robot) + 1) if i not in owners)
         if missing <= max(self.robot):
             raise InputError("robot", "must give every robot at least one element", f"none for robot {missing}")
-        check_threat_fields(self, self.n_robots, self.graph)
+        self._check_links()
         self.problem()
         return self
-
-    @cached_property
-    def _owners(self) -> frozenset[int]:
-        return frozenset(self.robot)
 
     @property
     def n_robots(self) -> int:
@@ -76,16 +71,6 @@ class InformationInput(Record):
         return len(self.prior)
 
     @property
-    def graph(self) -> nx.Graph | None:
-        """The communication graph, or ``None`` for the complete one."""
-        if self.links is None:
-            return None
-        graph: nx.Graph = nx.Graph()
-        graph.add_nodes_from(range(self.n_robots))
-        graph.add_edges_from(self.links)
-        return graph
-
-    @property
     def element_labels(self) -> tuple[str, ...] | None:
         """(E,) what each element is, or ``None``."""
         return self.labels
@@ -95,23 +80,13 @@ class InformationInput(Record):
         """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
         return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
 
-    def problem(self, objective: str = "trace") -> Problem:
-        """Return the max-min problem for ``"trace"``, ``"logdet"`` or ``"maxeig"``.
+    @property
+    def _owners(self) -> IntArray:
+        return np.array(self.robot)
 
-        Raises
-        ------
-        InputError : the objective is unknown, or a matrix breaks its rule.
-        """
-        weights = None if self.weights is None else np.array(self.weights)
-        return Problem(
-            objective_class(objective)(*self.matrices, weights),
-            np.array(self.robot),
-            self.graph,
-            self.alpha_s,
-            self.alpha_c,
-            frozenset(self.protected_robots),
-            frozenset(self.protected_links),
-        )
+    @property
+    def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        return *self.matrices, None if self.weights is None else np.array(self.weights)
 
 
 def _array(name: str, nested: object) -> FloatArray:

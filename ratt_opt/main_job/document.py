@@ -1,4 +1,4 @@
-"""The bound report as a strict JSON document (``report.json``)."""
+"""The results of the main job as plain data: strict JSON, full precision, unknown numbers ``None``."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.certificates.write import Certificate
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.main_job import BoundReport, PlanAssessment
+    from ratt_opt.main_job.result import BoundReport, PlanAssessment
 
-__all__ = ["FORMAT", "VERSION", "attack_document", "report_document"]
+__all__ = ["FORMAT", "VERSION", "attack_document", "plan_document", "report_document"]
 
 FORMAT = "ratt-opt report"
 VERSION = 1
@@ -24,44 +24,47 @@ VERSION = 1
 
 
 def report_document(report: BoundReport) -> dict[str, Any]:
-    """Return the report as JSON-ready values: full precision, unknown numbers as ``None``."""
-    problem = report.problem
-    document: dict[str, Any] = {
+    """Return what ``report.json`` holds: everything that the tables and figures show but the scenario itself."""
+    problem, optimum = report.problem, report.optimum
+    return {
         "format": FORMAT,
         "version": VERSION,
         "n_robots": problem.n_robots,
         "n_targets": report.n_targets,
+        "n_links": len(problem.communication.links),
         "objective": report.objective,
+        "unit": report.unit,
         "alpha_s": problem.alpha_s,
         "alpha_c": problem.alpha_c,
         "n_max": report.n_max,
         "alpha_cs": report.alpha_cs,
-        "ratt": _assessment(report.ratt),
-        "recommended": {"planner": report.recommended.name, **_assessment(report.recommended)},
+        "ratt": _shared(report, report.ratt),
+        "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
         "optimum": {
-            "lower": _number(report.optimum.lower),
+            "lower": _number(optimum.lower),
             "upper": _number(report.upper),
-            "posterior_gap": report.optimum.posterior_gap,
-            "stop": report.optimum.stop.value,
-            **_assessment(report.best),
+            "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
+            "stop": optimum.stop.value,
+            **_shared(report, report.best),
         },
         "certificate": _certificate(report.certificate),
         "certified_ratio": _number(report.certified_ratio),
         "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
-        "baselines": {plan.name: {"worst_case": _worst_case(plan.worst_case)} for plan in report.baselines},
+        "hypotheses": {name: list(value.hypotheses) for name, value in report.guarantees.items()},
+        "inapplicable": dict(report.inapplicable),
+        "guaranteed_share": report.guaranteed_share,
+        "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
         "seconds": {name: _number(value) for name, value in report.seconds.items()},
+        "curvature": _curvature(report.curvature),
+        "total_curvature": _curvature(report.total_curvature),
     }
-    for name in ("curvature", "total_curvature"):
-        bracket = getattr(report, name)
-        document[name] = None if bracket is None else _curvature(bracket)
-    return document
 
 
 def attack_document(
     objective: str,
     elements: IntArray,
     results: Mapping[str, AttackResult],
-    critical: Sequence[Criticality] = (),
+    critical: Sequence[Criticality] | None = None,
     budgets: Sequence[BreakingBudget] | None = None,
 ) -> dict[str, Any]:
     """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
@@ -95,13 +98,23 @@ def _budget(row: BreakingBudget) -> dict[str, Any]:
     }
 
 
-def _assessment(plan: PlanAssessment) -> dict[str, Any]:
+def plan_document(plan: PlanAssessment) -> dict[str, Any]:
+    """Return one plan and its worst case as JSON-ready values."""
     return {
         "elements": plan.elements.tolist(),
         "controls": list(plan.controls),
         "bait": list(plan.bait),
         "worst_case": _worst_case(plan.worst_case),
+        "evaluations": plan.evaluations,
+        "groups": [sorted(group) for group in plan.groups],
+        "best_group": sorted(plan.best_group),
+        "posterior": None if plan.posterior is None else plan.posterior.tolist(),
     }
+
+
+def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
+    """A plan with what it keeps as a share of the best possible."""
+    return {**plan_document(plan), "share": _number(report.share(plan))}
 
 
 def _worst_case(result: AttackResult) -> dict[str, Any]:
@@ -131,9 +144,11 @@ def _certificate(proof: Certificate | str) -> dict[str, Any]:
     }
 
 
-def _curvature(bracket: Curvature) -> dict[str, Any]:
+def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:
+    if bracket is None:
+        return None
     return {"lower": _number(bracket.lower), "upper": _number(bracket.upper), "domain": bracket.domain}
 
 
 def _number(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return float(value) if math.isfinite(value) else None
