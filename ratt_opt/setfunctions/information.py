@@ -94,8 +94,10 @@ OPTIONAL_PARTS = (
     "combine",
     "compiled_code",
     "is_submodular",
+    "is_worst_axis",
     "name",
     "planar_criterion",
+    "planar_gradient",
     "prior_criterion",
     "tangent",
     "tangent_targets",
@@ -132,6 +134,9 @@ class InformationObjective(SetFunction):
     unit: ClassVar[str] = ""
     is_submodular: ClassVar[bool] = False
     """Whether theory proves it submodular for all data."""
+    is_worst_axis: ClassVar[bool] = False
+    """Whether the team's criterion is ``max_j w_j v' Lambda_j^{-1} v`` over targets and unit vectors ``v``: one axis of
+    one target decides. Otherwise it is a sum over targets."""
     compiled_code: ClassVar[int | None] = None
     """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
 
@@ -182,8 +187,8 @@ class InformationObjective(SetFunction):
         """
         raise self._without("gradient", "supergradient of its value")
 
-    def _without(self, part: str, what: str) -> InputError:
-        return InputError("objective", f"must define {part}(posterior_information), the {what}", type(self).__name__)
+    def _without(self, part: str, what: str, of: str = "posterior_information") -> InputError:
+        return InputError("objective", f"must define {part}({of}), the {what}", type(self).__name__)
 
     def combine(self, per_target: FloatArray) -> FloatArray:
         """The criterion of the team from that of each target: (..., M) -> (...); a sum."""
@@ -202,6 +207,10 @@ class InformationObjective(SetFunction):
         """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
         rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
         return self.criterion(rows)
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
+        """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
+        raise self._without("planar_gradient", "derivative of one target's value", "a, b, c")
 
     def tangent_targets(self, point: FloatArray, level: float, most: int) -> list[int | None]:  # noqa: ARG002
         """Targets to take tangents for at ``point`` (M, d, d), at most ``most``; ``None`` is all of them together.
