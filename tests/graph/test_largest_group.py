@@ -159,6 +159,25 @@ def test_time_limit_zero_still_answers():
     assert found.lower <= found.upper
 
 
+def test_n_max_is_none_where_nothing_says_what_it_is():
+    found = smallest_largest_group(nx.gnp_random_graph(25, 0.3, seed=1), 9, method="counting")
+    assert found.lower < found.upper
+    assert (found.n_max, found.is_exact) == (None, False)
+    exact = smallest_largest_group(nx.path_graph(30), 2)
+    assert (exact.n_max, exact.is_exact) == (10, True)
+    assert len(repr(smallest_largest_group(nx.complete_graph(30), 200))) < 200
+
+
+@pytest.mark.parametrize("method", ["auto", "enumeration", "milp"])
+def test_an_outer_budget_counts_too(method):
+    graph = nx.gnp_random_graph(25, 0.2, seed=3)
+    outer = Budget()
+    outer.interrupt()
+    found = smallest_largest_group(graph, 9, method=method, budget=outer)
+    check(found, graph, 9)
+    assert not found.is_exact
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_ratt_uses_the_exact_size_on_any_graph(seed):
     problem = random_problem(np.random.default_rng(seed), 5, kind="trace", complete=False)
