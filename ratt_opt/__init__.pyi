@@ -38,7 +38,8 @@ from .curvatures.ratios import (
 )
 from .errors import FileFormatError as FileFormatError, InputError as InputError, ProofError as ProofError
 from .graph.caa import CaaResult as CaaResult, caa as caa
-from .graph.largest_group import LargestGroup as LargestGroup, smallest_largest_group as smallest_largest_group
+from .graph.largest_group.result import LargestGroup as LargestGroup
+from .graph.largest_group.smallest import smallest_largest_group as smallest_largest_group
 from .graph.outcomes import (
     count_outcomes as count_outcomes,
     non_dominated_outcomes as non_dominated_outcomes,

@@ -46,6 +46,7 @@ OPTIONAL_PARTS = (
     "marginal_minorant",
     "name",
     "planar_criterion",
+    "planar_gradient",
     "planar_levels",
     "prior_criterion",
     "tangent",
@@ -95,8 +96,8 @@ class CriterionParts(SetFunction):
         """
         raise self._without("gradient", "supergradient of its value")
 
-    def _without(self, part: str, what: str) -> InputError:
-        return InputError("objective", f"must define {part}(posterior_information), the {what}", type(self).__name__)
+    def _without(self, part: str, what: str, of: str = "posterior_information") -> InputError:
+        return InputError("objective", f"must define {part}({of}), the {what}", type(self).__name__)
 
     def combine(self, per_target: FloatArray) -> FloatArray:
         """The criterion of the team from that of each target: (..., M) -> (...); a sum."""
@@ -115,6 +116,10 @@ class CriterionParts(SetFunction):
         """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
         rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
         return self.criterion(rows)
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
+        """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
+        raise self._without("planar_gradient", "derivative of one target's value", "a, b, c")
 
     def tangent_targets(self, point: FloatArray, level: float, most: int) -> list[int | None]:  # noqa: ARG002
         """Targets to take tangents for at ``point`` (M, d, d), at most ``most``; ``None`` is all of them together.

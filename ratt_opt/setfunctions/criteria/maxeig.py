@@ -39,7 +39,7 @@ class MaxEigenvalueObjective(InformationObjective):
         """(..., M) weighted largest eigenvalues of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return MaxEigenvalueObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
         return np.asarray(self.weights / np.linalg.eigvalsh(posterior_information)[..., 0])
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:

@@ -28,7 +28,7 @@ __all__ = ["PROVED", "Incumbent"]
 
 LOCAL_SEARCH_ROUNDS = 50
 SEARCHED_BY_SIZE = 12
-"""Larger teams with all links alike are attacked by exchanges first (``large_team.py``): fast and hardly ever wrong."""
+"""Larger teams with all links alike are attacked by exchanges first (``by_size``): fast and hardly ever wrong."""
 FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time, spent at once on a first lower bound for a large team."""
 SEARCH_SHARE = 0.25
