@@ -57,8 +57,8 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
     from ratt_opt.bounds.relaxation import RelaxationBound as RelaxationBound
     from ratt_opt.bounds.relaxation import relaxation_bound as relaxation_bound
-    from ratt_opt.certificates.verified import Verified as Verified
-    from ratt_opt.certificates.verify import verify_certificate as verify_certificate
+    from ratt_opt.certificates.verifier.verified import Verified as Verified
+    from ratt_opt.certificates.verifier.verify import verify_certificate as verify_certificate
     from ratt_opt.certificates.write import (
         Certificate as Certificate,
     )
@@ -196,13 +196,11 @@ if TYPE_CHECKING:
         myopic as myopic,
     )
     from ratt_opt.solvers.baselines import (
-        nonrobust_optimum as nonrobust_optimum,
-    )
-    from ratt_opt.solvers.baselines import (
         random_plan as random_plan,
     )
     from ratt_opt.solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
     from ratt_opt.solvers.maxmin.solve import solve_maxmin as solve_maxmin
+    from ratt_opt.solvers.nonrobust import nonrobust_optimum as nonrobust_optimum
     from ratt_opt.solvers.ratt import ratt as ratt
     from ratt_opt.solvers.result import MaxMinResult as MaxMinResult
     from ratt_opt.stopping import Stop as Stop
@@ -251,7 +249,7 @@ _HOME = {
     "Target": "scenario.model",
     "TraceObjective": "setfunctions.criteria.trace",
     "Tracking": "scenario.simulation",
-    "Verified": "certificates.verified",
+    "Verified": "certificates.verifier.verified",
     "Violation": "setfunctions.sampling",
     "WorstCaseRatio": "audit.ratio",
     "all_bait_group_bound": "bounds.guarantees",
@@ -283,7 +281,7 @@ _HOME = {
     "load_scenario": "scenario.files",
     "myopic": "solvers.baselines",
     "non_dominated_outcomes": "graph.outcomes",
-    "nonrobust_optimum": "solvers.baselines",
+    "nonrobust_optimum": "solvers.nonrobust",
     "pattern_free_bound": "bounds.guarantees",
     "problem_document": "certificates.write",
     "random_attack": "attackers.heuristics.random_attack",
@@ -305,7 +303,7 @@ _HOME = {
     "submodularity_ratio": "curvatures.ratios",
     "theorem1_bound": "bounds.guarantees",
     "total_curvature": "curvatures.curvature",
-    "verify_certificate": "certificates.verify",
+    "verify_certificate": "certificates.verifier.verify",
     "worst_case_attack": "attackers.exact",
     "worst_case_ratio": "audit.ratio",
 }

@@ -188,7 +188,7 @@ def verify(
     as_json: JsonFlag = False,
 ) -> None:
     """Check a certificate without trusting what wrote it; exit 0 and say what it proves, or 1 and the first fault."""
-    from ratt_opt.certificates.verify import verify_certificate
+    from ratt_opt.certificates.verifier.verify import verify_certificate
 
     expected = None if problem is None else _problem_record(problem, objective)
     try:
@@ -302,10 +302,10 @@ def _bound(
         report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, certificate=path, progress=tell)
         tell("report and figure")
         files = write_report(report, out, source)
-    if isinstance(report.certificate, str):
+    if report.certificate.certificate is None:
         proof.unlink(missing_ok=True)  # an earlier run's: it is not about this report
     else:
-        files.append(report.certificate.path)
+        files.append(report.certificate.certificate.path)
     if as_json:
         print(json.dumps(report_document(report), indent=1, allow_nan=False))
         return

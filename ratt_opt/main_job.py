@@ -12,7 +12,7 @@ import numpy as np
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.guarantees import all_guarantees
 from ratt_opt.bounds.instance import instance_bound
-from ratt_opt.certificates.write import certify, why_not_certifiable
+from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
@@ -21,9 +21,10 @@ from ratt_opt.scenario.threat_fields import OBJECTIVES
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_search, random_plan
+from ratt_opt.solvers.baselines import greedy, myopic, random_plan
 from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
-from ratt_opt.solvers.ratt import equivalent_sensing_attacks, ratt
+from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers.ratt import ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
-    from ratt_opt.certificates.write import Certificate
+    from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.solvers.result import MaxMinResult
 
@@ -97,7 +98,7 @@ class BoundReport:
     curvature: Curvature | None
     total_curvature: Curvature | None
     guarantees: Mapping[str, Guarantee]
-    certificate: Certificate | str
+    certificate: Certification
     seconds: Mapping[str, float]
 
     @property
@@ -161,25 +162,27 @@ def bound(
     tell = progress or _silent
     clock = _Clock(tell, time_limit)
     with clock("RATT and the baselines"):
-        robust = assess(problem, "ratt", ratt(problem), clock.share(ATTACK_SHARE))
+        planned = ratt(problem)
+        robust = assess(problem, "ratt", planned, clock.share(ATTACK_SHARE))
         baselines = tuple(
             assess(problem, label, plan, clock.share(ATTACK_SHARE)) for label, plan in _baselines(problem, clock)
         )
     with clock("the best possible plan"):
         limit = clock.share(OPTIMUM_SHARE)
-        optimum = solve_maxmin(problem, gap=gap, time_limit=limit, progress=_search_lines(tell))
+        optimum = solve_maxmin(
+            problem, gap=gap, time_limit=limit, progress=_search_lines(tell), alpha_cs=planned.alpha_cs
+        )
         best = _assess_optimum(problem, optimum, clock.share(ATTACK_SHARE))
     with clock("curvature and guarantees"):
         k, c = _curvatures(problem, clock.share(CURVATURE_SHARE))
-        alpha_cs = equivalent_sensing_attacks(problem)
-        guarantees = _guarantees(problem, robust.elements, clock.share(CURVATURE_SHARE), k=k, c=c)
+        guarantees = _guarantees(problem, planned, clock.share(CURVATURE_SHARE), k=k, c=c)
     with clock("certificate"):
-        proof = _certificate(problem, optimum, certificate)
+        proof = certify_if_possible(problem, optimum, certificate)
     return BoundReport(
         problem=problem,
         objective=name,
         n_targets=_targets(problem),
-        alpha_cs=alpha_cs,
+        alpha_cs=_known(planned),
         ratt=robust,
         baselines=baselines,
         optimum=optimum,
@@ -193,13 +196,19 @@ def bound(
 
 
 def _guarantees(
-    problem: Problem, plan: IntArray, time_limit: float | None, *, k: Curvature | None, c: Curvature | None
+    problem: Problem, plan: Plan, time_limit: float | None, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
-    found = all_guarantees(problem, equivalent_sensing_attacks(problem), k=k, c=c)
+    found = all_guarantees(problem, _known(plan), k=k, c=c)
     if k or c:
-        found["this instance"] = instance_bound(problem, plan, k=k, c=c, time_limit=time_limit)
+        found["this instance"] = instance_bound(problem, plan.elements, k=k, c=c, time_limit=time_limit)
     return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def _known(plan: Plan) -> int:
+    """Sensing attacks that RATT took the link attacks to be worth."""
+    assert plan.alpha_cs is not None
+    return plan.alpha_cs
 
 
 def assess(
@@ -246,12 +255,6 @@ def _baselines(problem: Problem, clock: _Clock) -> Iterator[tuple[str, Plan]]:
 def _assess_optimum(problem: Problem, optimum: MaxMinResult, time_limit: float | None) -> PlanAssessment:
     plan = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
     return assess(problem, "maxmin", plan, time_limit, known=optimum.worst_case)
-
-
-def _certificate(problem: Problem, optimum: MaxMinResult, path: str | Path | None) -> Certificate | str:
-    if path is None:
-        return "not asked for"
-    return why_not_certifiable(problem, optimum) or certify(problem, optimum, path)
 
 
 def _targets(problem: Problem) -> int | None:

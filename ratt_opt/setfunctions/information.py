@@ -7,8 +7,9 @@ is normalised, non-decreasing in ``S`` and concave in ``Lambda``; each has a fil
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -90,16 +91,20 @@ class Tangent:
 
 
 OPTIONAL_PARTS = (
-    "cut_values",
     "combine",
     "compiled_code",
+    "conic_value",
+    "cut_values",
+    "fenchel_point",
     "is_submodular",
     "name",
     "planar_criterion",
     "prior_criterion",
+    "prior_eigenvalue",
     "tangent",
     "tangent_targets",
     "unit",
+    "verifier_averages",
 )
 """Parts of a criterion that hold for its own formula only: a subclass with another formula does not inherit them."""
 
@@ -156,6 +161,19 @@ class InformationObjective(SetFunction):
         elif own.value is InformationObjective.value:
             raise self._without("criterion", "weighted criterion per target")
 
+    def with_information(self, information: ArrayLike) -> Self:
+        """The same criterion of other elements: (E, M, d, d).
+
+        A subclass that derives more than this class does from its elements overrides it.
+
+        Raises
+        ------
+        InputError : as for a criterion made anew.
+        """
+        other = copy(self)
+        other.information = readonly(_check_information(information, self.n_targets, self.dimension))
+        return other
+
     @property
     def n(self) -> int:
         """Number of elements E."""
@@ -182,8 +200,8 @@ class InformationObjective(SetFunction):
         """
         raise self._without("gradient", "supergradient of its value")
 
-    def _without(self, part: str, what: str) -> InputError:
-        return InputError("objective", f"must define {part}(posterior_information), the {what}", type(self).__name__)
+    def _without(self, part: str, what: str, of: str = "posterior_information") -> InputError:
+        return InputError("objective", f"must define {part}({of}), the {what}", type(self).__name__)
 
     def combine(self, per_target: FloatArray) -> FloatArray:
         """The criterion of the team from that of each target: (..., M) -> (...); a sum."""
@@ -221,6 +239,24 @@ class InformationObjective(SetFunction):
     def cut_values(self, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:  # noqa: ARG002
         """What tangents for these ``targets`` bound, up to a constant: (K, ..., M, d, d) -> (K, ...)."""
         return self.value(points)
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:  # noqa: ARG002
+        """:meth:`value` as a concave cvxpy expression of those of each target's information: M of shape (d, d)."""
+        raise self._without("conic_value", "value as a concave cvxpy expression", "posterior")
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002
+        """What a certificate states of :meth:`tangent`, for the verifier to derive its bound from: nested lists."""
+        raise self._without("fenchel_point", "tangent as the verifier knows it", "point, target")
+
+    @property
+    def prior_eigenvalue(self) -> float | None:
+        """An irrational number of the prior that a certificate states as a narrow range, where it needs one."""
+        return None
+
+    @property
+    def verifier_averages(self) -> bool:
+        """Whether the verifier bounds values, and so averages of them; else it compares each with a level."""
+        return True
 
     def posterior_information(self, subset: IntArray) -> FloatArray:
         """(M, d, d) ``Lambda(S)`` of the given distinct elements, added in ascending order."""

@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.setfunctions.criteria.packed import packed_inverse
 from ratt_opt.setfunctions.criteria.two_by_two import determinant
 from ratt_opt.setfunctions.information import InformationObjective, Tangent
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt._validation import FloatArray
 
 __all__ = ["LogDetObjective"]
@@ -47,3 +50,13 @@ class LogDetObjective(InformationObjective):
         # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
         logdets = np.linalg.slogdet(y)[1] + self.dimension
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``sum_j w_j [logdet(prior_j) + log_det(L_j)]`` in cvxpy."""
+        import cvxpy as cp
+
+        return self._baseline.sum() + sum(w * cp.log_det(L) for w, L in zip(self.weights, posterior, strict=True))
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
+        """``Y = L^{-1}`` of every target, packed."""
+        return packed_inverse(point)
