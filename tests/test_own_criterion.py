@@ -28,9 +28,9 @@ from tests.strategies import information_data, random_elements
 
 
 class RootObjective(InformationObjective):
-    """``sum_j w_j [sqrt(prior_j's trace) - sqrt(posterior's trace)]``, concave as the trace of an inverse is log-convex.
+    """``sum_j w_j [sqrt(tr prior_j) - sqrt(tr Lambda_j^{-1})]``: the decrease of the root mean square errors.
 
-    With ``f = tr(L^{-1})``: ``sqrt(f) = exp(log(f) / 2)`` is convex in ``L``, because ``log f`` is.
+    Concave: with ``f = tr(L^{-1})``: ``sqrt(f) = exp(log(f) / 2)`` is convex in ``L``, because ``log f`` is.
     """
 
     __slots__ = ()
