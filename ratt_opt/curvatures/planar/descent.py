@@ -1,4 +1,4 @@
-"""Contexts with a small, or a large, marginal of the max-eigenvalue criterion: descent over one and two robots."""
+"""Contexts with a small, or a large, marginal of the max-eigenvalue criterion: descent over one and two owners."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.planar.planar import marginals
+from ratt_opt.curvatures.planar.options import marginals
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.curvatures.planar.planar import Options
+    from ratt_opt.budget import Budget
+    from ratt_opt.curvatures.planar.options import Options
 
 __all__ = ["PlanarDescent"]
 
@@ -26,14 +27,14 @@ class PlanarDescent:
 
     def __init__(self, options: Options, base: FloatArray, added: FloatArray, *, sign: float) -> None:
         self._options, self._base, self._added, self._sign = options, base, added, sign
-        self._ends = np.append(options.first, len(options.robot))
+        self._ends = np.append(options.first, len(options.owners))
         self._starts: set[tuple[int, ...]] = set()
         self._paired: tuple[int, ...] | None = None
         self.picks = options.first.copy()
         self.value = self._best(self._total(self.picks)[None])[1]
 
     def offer(self, picks: IntArray) -> None:
-        """Descend from a context, one robot at a time, if it is new."""
+        """Descend from a context, one owner at a time, if it is new."""
         key = tuple(picks.tolist())
         if key in self._starts:
             return
@@ -51,17 +52,17 @@ class PlanarDescent:
             position = np.unravel_index(where, totals.shape[:-2])
             self._keep(np.array([part[k] for part, k in zip(own, position, strict=True)], dtype=np.int64), value)
 
-    def pairs(self) -> None:
-        """Descend from the best context over two robots at a time, until it is the best of its neighbours."""
-        from ratt_opt.curvatures.planar.compiled_planar import descend_pairs
+    def pairs(self, budget: Budget) -> None:
+        """Descend from the best context over two owners at a time, until it is the best of its neighbours."""
+        from ratt_opt.curvatures.planar.compiled import descend_pairs
 
-        while self._paired != tuple(self.picks.tolist()):
+        while self._paired != tuple(self.picks.tolist()) and not budget.is_over:
             self._paired = tuple(self.picks.tolist())
             self._run(descend_pairs, self.picks)
             self._descend(self.picks)
 
     def _descend(self, picks: IntArray) -> None:
-        from ratt_opt.curvatures.planar.compiled_planar import descend
+        from ratt_opt.curvatures.planar.compiled import descend
 
         self._run(descend, picks)
 

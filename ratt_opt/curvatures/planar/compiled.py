@@ -1,4 +1,4 @@
-"""Compiled loops over contexts of the max-eigenvalue criterion in the plane; imported where a search needs them.
+"""Compiled loops over contexts and over cuts of the level program; imported where a search needs them.
 
 The plain versions are in the tests.
 """
@@ -10,12 +10,14 @@ from typing import Any
 import numba
 import numpy as np
 
-__all__ = ["descend", "descend_pairs", "raise_ceilings"]
+__all__ = ["ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
 
 # Levels are finite (checked on entry), so comparisons may assume it; no operation is reordered.
 _FINITE = {"nnan", "ninf", "nsz"}
 _IMPROVED = 1e-12
 """Relative improvements below this are none: rounding must not make two contexts take turns."""
+MARGIN = 1e-12
+"""Safety margin for rounding, relative to the sum of the absolute terms."""
 
 
 @numba.njit(cache=True, fastmath=_FINITE)
@@ -40,9 +42,9 @@ def _add(total: Any, part: Any, times: float, out: Any) -> None:
 
 @numba.njit(cache=True)
 def descend(parts: Any, ends: Any, total: Any, added: Any, sign: float, picks: Any) -> None:  # noqa: PLR0917
-    """Change one robot at a time until none improves the marginal times ``sign``.
+    """Change one owner at a time until none improves the marginal times ``sign``.
 
-    ``total`` (3, M) and ``picks`` (R,) are changed; ``ends`` (R + 1,) delimit the options of each robot.
+    ``total`` (3, M) and ``picks`` (R,) are changed; ``ends`` (R + 1,) delimit the options of each owner.
     """
     rest = np.zeros_like(total)
     value = sign * _marginal(total, rest, added)
@@ -63,7 +65,7 @@ def descend(parts: Any, ends: Any, total: Any, added: Any, sign: float, picks: A
 
 @numba.njit(cache=True)
 def descend_pairs(parts: Any, ends: Any, total: Any, added: Any, sign: float, picks: Any) -> None:  # noqa: PLR0917
-    """As :func:`descend`, but two robots at a time, and over all pairs once."""
+    """As :func:`descend`, but two owners at a time, and over all pairs once."""
     rest, one = np.zeros_like(total), np.zeros_like(total)
     value = sign * _marginal(total, rest, added)
     for i in range(len(picks)):
@@ -84,11 +86,11 @@ def descend_pairs(parts: Any, ends: Any, total: Any, added: Any, sign: float, pi
 
 @numba.njit(cache=True, fastmath=_FINITE)
 def raise_ceilings(  # noqa: PLR0917
-    parts: Any, robot: Any, levels: Any, slopes: Any, target: Any, direction: Any
+    parts: Any, owners: Any, levels: Any, slopes: Any, target: Any, direction: Any
 ) -> Any:
-    """(2, B, S) sums over robots of the largest ``levels - slope own`` of their options, and of its absolute value.
+    """(2, B, S) sums over owners of the largest ``levels - slope own`` of their options, and of its absolute value.
 
-    parts : (K, 3, M); robot : (K,) ascending; levels : (B, K); slopes : (B,); target : (S,); direction : (S, 3)
+    parts : (K, 3, M); owners : (K,) ascending; levels : (B, K); slopes : (B,); target : (S,); direction : (S, 3)
     """
     count, width = len(levels), len(target)
     own = np.empty((len(parts), width))
@@ -104,12 +106,54 @@ def raise_ceilings(  # noqa: PLR0917
         slope = slopes[b]
         for k in range(len(parts)):
             level = levels[b, k]
-            if k == 0 or robot[k] != robot[k - 1]:
+            if k == 0 or owners[k] != owners[k - 1]:
                 best[:] = -np.inf
             for s in range(width):
                 best[s] = max(best[s], level - slope * own[k, s])
-            if k + 1 == len(parts) or robot[k + 1] != robot[k]:
+            if k + 1 == len(parts) or owners[k + 1] != owners[k]:
                 for s in range(width):
                     sums[0, b, s] += best[s]
                     sums[1, b, s] += abs(best[s])
     return sums
+
+
+@numba.njit(cache=True)
+def ceiling(scores: Any, constants: Any, weights: Any, owners: Any) -> float:
+    """Largest weighted sum of forms ``constants + scores . z`` over all contexts: each owner's best option.
+
+    Parameters
+    ----------
+    scores : (F, n); constants, weights : (F,); owners : (n,) ascending
+    """
+    n = len(owners)
+    combined = np.zeros(n)
+    total, size = 0.0, 0.0
+    for c, weight in enumerate(weights):
+        if weight != 0.0:
+            total += weight * constants[c]
+            size += abs(weight * constants[c])
+            for k in range(n):
+                combined[k] += weight * scores[c, k]
+    best = -np.inf
+    for k in range(n):
+        best = max(best, combined[k])
+        if k + 1 == n or owners[k + 1] != owners[k]:
+            total += best
+            size += abs(best)
+            best = -np.inf
+    return float(total + MARGIN * size)
+
+
+@numba.njit(cache=True)
+def violated(parts: Any, base: Any, z: Any, limit: float, most: int) -> Any:
+    """Targets of the mixture ``z`` (n,) whose level is below a limit, weakest first, and their weakest angles."""
+    total = base.copy()
+    for k, share in enumerate(z):
+        if share != 0.0:
+            for p in range(3):
+                for j in range(total.shape[1]):
+                    total[p, j] += share * parts[k, p, j]
+    level = total[0] - np.hypot(total[1], total[2])
+    targets = np.argsort(level)[:most]
+    targets = targets[level[targets] < limit]
+    return targets, np.arctan2(-total[2][targets], -total[1][targets])

@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.curvatures.planar.planar import Options
+    from ratt_opt.curvatures.planar.options import Options
 
-__all__ = ["Average", "Forms", "ceilings", "least_marginal", "most_marginal"]
+__all__ = ["Average", "Forms", "ceilings", "least_enough", "least_marginal", "most_enough", "most_marginal"]
 
 MARGIN = 1e-12
 """Safety margin for rounding, relative to the sum of the absolute terms."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Forms:
     """Lower bounds on levels: (S,) ``target``, (S, 3) ``direction``."""
 
@@ -27,7 +27,7 @@ class Forms:
     direction: FloatArray
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Average:
     """``t <= <cuts, total>`` with ``cuts`` (3, M), found for ``t - slope own``."""
 
@@ -111,14 +111,14 @@ def ceilings(  # noqa: PLR0917
     allowed: BoolArray,
 ) -> FloatArray:
     """(B, S) bounds on ``t - slope own`` over all contexts of allowed options, from each average's cuts and slope."""
-    from ratt_opt.curvatures.planar.compiled_planar import raise_ceilings
+    from ratt_opt.curvatures.planar.compiled import raise_ceilings
 
-    parts, robot = options.parts[allowed], options.robot[allowed]
+    parts, owners = options.parts[allowed], options.owners[allowed]
     cuts = np.stack([average.cuts for average in averages])
     slope = np.array([average.slope for average in averages])
     level = np.tensordot(cuts, parts, axes=((1, 2), (1, 2)))  # (B, K)
     start = np.tensordot(cuts, base, axes=((1, 2), (0, 1)))[:, None]
     own_start = slope[:, None] * np.einsum("ps,sp->s", own_base[:, forms.target], forms.direction)
-    best, size = raise_ceilings(parts, robot, level, slope, forms.target, forms.direction)
+    best, size = raise_ceilings(parts, owners, level, slope, forms.target, forms.direction)
     total, size = start - own_start + best, np.abs(start) + np.abs(own_start) + size
     return np.asarray(total + MARGIN * size)

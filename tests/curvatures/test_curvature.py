@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.curvatures.planar.eigenvalue_search import eigenvalue_ends
-from ratt_opt.curvatures.separable import context_search
-from ratt_opt.curvatures.separable.minorants import minorant, others_of
+from ratt_opt.budget import Budget
+from ratt_opt.curvatures.separable.marginal_brackets import choices_beside
 from ratt_opt.errors import InputError
 from ratt_opt.stopping import Stop
 from tests.setfunctions import oracle
@@ -163,12 +162,12 @@ def test_minorants_lie_below_every_marginal_and_touch_at_contexts(kind):
             information = information + 0.05 * np.eye(dimension)
         f = OBJECTIVES[kind](prior, information, rng.uniform(0.5, 2, 2))
         owners = np.array([0, 1, 1, 2, 2, 2, 3])
-        others = others_of(f, owners, 0)
+        others = choices_beside(f, owners, 0)
         vertex = trial % 3 == 0
         raw = rng.random(6) * (rng.random(6) < 0.8) + 1e-9
-        share = np.array([1.0, 0, 0, 1, 0, 1]) if vertex else raw / np.bincount(others.robot, raw)[others.robot]
-        separable = minorant(f, 0, others, share)
-        groups = [np.flatnonzero(others.robot == i) for i in range(3)]
+        share = np.array([1.0, 0, 0, 1, 0, 1]) if vertex else raw / np.bincount(others.owners, raw)[others.owners]
+        separable = f.marginal_minorant(f.information[0], others, share)
+        groups = [np.flatnonzero(others.owners == i) for i in range(3)]
         for picks in product(*[[None, *g] for g in groups]):
             context = [int(others.elements[p]) for p in picks if p is not None]
             marginal = f([*context, 0]) - f(context)
@@ -232,7 +231,7 @@ def test_an_interrupt_returns_the_bracket(monkeypatch):
     f, owners = section_six()
     monkeypatch.setattr(LIMIT, 1)
     exact = ro.total_curvature(f, owners, gap=1e-3, time_limit=None)
-    plain = context_search.minorant
+    plain = ro.TraceObjective.marginal_minorant
     for after in (5, 300, 800):
         calls = [0]
 
@@ -242,12 +241,12 @@ def test_an_interrupt_returns_the_bracket(monkeypatch):
                 raise KeyboardInterrupt
             return plain(*arguments)
 
-        monkeypatch.setattr(context_search, "minorant", interrupted)
+        monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted)
         found = ro.total_curvature(f, owners, gap=1e-9, time_limit=None)
         assert found.stop is Stop.INTERRUPTED
         assert found.lower <= exact.upper
         assert exact.lower <= found.upper
-        monkeypatch.setattr(context_search, "minorant", plain)
+        monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", plain)
 
 
 @pytest.mark.parametrize(
@@ -292,7 +291,8 @@ def test_domains_too_large_say_the_memory_before_allocating():
     assert ro.curvature(f).upper == 0  # the ends of the lattice need no table
 
 
-def test_eigenvalue_ends_hold_for_every_context():
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_ends_that_a_criterion_states_hold_for_every_context(kind):
     rng = np.random.default_rng(40)
     for trial in range(40):
         owners = np.array([0, 0, 1, 1, 2, 3])
@@ -300,13 +300,13 @@ def test_eigenvalue_ends_hold_for_every_context():
             prior, information = information_data(rng, 6, int(rng.integers(1, 4)), int(rng.integers(1, 4)))
         else:
             prior, information = range_bearing(rng, 2, 3, 3)
-        f = ro.MaxEigenvalueObjective(prior, information, rng.uniform(0.5, 2, len(prior)))
-        ends = eigenvalue_ends(f, owners)
+        f = OBJECTIVES[kind](prior, information, rng.uniform(0.5, 2, len(prior)))
+        floor, ceiling = f.marginal_ends(owners, Budget())
         values, allowed = f.table(), oracle.allowed_sets(6, owners)
         for x in range(6):
             found = oracle.marginals(values, x, allowed)
-            assert ends.floor[x] <= min(found) + 1e-9
-            assert max(found) <= ends.ceiling[x] + 1e-9
+            assert floor[x] <= min(found) + 1e-9
+            assert max(found) <= ceiling[x] + 1e-9
 
 
 @pytest.mark.parametrize("seed", range(3))

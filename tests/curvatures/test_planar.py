@@ -9,9 +9,11 @@ import pytest
 from scipy.optimize import linprog
 
 import ratt_opt as ro
-from ratt_opt.curvatures.planar import eigenvalue_branching
-from ratt_opt.curvatures.planar.eigenvalue_branching import PlanarSearch
-from ratt_opt.curvatures.planar.level_bounds import (
+from ratt_opt.budget import Budget
+from ratt_opt.curvatures.planar import context_search
+from ratt_opt.curvatures.planar.context_search import PlanarSearch
+from ratt_opt.curvatures.planar.descent import PlanarDescent
+from ratt_opt.curvatures.planar.level_inequalities import (
     Average,
     Forms,
     ceilings,
@@ -21,13 +23,13 @@ from ratt_opt.curvatures.planar.level_bounds import (
     most_marginal,
 )
 from ratt_opt.curvatures.planar.level_program import LevelProgram, Sector, own_direction
-from ratt_opt.curvatures.planar.planar import Options, Planar, along, levels, marginals
-from ratt_opt.curvatures.planar.planar_descent import PlanarDescent
-from ratt_opt.curvatures.planar.planar_parts import Side
+from ratt_opt.curvatures.planar.options import Options, along, levels, marginals
+from ratt_opt.curvatures.planar.regions import Side
 from ratt_opt.stopping import Stop
 from tests.strategies import information_data, range_bearing
 
 LIMIT = "ratt_opt.curvatures.curvature.LARGEST_ENUMERATION"
+FREE = Budget()
 OWNERS = np.array([0, 0, 1, 1, 1, 2, 3])
 
 
@@ -41,8 +43,8 @@ def instance(rng, trial):
 
 
 def every_context(options):
-    """All picks of one option a robot, (count, R)."""
-    ends = np.append(options.first[1:], len(options.robot))
+    """All picks of one option an owner, (count, R)."""
+    ends = np.append(options.first[1:], len(options.owners))
     return np.array(list(product(*[range(a, b) for a, b in zip(options.first, ends, strict=True)])))
 
 
@@ -50,7 +52,7 @@ def test_levels_and_marginals_are_those_of_the_matrices():
     rng = np.random.default_rng(1)
     for trial in range(40):
         f = instance(rng, trial)
-        planar = Planar.of(f)
+        planar = f.planar_levels()
         options = Options.beside(planar, OWNERS, 0)
         for picks in every_context(options)[:: 1 + trial % 5]:
             context = options.context(picks)
@@ -65,7 +67,7 @@ def test_ceilings_hold_for_every_context_of_the_sector():
     rng = np.random.default_rng(2)
     inside = 0
     for trial in range(250):
-        planar = Planar.of(instance(rng, trial))
+        planar = instance(rng, trial).planar_levels()
         options, added = Options.beside(planar, OWNERS, 0), planar.parts[1]
         base, own_base = (planar.prior + added, planar.prior) if trial % 3 else (planar.prior, planar.prior + added)
         seen = own_base + options.parts[rng.choice(every_context(options))].sum(axis=0)
@@ -73,12 +75,12 @@ def test_ceilings_hold_for_every_context_of_the_sector():
         middle = np.arctan2(-seen[2], -seen[1])[target] + rng.uniform(-0.3, 0.3)
         sector = Sector(target, float(middle), rng.uniform(0.05, 0.8))
         slope = float(rng.choice([0.0, 0.7, 1.0, 2.5]))
-        allowed = rng.random(len(options.robot)) < 0.7
-        allowed[options.first] |= np.bincount(options.robot, allowed) == 0
+        allowed = rng.random(len(options.owners)) < 0.7
+        allowed[options.first] |= np.bincount(options.owners, allowed) == 0
         program = LevelProgram(options, base, own_base, sector, allowed=allowed)
         if trial % 2:
-            program.bound(slope + 0.5)
-        found = program.bound(slope)
+            program.bound(slope + 0.5, FREE)
+        found = program.bound(slope, FREE)
         other = Sector(0, rng.uniform(-4, 4), 0.3)
         forms = Forms(np.array([0]), own_direction(np.array([other.middle]), np.array([other.half])))
         recycled = ceilings(options, base, own_base, forms, [Average(found.average, slope)], allowed)[0, 0]
@@ -87,7 +89,7 @@ def test_ceilings_hold_for_every_context_of_the_sector():
         exact = ((base + totals) * found.average).sum(axis=(1, 2))
         exact -= slope * (own_base + totals)[:, :, 0] @ forms.direction[0]
         assert recycled == pytest.approx(exact.max(), abs=1e-9 * (1 + np.abs(totals).max()))
-        free = LevelProgram(options, base, own_base, None, allowed=allowed).bound(0.0).ceiling
+        free = LevelProgram(options, base, own_base, None, allowed=allowed).bound(0.0, FREE).ceiling
         for picks in every_context(options):
             parts = options.parts[picks].sum(axis=0)
             level, own, own_total = levels(base + parts).min(), levels(own_base + parts), own_base + parts
@@ -115,7 +117,7 @@ def sector_rows(options, own_base, sector):
 
 def linear_program(options, base, cuts, *, rows, constants, slope):
     """``max t - slope own - 100 (violations of the edges)`` over mixtures under some cuts."""
-    count, n = len(options.first), len(options.robot)
+    count, n = len(options.first), len(options.owners)
     directions = along(cuts.angles)
     scores = np.einsum("kpc,cp->ck", options.parts[:, :, cuts.targets], directions)
     above = np.einsum("pc,cp->c", base[:, cuts.targets], directions)
@@ -123,7 +125,7 @@ def linear_program(options, base, cuts, *, rows, constants, slope):
     unequal[:-2, :n], unequal[:-2, n] = -scores, 1.0
     unequal[-2:, :n], unequal[-2:, n + 1 :] = -rows[1:], -np.eye(2)
     shares = np.zeros((count, n + 3))
-    shares[options.robot, np.arange(n)] = 1.0
+    shares[options.owners, np.arange(n)] = 1.0
     solved = linprog(
         np.concatenate([slope * rows[0], [-1.0, 100.0, 100.0]]),
         A_ub=unequal,
@@ -139,28 +141,30 @@ def test_the_program_over_its_last_cuts_is_solved_and_nearly_no_cut_is_missing()
     rng = np.random.default_rng(5)
     tight = 0
     for trial in range(120):
-        planar = Planar.of(instance(rng, trial))
+        planar = instance(rng, trial).planar_levels()
         options, added = Options.beside(planar, OWNERS, 0), planar.parts[1]
         base, own_base = (planar.prior + added, planar.prior) if trial % 3 else (planar.prior, planar.prior + added)
         own_total = own_base + options.parts[rng.choice(every_context(options))].sum(axis=0)
         target = int(rng.integers(base.shape[1]))
         middle = np.arctan2(-own_total[2], -own_total[1])[target] + rng.uniform(-0.2, 0.2)
         sector, slope = Sector(target, float(middle), rng.uniform(0.05, 0.8)), float(rng.choice([0.7, 1.0, 2.5]))
-        everything = np.ones(len(options.robot), dtype=bool)
+        everything = np.ones(len(options.owners), dtype=bool)
         program = LevelProgram(options, base, own_base, sector, allowed=everything)
-        first, found = program.bound(0.9), program.bound(slope)
+        first, found = program.bound(0.9, FREE), program.bound(slope, FREE)
         rows, constants = sector_rows(options, own_base, sector)
         plain = linear_program(options, base, found.cuts, rows=rows, constants=constants, slope=slope)
         size = 1 + np.abs(base).max() + np.abs(options.parts).max()
         assert found.ceiling == pytest.approx(plain, abs=1e-8 * size)
-        assert np.bincount(options.robot, found.mixture) == pytest.approx(1)
+        assert np.bincount(options.owners, found.mixture) == pytest.approx(1)
         missed = found.level - levels(base + np.tensordot(found.mixture, options.parts, axes=1)).min()
         assert missed >= -1e-8 * size
         tight += missed <= 0.031 * abs(found.level - found.own) + 1e-9 * size
         # Every start leads there, and a ceiling that is low enough ends the search.
         again = LevelProgram(options, base, own_base, sector, allowed=everything, start=first.average)
-        assert again.bound(slope).ceiling <= found.ceiling + 0.031 * abs(found.level - found.own) + 1e-8 * size
-        early = LevelProgram(options, base, own_base, sector, allowed=everything).bound(slope, found.ceiling + 0.1)
+        assert again.bound(slope, FREE).ceiling <= found.ceiling + 0.031 * abs(found.level - found.own) + 1e-8 * size
+        early = LevelProgram(options, base, own_base, sector, allowed=everything).bound(
+            slope, FREE, found.ceiling + 0.1
+        )
         assert found.ceiling - 0.031 * abs(found.level - found.own) - 1e-8 * size <= early.ceiling
     assert tight > 100
 
@@ -183,10 +187,10 @@ def test_a_ceiling_is_enough_exactly_where_the_marginal_reaches_its_target():
     assert closed > 1000
 
 
-def test_descents_end_where_no_change_of_one_or_two_robots_is_better():
+def test_descents_end_where_no_change_of_one_or_two_owners_is_better():
     rng = np.random.default_rng(7)
     for trial in range(60):
-        planar = Planar.of(instance(rng, trial))
+        planar = instance(rng, trial).planar_levels()
         options, added, sign = Options.beside(planar, OWNERS, 0), planar.parts[1], float(1 - 2 * (trial % 2))
         contexts = every_context(options)
         values = sign * marginals(planar.prior + options.parts[contexts].sum(axis=1), added)
@@ -196,12 +200,12 @@ def test_descents_end_where_no_change_of_one_or_two_robots_is_better():
         slack = 1e-11 * np.abs(values).max()
         for changes in (1, 2):
             if changes == 2:
-                found.pairs()
+                found.pairs(FREE)
             assert sign * found.value == pytest.approx(values[(contexts == found.picks).all(axis=1)][0], rel=1e-12)
             assert sign * found.value <= values[(contexts == start).all(axis=1)][0] + slack
             near = (contexts != found.picks).sum(axis=1) <= changes
             assert sign * found.value <= values[near].min() + slack
-        found.enumerate(np.ones(len(options.robot), dtype=bool))
+        found.enumerate(np.ones(len(options.owners), dtype=bool))
         assert sign * found.value == pytest.approx(values.min(), abs=slack)
 
 
@@ -228,10 +232,10 @@ def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
     rng = np.random.default_rng(4)
     ended = 0
     for trial in range(30):
-        planar = Planar.of(instance(rng, trial))
+        planar = instance(rng, trial).planar_levels()
         options = Options.beside(planar, OWNERS, 0)
-        everything = np.ones(len(options.robot), dtype=bool)
-        highest = LevelProgram(options, planar.prior, planar.prior, None, allowed=everything).bound(0.0).ceiling
+        everything = np.ones(len(options.owners), dtype=bool)
+        highest = LevelProgram(options, planar.prior, planar.prior, None, allowed=everything).bound(0.0, FREE).ceiling
         added = planar.parts[0]
         totals = planar.prior + options.parts[every_context(options)].sum(axis=1)
         values = marginals(totals, added)
@@ -239,15 +243,15 @@ def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
         search = PlanarSearch(Side(options, planar.prior, added, largest=largest, highest=highest))
         slack = 1e-9 * (1 + abs(exact))
         # Without leaves to enumerate the end is far away; the bounds must hold all the same.
-        monkeypatch.setattr(eigenvalue_branching, "LARGEST_LEAF", (1, 2, 4, 8)[trial % 4])
+        monkeypatch.setattr(context_search, "LARGEST_LEAF", (1, 2, 4, 8)[trial % 4])
         for _ in range(60):
             low, high = sorted([search.bound, search.attained.value])
             assert low - slack <= exact <= high + slack
             if search.exhausted:
                 break
-            search.refine(search.side.sign * search.attained.value)
+            search.refine(search.side.sign * search.attained.value, FREE)
         ended += search.exhausted
-        search.attained.pairs()
+        search.attained.pairs(FREE)
         if search.exhausted:
             assert search.attained.value == pytest.approx(exact, abs=slack)
     assert ended > 8
@@ -280,7 +284,7 @@ def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
                 raise KeyboardInterrupt
             return super().bound(*arguments)
 
-    monkeypatch.setattr(eigenvalue_branching, "LevelProgram", Interrupted)
+    monkeypatch.setattr(context_search, "LevelProgram", Interrupted)
     for after in (0, 3, 10, 40):  # noqa: B007  (read by the function above)
         calls[0] = 0
         found = ro.total_curvature(f, owners, gap=0.0, time_limit=None)
