@@ -94,10 +94,10 @@ if TYPE_CHECKING:
     from ratt_opt.errors import ProofError as ProofError
     from ratt_opt.graph.caa import CaaResult as CaaResult
     from ratt_opt.graph.caa import caa as caa
-    from ratt_opt.graph.largest_group import (
+    from ratt_opt.graph.largest_group.result import (
         LargestGroup as LargestGroup,
     )
-    from ratt_opt.graph.largest_group import (
+    from ratt_opt.graph.largest_group.smallest import (
         smallest_largest_group as smallest_largest_group,
     )
     from ratt_opt.graph.outcomes import (
@@ -223,7 +223,7 @@ _HOME = {
     "Guarantee": "bounds.guarantees",
     "InformationInput": "scenario.model_free",
     "InputError": "errors",
-    "LargestGroup": "graph.largest_group",
+    "LargestGroup": "graph.largest_group.result",
     "Ledger": "audit.ledger",
     "LogDetObjective": "setfunctions.criteria.logdet",
     "MaxEigenvalueObjective": "setfunctions.criteria.maxeig",
@@ -298,7 +298,7 @@ _HOME = {
     "scenario_schema": "scenario.files",
     "sensing_only_bound": "bounds.guarantees",
     "simulate_tracking": "scenario.simulation",
-    "smallest_largest_group": "graph.largest_group",
+    "smallest_largest_group": "graph.largest_group.smallest",
     "solve_maxmin": "solvers.maxmin.solve",
     "submodularity_ratio": "curvatures.ratios",
     "theorem1_bound": "bounds.guarantees",

@@ -43,10 +43,12 @@ OPTIONAL_PARTS = (
     "cut_values",
     "fenchel_point",
     "is_submodular",
+    "is_worst_axis",
     "marginal_ends",
     "marginal_minorant",
     "name",
     "planar_criterion",
+    "planar_gradient",
     "planar_levels",
     "prior_criterion",
     "prior_eigenvalue",
@@ -73,6 +75,9 @@ class CriterionParts(ProofParts):
     name: ClassVar[str] = ""
     """What files, tables and the command line call it; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
+    is_worst_axis: ClassVar[bool] = False
+    """Whether the team's criterion is ``max_j w_j v' Lambda_j^{-1} v`` over targets and unit vectors ``v``: one axis of
+    one target decides. Otherwise it is a sum over targets."""
     compiled_code: ClassVar[int | None] = None
     """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
 
@@ -115,6 +120,10 @@ class CriterionParts(ProofParts):
         """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
         rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
         return self.criterion(rows)
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
+        """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
+        raise lacking(self, "planar_gradient(a, b, c)", "derivative of one target's value")
 
     def tangent_targets(self, point: FloatArray, level: float, most: int) -> list[int | None]:  # noqa: ARG002
         """Targets to take tangents for at ``point`` (M, d, d), at most ``most``; ``None`` is all of them together.

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.problem import Plan, Problem
 
 __all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
@@ -29,8 +29,7 @@ def equivalent_sensing_attacks(problem: Problem) -> int:
     found = smallest_largest_group(
         problem.communication, problem.alpha_c, protected_links=problem.protected_links, max_nodes=MILP_NODES
     )
-    solved = found.claimed_lower == found.upper
-    return problem.n_robots - (found.n_max if solved else found.lower)
+    return problem.n_robots - (found.lower if found.n_max is None else found.n_max)
 
 
 def ratt(problem: Problem, *, alpha_cs: int | None = None) -> Plan:

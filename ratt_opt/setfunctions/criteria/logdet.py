@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.packed import packed_inverse
-from ratt_opt.setfunctions.criteria.two_by_two import determinant
+from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
 from ratt_opt.setfunctions.criterion_parts import Tangent
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.minorants import SeparableMinorant
@@ -41,12 +41,16 @@ class LogDetObjective(InformationObjective):
         """(..., M) weighted log-determinants of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return LogDetObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
         return np.asarray(-self.weights * np.linalg.slogdet(posterior_information)[1])
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
         """(..., M) the same in closed form."""
         return np.asarray(-self.weights * np.log(determinant(a, b, c)))
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
+        """``Lambda^{-1}`` by its entries, the off-diagonal one twice: (..., 3)."""
+        return np.stack(gradient_of_log_determinant(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1}``: (..., M, d, d)."""

@@ -28,6 +28,7 @@ class MaxEigenvalueObjective(InformationObjective):
 
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
+    is_worst_axis: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 2
 
     @property
@@ -39,7 +40,7 @@ class MaxEigenvalueObjective(InformationObjective):
         """(..., M) weighted largest eigenvalues of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return MaxEigenvalueObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
         return np.asarray(self.weights / np.linalg.eigvalsh(posterior_information)[..., 0])
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["Adversary"]
 
 SEARCHED_BY_SIZE = 12
-"""Larger teams with all links alike are attacked by exchanges first (``large_team.py``): fast and hardly ever wrong."""
+"""Larger teams with all links alike are attacked by exchanges first (``by_size``): fast and hardly ever wrong."""
 SAME_VALUE = 1e-12
 """Relative difference of team values under two attacks that counts as none."""
 
@@ -65,8 +65,7 @@ class Adversary:
 
     def attack(self, plan: IntArray, budget: Budget) -> AttackResult:
         """Exact worst case of a plan within a part of the budget."""
-        seconds = None if budget.time_limit is None else budget.seconds_left
-        result = worst_case_attack(self.problem, plan, time_limit=seconds, max_nodes=budget.max_nodes)
+        result = worst_case_attack(self.problem, plan, max_nodes=budget.max_nodes, budget=budget)
         self._remember(self.problem, plan, result.attack)
         return result
 
@@ -88,6 +87,6 @@ class Adversary:
             return bounded_rational_attack(problem, plan).attack
         if not problem.threat.links_alike:
             return greedy_attack(problem, plan).attack
-        found = worst_case_attack(problem, plan, max_nodes=0)
+        found = worst_case_attack(problem, plan, max_nodes=0, budget=self.budget)
         self.heed(found)
         return found.attack

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.compact import CompactTeam, triples
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.criteria.two_by_two import triples
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
@@ -50,7 +51,7 @@ class LastingAttacks:
 
     def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...]) -> list[frozenset[int]]:
         """Disjoint groups of these sizes outside ``largest``, each as weak as exchanges find, the larger ones first."""
-        from ratt_opt.attackers.weakest_set.weak_sets import weak_sets  # compiles
+        from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size  # compiles
 
         team = self._team
         assert team is not None
@@ -58,13 +59,13 @@ class LastingAttacks:
         groups = []
         for size in sizes:
             among = replace(team, information=team.information[left], single=team.single[left])
-            chosen = sorted(weak_sets(among, size)[0]) if size > 1 else [int(among.single.argmin())]
+            chosen = sorted(weak_sets_of_size(among, size)[0]) if size > 1 else [int(among.single.argmin())]
             groups.append(frozenset(left[chosen].tolist()))
             left = np.delete(left, chosen)
         return groups
 
 
-def _at_their_best(problem: Problem) -> CompactTeam | None:
+def _at_their_best(problem: Problem) -> PlanarTeam | None:
     """A team in which each robot sees every target as with whichever of its elements sees that target best.
 
     No one element need do all of that; its ``single`` values are those of the robots' individually best elements. With
@@ -73,7 +74,7 @@ def _at_their_best(problem: Problem) -> CompactTeam | None:
     """
     single = problem.objective.singletons()
     strongest = np.array([choice[single[choice].argmax()] for choice in problem.choices])
-    team = CompactTeam.of(problem.objective, strongest)
+    team = PlanarTeam.of(problem.objective, strongest)
     if team is None:
         return None
     information = problem.information_objective.information

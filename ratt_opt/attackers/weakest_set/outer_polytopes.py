@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.compact import LOG_DET, TRACE
-from ratt_opt.attackers.weakest_set.compiled import cut_polytopes, matrix_values, point_values
+from ratt_opt.attackers.weakest_set.polytope_vertices import cut_polytopes, matrix_values, vertex_values
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attackers.weakest_set.planar_team import SetFamily
 
-__all__ = ["OuterPoints", "SetFamily", "outer_points", "target_values"]
+__all__ = ["OuterPolytopes", "outer_polytopes", "target_values"]
 
 SPHERE, RANK_ONE = 10, 8
 CAPACITY = 160
@@ -28,32 +28,15 @@ SAFETY = 1e-9
 """Relative amount by which every half-space is widened against rounding; distinct per row, so no two meet."""
 
 
-@dataclass(frozen=True, slots=True)
-class SetFamily:
-    """All ``R`` of ``size`` of F free robots, beside those already chosen.
-
-    ``kind`` : TRACE or LOG_DET; ``weights`` : (M,); ``prior`` : (M, 3) criterion's zero; ``start`` : (M, 3)
-    prior plus the chosen robots' information; ``information`` : (F, M, 3)
-    """
-
-    kind: int
-    weights: FloatArray
-    prior: FloatArray
-    start: FloatArray
-    information: FloatArray
-    size: int
-
-
 def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
     """Value of each target's information (..., M, 3) -> (..., M); minus infinity where it is not positive definite."""
-    assert family.kind in {TRACE, LOG_DET}
+    team = family.team
     flat = np.ascontiguousarray(matrices).reshape(-1, *matrices.shape[-2:])
-    values = matrix_values(family.kind, family.weights, family.prior, flat)
-    return np.asarray(values.reshape(matrices.shape[:-1]))
+    return np.asarray(matrix_values(team.code, team.weights, team.prior, flat).reshape(matrices.shape[:-1]))
 
 
 @dataclass(frozen=True, slots=True)
-class OuterPoints:
+class OuterPolytopes:
     """Vertices of all outer polytopes, target by target; ``sound[j]`` says that ``j``'s are all positive definite.
 
     ``first`` : (M + 1,) target ``j`` owns vertices ``first[j]:first[j + 1]``, none unless sound;
@@ -80,7 +63,7 @@ class OuterPoints:
         return np.repeat(np.arange(len(self.heavy)), np.diff(self.first))
 
 
-def outer_points(family: SetFamily, n_heavy: int, further: FloatArray | None = None) -> OuterPoints:
+def outer_polytopes(family: SetFamily, n_heavy: int, further: FloatArray | None = None) -> OuterPolytopes:
     """Vertices of the outer polytopes of a family, with ``n_heavy`` robots per target enumerated.
 
     ``further`` : (M, A, 3) half-space normals, as slopes in (a, b, c), beside a box and ``RANK_ONE`` directions;
@@ -97,7 +80,7 @@ def outer_points(family: SetFamily, n_heavy: int, further: FloatArray | None = N
 
 def _cut_out(
     family: SetFamily, heavy: IntArray, light: BoolArray, patterns: IntArray, further: FloatArray | None
-) -> OuterPoints:
+) -> OuterPolytopes:
     n_free = len(family.information)
     by_target = family.information.transpose(1, 0, 2)
     factor = _whitening(family, light)
@@ -115,7 +98,8 @@ def _cut_out(
     points, rows, numbers = cut_polytopes(white, support, factor, CAPACITY)
     base = patterns @ np.take_along_axis(by_target, heavy[..., None], axis=1)  # (M, P, 3)
     starts = family.start[:, None] + base[:, possible]
-    values = point_values(family.kind, family.weights, family.prior, starts, points, numbers)
+    team = family.team
+    values = vertex_values(team.code, team.weights, team.prior, starts, (points, numbers))
     last = np.cumsum(numbers.sum(axis=1))
     first = np.concatenate([[0], last])
     pattern = np.repeat(np.tile(possible, len(heavy)), numbers.ravel())
@@ -125,7 +109,7 @@ def _cut_out(
         used = np.repeat(sound, np.diff(first))
         points, rows, pattern, values = points[used], rows[used], pattern[used], values[used]
         first = np.concatenate([[0], np.cumsum(np.diff(first) * sound)])
-    return OuterPoints(first, pattern, values, points, rows, normals, sound, heavy, patterns, base)
+    return OuterPolytopes(first, pattern, values, points, rows, normals, sound, heavy, patterns, base)
 
 
 def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
