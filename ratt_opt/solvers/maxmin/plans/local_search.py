@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
 __all__ = ["climb"]
 

@@ -9,7 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["OutcomePool"]
 
@@ -21,9 +20,8 @@ class OutcomePool:
     all outcomes that matter are known.
     """
 
-    def __init__(self, problem: Problem, objective: InformationObjective) -> None:
-        self.problem = problem
-        self.objective = objective
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.objective = problem, problem.information_objective
         self.complete = False
         self.attacks: list[Attack] = []
         self.groups: list[tuple[int, ...]] = []
@@ -36,8 +34,7 @@ class OutcomePool:
 
     def add(self, attack: Attack) -> int:
         """Add the outcome of one attack and return its index, new or old."""
-        parts = self.problem.communication.groups(attack.links)
-        left = [tuple(sorted(part - attack.sensing)) for part in parts]
+        left = [tuple(sorted(group)) for group in self.problem.groups_left(attack)]
         numbers = tuple(sorted({self._group(group) for group in left if group} or {self._group(())}))
         if numbers not in self._known:
             self._known[numbers] = len(self.attacks)

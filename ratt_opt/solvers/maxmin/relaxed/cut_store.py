@@ -14,10 +14,9 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.bounds.cuts import GroupCut
-    from ratt_opt.problem import Problem
-    from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
     from ratt_opt.solvers.maxmin.proof import Leaf
+    from ratt_opt.solvers.maxmin.task import Task
 
 __all__ = ["CutStore"]
 
@@ -29,12 +28,12 @@ class CutStore:
     relaxed plan has few elements.
     """
 
-    def __init__(self, problem: Problem, objective: InformationObjective, pool: OutcomePool) -> None:
-        self.problem, self.objective, self.pool = problem, objective, pool
+    def __init__(self, task: Task, pool: OutcomePool) -> None:
+        self.task, self.pool = task, pool
         self._cuts: list[GroupCut] = []
         self._origin = np.zeros((64, 2), dtype=np.int64)
         self._constants = np.zeros(64)
-        self._scores = np.zeros((objective.n, 64))
+        self._scores = np.zeros((task.objective.n, 64))
 
     def __len__(self) -> int:
         return len(self._cuts)
@@ -65,9 +64,7 @@ class CutStore:
 
     def tangent(self, outcome: int, group: int, point: FloatArray, target: int | None = None) -> int:
         """Add the tangent of a group's value at the posterior information ``point``; return its index."""
-        return self.add(
-            outcome, group, tangent_cut(self.problem, self.objective, self.pool.groups[group], point, target)
-        )
+        return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
 
     def add(self, outcome: int, group: int, cut: GroupCut) -> int:
         """Add a cut; return its index."""

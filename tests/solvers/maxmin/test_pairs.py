@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from ratt_opt import Problem, certify, exhaustive_optimum, solve_maxmin, verify_certificate, worst_case_attack
-from ratt_opt.solvers.maxmin.pair_outcomes import PairOutcomes
-from ratt_opt.solvers.maxmin.pair_values import PairValues
-from ratt_opt.solvers.maxmin.search_tree import equal_elements
+from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
+from ratt_opt.solvers.maxmin.groups.pair_values import PairValues
+from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.stopping import Stop
-from tests.solvers.test_maxmin import proved_upper
+from tests.solvers.maxmin.test_solve import proved_upper
 from tests.strategies import OBJECTIVES, information_data
 
 BUDGETS = ((4, 1, 3), (5, 1, 7), (5, 2, 4), (6, 2, 9), (6, 3, 5), (4, 2, 0))
@@ -77,7 +77,7 @@ def test_one_pair_and_lone_robots(budget: tuple[int, int, int], kind: str, weak:
     rng = np.random.default_rng([9, robots, alpha_s, weak])
     for _ in range(4):
         problem = threatened(ragged(rng, robots, 4, kind, weak), alpha_s, alpha_c)
-        assert PairOutcomes.of(problem, problem.objective, equal_elements(problem, problem.objective)) is not None
+        assert PairOutcomes.of(Task.of(problem)) is not None
         expected = exhaustive_optimum(problem).lower
         result = solve_maxmin(problem)
         assert result.lower == pytest.approx(expected, rel=1e-9)
@@ -89,7 +89,7 @@ def test_one_pair_and_lone_robots(budget: tuple[int, int, int], kind: str, weak:
 def test_other_threats_have_no_such_outcomes(alpha_s: int, alpha_c: int, protected: tuple[int, ...]) -> None:
     team = ragged(np.random.default_rng(0), 4, 3, "trace")
     problem = Problem(team.objective, team.robot, None, alpha_s, alpha_c, frozenset(protected))
-    assert PairOutcomes.of(problem, problem.objective, equal_elements(problem, problem.objective)) is None
+    assert PairOutcomes.of(Task.of(problem)) is None
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-6])
@@ -110,7 +110,7 @@ def test_a_larger_team_with_its_certificate(kind: str, gap: float, tmp_path) -> 
 def test_where_lone_robots_decide_the_first_node_is_enough(kind: str) -> None:
     """The pair of two robots that see next to nothing is closed, although it is the largest group."""
     problem = threatened(ragged(np.random.default_rng(4), 14, 4, kind, weak=2), 9, 40)
-    assert PairOutcomes.of(problem, problem.objective, equal_elements(problem, problem.objective)) is not None
+    assert PairOutcomes.of(Task.of(problem)) is not None
     result = solve_maxmin(problem, gap=1e-6, max_nodes=1)
     assert result.stop in {Stop.GAP, Stop.CLOSED}
     assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)

@@ -17,7 +17,6 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.criteria.two_by_two import triples
-from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
@@ -29,7 +28,7 @@ class LastingAttacks:
     """Exchanges the smaller groups of attacks on one problem."""
 
     def __init__(self, problem: Problem) -> None:
-        self._threat = problem.threat
+        self._problem = problem
         self._team = _at_their_best(problem) if problem.threat.is_symmetric else None
         self._known: dict[tuple[frozenset[int], tuple[int, ...]], Attack] = {}
 
@@ -40,15 +39,14 @@ class LastingAttacks:
         """
         if self._team is None:
             return attack
-        parts = self._threat.graph.groups(attack.links)
-        groups = sorted((part - attack.sensing for part in parts), key=lambda g: (-len(g), min(g, default=0)))
+        groups = sorted(self._problem.groups_left(attack), key=lambda g: (-len(g), min(g, default=0)))
         sizes = tuple(len(group) for group in groups[1:] if group)
         if not sizes:
             return attack
         key = groups[0], sizes
         if key not in self._known:
             outcome = (groups[0], *self._weakest(groups[0], sizes))
-            self._known[key] = Attack(*realise(self._threat, tuple(sorted(outcome, key=min))))
+            self._known[key] = Attack(*realise(self._problem.threat, tuple(sorted(outcome, key=min))))
         return self._known[key]
 
     def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...]) -> list[frozenset[int]]:
@@ -77,9 +75,10 @@ def _at_their_best(problem: Problem) -> PlanarTeam | None:
     single = problem.objective.singletons()
     strongest = np.array([choice[single[choice].argmax()] for choice in problem.choices])
     team = PlanarTeam.of(problem.objective, strongest)
-    if team is None or not isinstance(problem.objective, InformationObjective):
+    if team is None:
         return None
-    traces = np.trace(problem.objective.information, axis1=-2, axis2=-1)
+    information = problem.information_objective.information
+    traces = np.trace(information, axis1=-2, axis2=-1)
     best = np.array([choice[traces[choice].argmax(axis=0)] for choice in problem.choices])
     targets = np.arange(traces.shape[1])
-    return replace(team, information=triples(problem.objective.information[best, targets]))
+    return replace(team, information=triples(information[best, targets]))

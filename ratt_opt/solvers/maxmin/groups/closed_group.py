@@ -14,13 +14,12 @@ import numpy as np
 
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
 from ratt_opt.solvers.maxmin.branching import divide_elements, mixing_gains
+from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.problem import Problem
-    from ratt_opt.setfunctions.information import InformationObjective
+    from ratt_opt.solvers.maxmin.frontier import ClosingRule
+    from ratt_opt.solvers.maxmin.task import Choices, Task
 
 __all__ = ["ClosedGroup", "close_group"]
 
@@ -44,19 +43,9 @@ class _RefutedError(Exception):
     """The group exceeds the level with some elements, or the proof became too large."""
 
 
-def close_group(
-    problem: Problem,
-    objective: InformationObjective,
-    *,
-    members: tuple[int, ...],
-    choices: tuple[IntArray, ...],
-    closes: Callable[[float], bool],
-) -> ClosedGroup | None:
-    """Prove ``closes(value)`` for the group's value under every plan within ``choices``, or return ``None``.
-
-    ``closes`` : whether a value is low enough; true for all values below one for which it is.
-    """
-    search = _Search(problem, objective, members, closes)
+def close_group(task: Task, members: tuple[int, ...], choices: Choices, rule: ClosingRule) -> ClosedGroup | None:
+    """Prove that ``rule`` closes the group's value under every plan within ``choices``, or return ``None``."""
+    search = _Search(task, members, rule)
     try:
         return search.close(choices)
     except _RefutedError:
@@ -64,19 +53,13 @@ def close_group(
 
 
 class _Search:
-    def __init__(
-        self,
-        problem: Problem,
-        objective: InformationObjective,
-        members: tuple[int, ...],
-        closes: Callable[[float], bool],
-    ) -> None:
-        self.problem, self.objective = problem, objective
-        self.members, self.closes = members, closes
-        self.inside = np.isin(np.arange(problem.n_robots), members)
+    def __init__(self, task: Task, members: tuple[int, ...], rule: ClosingRule) -> None:
+        self.problem, self.objective = task.problem, task.objective
+        self.members, self.rule = members, rule
+        self.inside = np.isin(np.arange(task.problem.n_robots), members)
         self.cuts = 0
 
-    def close(self, choices: tuple[IntArray, ...]) -> ClosedGroup:
+    def close(self, choices: Choices) -> ClosedGroup:
         """Close one node of the proof, by a cut or by dividing it."""
         own = tuple(choices[i] for i in self.members)
         plan = np.array([choice[0] for choice in own], dtype=np.int64)
@@ -86,14 +69,14 @@ class _Search:
             selection *= 1 - share
             selection[plan] += share
             point = self._point(selection)
-            cut = tangent_cut(self.problem, self.objective, self.members, point)
+            cut = tangent_cut(self.problem, self.members, point)
             self.cuts += 1
             bound, scores = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), choices)
-            if self.closes(bound):
+            if self.rule.closes(bound):
                 return ClosedGroup(bound=bound, cut=cut)
             plan = np.array([choice[scores[choice].argmax()] for choice in own], dtype=np.int64)
             value = float(self.objective.value(self.objective.posterior_information(plan)[None])[0])
-            if not self.closes(value) or self.cuts > LARGEST_PROOF:
+            if not self.rule.closes(value) or self.cuts > LARGEST_PROOF:
                 raise _RefutedError
         return self._divide(choices, selection, point, cut.target)
 
@@ -102,12 +85,9 @@ class _Search:
         mixed = np.tensordot(selection[chosen], self.objective.information[chosen], axes=1)
         return np.asarray(self.objective.prior_information + mixed)
 
-    def _divide(
-        self, choices: tuple[IntArray, ...], selection: FloatArray, point: FloatArray, target: int | None
-    ) -> ClosedGroup:
+    def _divide(self, choices: Choices, selection: FloatArray, point: FloatArray, target: int | None) -> ClosedGroup:
         gains = mixing_gains(
             self.problem,
-            self.objective,
             selection=selection,
             inside=self.inside[None],
             points=point[None],
@@ -119,7 +99,7 @@ class _Search:
             raise _RefutedError
         robot = max(divisible, key=lambda i: (gains[i], -i))
         parts = tuple(
-            (part, self.close((*choices[:robot], part, *choices[robot + 1 :])))
+            (part, self.close(with_choice(choices, robot, part)))
             for part in divide_elements(self.objective, choices[robot], selection, point)
         )
         return ClosedGroup(bound=max(node.bound for _, node in parts), robot=robot, parts=parts)

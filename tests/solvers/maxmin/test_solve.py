@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import time
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -22,7 +25,9 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
-from ratt_opt.solvers.maxmin import incumbent, solve
+from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin import solve
+from ratt_opt.solvers.maxmin.plans import adversary
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
@@ -44,7 +49,10 @@ def proved_upper(problem: Problem, proof: UpperProof) -> float:
         scores = np.array([sum(np.vdot(slope[j], f.information[e, j]) for j in range(f.n_targets)) for e in range(f.n)])
         return constant, np.where(np.isin(problem.robot, cut.group), scores, 0.0)
 
-    def visit(node, choices, winners):
+    nodes = iter(proof.tree)
+
+    def visit(choices, winners):
+        node = next(nodes)
         if isinstance(node, Leaf):
             assert node.cuts
             assert min(node.weights) >= 0
@@ -53,18 +61,19 @@ def proved_upper(problem: Problem, proof: UpperProof) -> float:
             total = share @ np.array([b[1] for b in bounds])
             return share @ np.array([b[0] for b in bounds]) + sum(max(total[e] for e in c) for c in choices)
         if isinstance(node, ElementBranch):
-            parts = [set(members) for members, _ in node.children]
-            assert set.union(*parts) == set(choices[node.robot])
-            assert sum(map(len, parts)) == len(choices[node.robot])
-            below = [(*choices[: node.robot], list(m), *choices[node.robot + 1 :]) for m, _ in node.children]
-            return max(visit(child, c, winners) for c, (_, child) in zip(below, node.children, strict=True))
+            assert set().union(*node.parts) == set(choices[node.robot])
+            assert sum(map(len, node.parts)) == len(choices[node.robot])
+            before, after = choices[: node.robot], choices[node.robot + 1 :]
+            return max([visit((*before, list(part), *after), winners) for part in node.parts])
         assert isinstance(node, WinnerBranch)
         attack = proof.attacks[node.attack]
         groups = {tuple(sorted(g - attack.sensing)) for g in groups_left(problem, attack.links)} - {()}
-        assert {members for members, _ in node.children} == groups
-        return max(visit(child, choices, {**winners, node.attack: members}) for members, child in node.children)
+        assert sorted(groups) == list(node.parts)
+        return max([visit(choices, {**winners, node.attack: group}) for group in node.parts])
 
-    return visit(proof.root, tuple(c.tolist() for c in problem.choices), {})
+    bound = visit(tuple(c.tolist() for c in problem.choices), {})
+    assert next(nodes, None) is None
+    return bound
 
 
 def tangent(f, point, target):
@@ -100,9 +109,9 @@ def test_equals_the_exhaustive_optimum(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(60))
 def test_quick_attacks_that_see_nothing_cost_time_only(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Plans look better than they are until they are attacked exactly; what was closed on their word is reopened."""
-    monkeypatch.setattr(incumbent, "SEARCHED_BY_SIZE", 0)
+    monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
     monkeypatch.setattr(solve, "LISTED_ROBOTS", 0)
-    monkeypatch.setattr(incumbent.Incumbent, "_quick_attack", lambda *_: Attack())
+    monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
     rng = np.random.default_rng([6, seed])
     problem = random_problem(rng, int(rng.integers(2, 6)), kind=list(OBJECTIVES)[seed % 3], controls=4)
     expected = exhaustive_optimum(problem).lower
@@ -157,7 +166,7 @@ def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.incumbent.worst_case_attack", interrupted)
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.worst_case_attack", interrupted)
     result = solve_maxmin(problem)
     assert result.stop is Stop.INTERRUPTED
     assert result.lower <= full.lower <= full.upper <= result.upper
@@ -235,3 +244,42 @@ def test_a_time_limit_is_kept_and_the_bracket_reported_open() -> None:
     assert result.stop is Stop.TIME
     assert 0 <= result.lower < result.upper
     assert time.monotonic() - began < 60, "a limit of half a second, on however busy a machine"
+
+
+def test_results_are_values_of_plain_numbers() -> None:
+    problem = random_scenario(4, 3, alpha_s=1, alpha_c=2, seed=17).problem()
+    result, again = solve_maxmin(problem), solve_maxmin(problem)
+    assert result == again == pickle.loads(pickle.dumps(result)) == copy.deepcopy(result)
+    assert hash(result) == hash(again)
+    assert result != replace(result, nodes=result.nodes + 1)
+    assert result != replace(result, proof=replace(result.proof, tree=result.proof.tree[:-1]))
+    assert {type(result.lower), type(result.upper), type(result.posterior_gap)} == {float}
+    assert len(repr(result)) < 200
+    assert exhaustive_optimum(problem) == exhaustive_optimum(problem)
+
+
+def test_an_outer_budget_counts_and_hears_of_interrupts() -> None:
+    problem = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=1).problem()
+    spent = solve_maxmin(problem, budget=Budget(time_limit=0.0))
+    assert spent.stop is Stop.TIME
+    assert spent.lower <= spent.upper
+    outer = Budget()
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    assert solve_maxmin(problem, budget=outer, progress=interrupt).stop is Stop.INTERRUPTED
+    assert outer.stop() is Stop.INTERRUPTED
+    assert solve_maxmin(problem, budget=outer).stop is Stop.INTERRUPTED
+
+
+def test_what_is_known_of_the_link_attacks_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_scenario(6, 3, alpha_s=1, alpha_c=4, seed=2).problem()
+    expected, plan = solve_maxmin(problem), ratt(problem)
+
+    def asked(_: Problem) -> int:
+        raise AssertionError
+
+    monkeypatch.setattr("ratt_opt.solvers.ratt.equivalent_sensing_attacks", asked)
+    assert solve_maxmin(problem, alpha_cs=plan.alpha_cs) == expected
+    assert ratt(problem, alpha_cs=plan.alpha_cs) == plan
