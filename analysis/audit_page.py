@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.findings import Finding, findings
-from ratt_opt.audit.ratio import pattern_free_bound
-from ratt_opt.audit.report_markdown import finding_lines
+from ratt_opt.audit.report.findings import Finding, findings
+from ratt_opt.audit.report.markdown_page import finding_lines
+from ratt_opt.audit.worst_ratio.ratio import pattern_free_bound
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.survey import attack_survey as attack_survey
     from ratt_opt.audit.ledger import Ledger as Ledger
     from ratt_opt.audit.ledger import run_audit as run_audit
-    from ratt_opt.audit.ratio import WorstCaseRatio as WorstCaseRatio
-    from ratt_opt.audit.ratio import worst_case_ratio as worst_case_ratio
-    from ratt_opt.audit.ratio_witness import RatioWitness as RatioWitness
+    from ratt_opt.audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio
+    from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio as worst_case_ratio
+    from ratt_opt.audit.worst_ratio.witness import RatioWitness as RatioWitness
     from ratt_opt.bounds.guarantees import (
         Guarantee as Guarantee,
     )
@@ -244,7 +244,7 @@ _HOME = {
     "Problem": "problem",
     "ProofError": "errors",
     "REFERENCE_FAMILIES": "setfunctions.zoo",
-    "RatioWitness": "audit.ratio_witness",
+    "RatioWitness": "audit.worst_ratio.witness",
     "Reference": "setfunctions.zoo",
     "RelaxationBound": "bounds.relaxation",
     "Robot": "scenario.model",
@@ -259,7 +259,7 @@ _HOME = {
     "Tracking": "scenario.simulation",
     "Verified": "certificates.verified",
     "Violation": "setfunctions.sampling",
-    "WorstCaseRatio": "audit.ratio",
+    "WorstCaseRatio": "audit.worst_ratio.ratio",
     "all_bait_group_bound": "bounds.guarantees",
     "all_guarantees": "bounds.guarantees",
     "attack_survey": "attackers.survey",
@@ -313,7 +313,7 @@ _HOME = {
     "total_curvature": "curvatures.curvature",
     "verify_certificate": "certificates.verify",
     "worst_case_attack": "attackers.exact",
-    "worst_case_ratio": "audit.ratio",
+    "worst_case_ratio": "audit.worst_ratio.ratio",
 }
 
 __all__ = [  # noqa: PLE0604  (every name of _HOME, loaded by __getattr__)

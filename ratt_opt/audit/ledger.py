@@ -8,33 +8,33 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json
-from ratt_opt.audit import pattern1, pattern2, submodular
-from ratt_opt.audit.arrangements import arrangement_entries
-from ratt_opt.audit.counts import count_entries
-from ratt_opt.audit.decide import CURVATURE_GRID, Decision, Verdict, decide
-from ratt_opt.audit.dominance import dominance_entries
-from ratt_opt.audit.entry import Entry, EnumeratedEntry
-from ratt_opt.audit.expand import AS_WRITTEN, entries_of
-from ratt_opt.audit.findings import findings
-from ratt_opt.audit.occurrence import occurrence_entries
-from ratt_opt.audit.realistic import realistic_search
-from ratt_opt.audit.records import claim_record, enumerated_record, factor_records
-from ratt_opt.audit.report_html import html_report
-from ratt_opt.audit.report_markdown import markdown_report
-from ratt_opt.audit.running_time import running_time_entries
-from ratt_opt.audit.special import special_entries
-from ratt_opt.audit.summaries import summaries
-from ratt_opt.audit.summary import per_chain
-from ratt_opt.audit.theorems import closing_lines, lemmas, readings_of_the_attack, theorems
-from ratt_opt.audit.tightness import tightness_entries
-from ratt_opt.audit.weaken import weaken
+from ratt_opt.audit.appendix import pattern1, pattern2, submodular
+from ratt_opt.audit.appendix.chain import AS_WRITTEN, entries_of
+from ratt_opt.audit.appendix.dominance import dominance_entries
+from ratt_opt.audit.appendix.entry import Entry, EnumeratedEntry
+from ratt_opt.audit.appendix.readings import special_entries
+from ratt_opt.audit.appendix.team_lines import summaries
+from ratt_opt.audit.appendix.theorems import closing_lines, lemmas, readings_of_the_attack, theorems
+from ratt_opt.audit.engine.best_factor import weaken
+from ratt_opt.audit.engine.decide import CURVATURE_GRID, Decision, Verdict, decide
+from ratt_opt.audit.enumeration.group_claims import arrangement_entries
+from ratt_opt.audit.enumeration.running_time import running_time_entries
+from ratt_opt.audit.enumeration.size_claims import count_entries
+from ratt_opt.audit.enumeration.smallest_teams import occurrence_entries
+from ratt_opt.audit.enumeration.tightness import tightness_entries
+from ratt_opt.audit.real_objectives.search import realistic_search
+from ratt_opt.audit.report.findings import findings
+from ratt_opt.audit.report.html_page import html_report
+from ratt_opt.audit.report.markdown_page import markdown_report
+from ratt_opt.audit.report.records import claim_record, enumerated_record, factor_records
+from ratt_opt.audit.report.words import per_chain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from ratt_opt.audit.entry import Detour
-    from ratt_opt.audit.findings import Finding
+    from ratt_opt.audit.appendix.entry import Detour
+    from ratt_opt.audit.report.findings import Finding
 
 __all__ = ["Ledger", "all_entries", "decide_entry", "run_audit"]
 
