@@ -138,15 +138,9 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.simulation import Tracking as Tracking
     from ratt_opt.scenario.simulation import simulate_tracking as simulate_tracking
     from ratt_opt.setfunctions.base import SetFunction as SetFunction
-    from ratt_opt.setfunctions.information import (
-        LogDetObjective as LogDetObjective,
-    )
-    from ratt_opt.setfunctions.information import (
-        MaxEigenvalueObjective as MaxEigenvalueObjective,
-    )
-    from ratt_opt.setfunctions.information import (
-        TraceObjective as TraceObjective,
-    )
+    from ratt_opt.setfunctions.criteria.logdet import LogDetObjective as LogDetObjective
+    from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective as MaxEigenvalueObjective
+    from ratt_opt.setfunctions.criteria.trace import TraceObjective as TraceObjective
     from ratt_opt.setfunctions.properties import (
         find_modularity_violation as find_modularity_violation,
     )
@@ -233,8 +227,8 @@ _HOME = {
     "InputError": "errors",
     "LargestGroup": "graph.largest_group",
     "Ledger": "audit.ledger",
-    "LogDetObjective": "setfunctions.information",
-    "MaxEigenvalueObjective": "setfunctions.information",
+    "LogDetObjective": "setfunctions.criteria.logdet",
+    "MaxEigenvalueObjective": "setfunctions.criteria.maxeig",
     "MaxMinResult": "solvers.result",
     "Modular": "setfunctions.reference",
     "NotFound": "setfunctions.sampling",
@@ -255,7 +249,7 @@ _HOME = {
     "SubmodularityRatio": "curvatures.ratios",
     "TableFunction": "setfunctions.table",
     "Target": "scenario.model",
-    "TraceObjective": "setfunctions.information",
+    "TraceObjective": "setfunctions.criteria.trace",
     "Tracking": "scenario.simulation",
     "Verified": "certificates.verified",
     "Violation": "setfunctions.sampling",

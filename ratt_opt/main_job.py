@@ -19,7 +19,8 @@ from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.scenario.threat_fields import OBJECTIVES
 from ratt_opt.setfunctions.base import LARGEST_TABLE
-from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_search, random_plan
 from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks, ratt

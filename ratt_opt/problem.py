@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,8 +13,11 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import networkx as nx
     from numpy.typing import ArrayLike
 
@@ -49,7 +53,12 @@ class Plan:
     bait: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+def _of_threat(name: str) -> Any:
+    """A field of a problem that its threat holds."""
+    return property(attrgetter(f"threat.{name}"))
+
+
+@dataclass(frozen=True, eq=False, init=False)
 class Problem:
     """Choose one element per robot so that the worst attack leaves the most value.
 
@@ -64,6 +73,9 @@ class Problem:
     protected_robots : robots that cannot be blinded
     protected_links : links ``(i, j)`` that cannot be cut
 
+    Two problems are equal when they are the same object. ``dataclasses.replace`` makes a changed copy.
+    ``threat`` holds what the adversary may do; ``choices`` the elements of each robot, ascending.
+
     Raises
     ------
     InputError : sizes disagree, a robot owns nothing, the graph is not simple, or a budget is out of range.
@@ -74,37 +86,65 @@ class Problem:
     objective: SetFunction
     robot: IntArray
     graph: nx.Graph | None
-    alpha_s: int
-    alpha_c: int
-    protected_robots: frozenset[int] = frozenset()
-    protected_links: frozenset[tuple[int, int]] = frozenset()
-    threat: Threat = field(init=False, repr=False)
-    choices: tuple[IntArray, ...] = field(init=False, repr=False)
-    """Elements of each robot, ascending."""
+    alpha_s: int = _of_threat("alpha_s")
+    alpha_c: int = _of_threat("alpha_c")
+    protected_robots: frozenset[int] = _of_threat("protected_robots")
+    protected_links: frozenset[tuple[int, int]] = _of_threat("protected_links")
+    threat: Threat = field(init=False)
+    choices: tuple[IntArray, ...] = field(init=False)
 
-    def __post_init__(self) -> None:
-        if not isinstance(self.objective, SetFunction):
-            raise InputError("objective", "must be a SetFunction", type(self.objective).__name__)
-        robot = _check_owners(self.robot, self.objective.n)
-        n_robots = int(robot.max()) + 1
+    def __init__(  # noqa: PLR0917  (the public contract gives the order)
+        self,
+        objective: SetFunction,
+        robot: ArrayLike,
+        graph: nx.Graph | None,
+        alpha_s: int,
+        alpha_c: int,
+        protected_robots: Iterable[int] = (),
+        protected_links: Iterable[tuple[int, int]] = (),
+    ) -> None:
+        if not isinstance(objective, SetFunction):
+            raise InputError("objective", "must be a SetFunction", type(objective).__name__)
+        owners = _check_owners(robot, objective.n)
+        n_robots = int(owners.max()) + 1
         communication = (
             CommunicationGraph.complete(n_robots)
-            if self.graph is None
-            else CommunicationGraph.from_networkx(self.graph, n_robots)
+            if graph is None
+            else CommunicationGraph.from_networkx(graph, n_robots)
         )
-        choices = tuple(readonly(np.flatnonzero(robot == i)) for i in range(n_robots))
-        set_field = object.__setattr__
-        set_field(self, "robot", robot)
-        set_field(self, "choices", choices)
-        threat = Threat(communication, self.alpha_s, self.alpha_c, self.protected_robots, self.protected_links)
-        for name in ("alpha_s", "alpha_c", "protected_robots", "protected_links"):
-            set_field(self, name, getattr(threat, name))
-        set_field(self, "threat", threat)
+        fields = {
+            "objective": objective,
+            "robot": owners,
+            "graph": graph,
+            "threat": Threat(communication, alpha_s, alpha_c, frozenset(protected_robots), frozenset(protected_links)),
+            "choices": tuple(readonly(np.flatnonzero(owners == i)) for i in range(n_robots)),
+        }
+        for name, value in fields.items():
+            object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        robots = f"{self.n_robots} robots, {self.objective.n} elements"
+        links = "every link" if self.graph is None else f"{len(self.communication.links)} links"
+        budgets = f"alpha_s={self.alpha_s}, alpha_c={self.alpha_c}"
+        return f"Problem({type(self.objective).__name__}, {robots}, {links}, {budgets})"
 
     @property
     def n_robots(self) -> int:
         """Number of robots N."""
         return len(self.choices)
+
+    @property
+    def information_objective(self) -> InformationObjective:
+        """The objective as a criterion of information matrices.
+
+        Raises
+        ------
+        InputError : it is another kind of set function.
+        """
+        if not isinstance(self.objective, InformationObjective):
+            rule = "must be a criterion of information matrices (a subclass of InformationObjective) for this"
+            raise InputError("objective", rule, type(self.objective).__name__)
+        return self.objective
 
     @property
     def communication(self) -> CommunicationGraph:

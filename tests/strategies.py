@@ -6,7 +6,9 @@ import networkx as nx
 import numpy as np
 
 from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.table import TableFunction
 
 OBJECTIVES = {"trace": TraceObjective, "logdet": LogDetObjective, "maxeig": MaxEigenvalueObjective}

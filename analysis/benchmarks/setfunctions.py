@@ -28,7 +28,8 @@ from ratt_opt import (
     random_scenario,
     total_curvature,
 )
-from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.information import InformationObjective
 
 SEEDS = range(5)
 NO_LIMIT = 600.0

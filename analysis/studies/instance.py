@@ -16,7 +16,8 @@ from ratt_opt.problem import Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
-from ratt_opt.setfunctions.information import InformationObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.solve import solve_maxmin

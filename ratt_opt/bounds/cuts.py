@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["GroupCut", "combined_bound", "tangent_cut", "worst_targets"]
+__all__ = ["GroupCut", "combined_bound", "tangent_cut"]
 
 ROUNDING = 64 * np.finfo(np.float64).eps
 """Relative margin added to every bound: sums of at most a few thousand terms lose less."""
@@ -49,15 +47,6 @@ class GroupCut:
     target: int | None = None
 
 
-def worst_targets(objective: InformationObjective, point: FloatArray, level: float, most: int) -> list[int | None]:
-    """Targets whose tangent at ``point`` cuts ``level`` off, worst first; ``[None]`` for sums over targets."""
-    if not isinstance(objective, MaxEigenvalueObjective):
-        return [None]
-    values = objective.criterion(objective.prior_information).max() - objective.criterion(point)
-    order = np.argsort(values, kind="stable")[:most].tolist()
-    return [j for j in order if values[j] < level] or [order[0]]
-
-
 def tangent_cut(
     problem: Problem,
     objective: InformationObjective,
@@ -69,17 +58,17 @@ def tangent_cut(
 
     ``target`` : for the max-eigenvalue criterion, the target to use; the worst one where ``None``.
 
-    The Fenchel form is evaluated, not ``value + gradient``: ``tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y)``,
-    ``logdet L <= tr(Y L) - logdet Y - d`` and ``lambda_max(L^{-1}) >= 2t - t^2 v'Lv / v'v`` hold for
-    *any* symmetric (positive definite) ``Y`` and any ``v``, so an inexact point costs strength, never validity.
+    The criterion's own tangent: a Fenchel form that holds for any ``Y`` (``setfunctions/criteria``), so that an
+    inexact point costs strength, never validity; for a criterion without one, value and supergradient there.
     """
     members = tuple(sorted(group))
     if target is None:
-        target = worst_targets(objective, point, -np.inf, 1)[0]
+        target = objective.tangent_targets(point, -np.inf, 1)[0]
     if not members:  # the value of no measurement is known exactly
         nothing = np.zeros(objective.n)
         return GroupCut(group=(), constant=objective([]), scores=nothing, point=point, target=target)
-    slope, offset = _fenchel(objective, point, target)
+    tangent = objective.tangent(point, target)
+    slope, offset = tangent.slope, tangent.offset
     team = np.zeros(problem.n_robots)
     team[list(members)] = 1.0
     scores = (objective.information.reshape(objective.n, -1) @ slope.ravel()) * team[problem.robot]
@@ -87,28 +76,6 @@ def tangent_cut(
     constant = offset + prior_part
     constant += ROUNDING * (abs(offset) + abs(prior_part) + float(np.abs(scores).max(initial=0.0)) * len(members))
     return GroupCut(group=members, constant=constant, scores=scores, point=point, target=target)
-
-
-def _fenchel(objective: InformationObjective, point: FloatArray, target: int | None) -> tuple[FloatArray, float]:
-    """``(slope, offset)`` with ``value(L) <= offset + sum_j <slope_j, L_j>`` for every ``L > 0``."""
-    weights = objective.weights
-    inverse = np.linalg.inv(point)
-    inverse = (inverse + np.swapaxes(inverse, -1, -2)) / 2
-    baseline = objective.criterion(objective.prior_information)
-    if isinstance(objective, TraceObjective):
-        traces = np.trace(inverse, axis1=-2, axis2=-1)
-        return weights[:, None, None] * (inverse @ inverse), float((baseline - 2 * weights * traces).sum())
-    if isinstance(objective, LogDetObjective):
-        # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
-        logdets = np.linalg.slogdet(inverse)[1] + objective.dimension
-        return weights[:, None, None] * inverse, float((baseline - weights * logdets).sum())
-    assert isinstance(objective, MaxEigenvalueObjective)
-    assert target is not None
-    eigenvalues, vectors = np.linalg.eigh(point[target])
-    t, v = 1 / eigenvalues[0], vectors[:, 0]
-    slope = np.zeros_like(point)
-    slope[target] = weights[target] * t * t * np.outer(v, v) / (v @ v)
-    return slope, float(baseline.max() - weights[target] * 2 * t)
 
 
 def combined_bound(

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut, worst_targets
+from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -147,7 +149,7 @@ def _cuts_at(
 ) -> list[GroupCut]:
     inside = np.isin(problem.robot, group)
     point = objective.prior_information + np.einsum("e,ejkl->jkl", selection[inside], objective.information[inside])
-    targets = worst_targets(objective, point, np.inf, TARGETS_A_GROUP)
+    targets = objective.tangent_targets(point, np.inf, TARGETS_A_GROUP)
     return [tangent_cut(problem, objective, group, point, target) for target in targets]
 
 

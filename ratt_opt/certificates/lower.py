@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.graph.survivor_sizes import forced_group_size
-from ratt_opt.setfunctions.information import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, Node, UpperProof
 
 if TYPE_CHECKING:

@@ -16,7 +16,9 @@ from ratt_opt.certificates.reading import FORMAT, VERSION
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.verify import Checker, verify_certificate
 from ratt_opt.errors import InputError, ProofError
-from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

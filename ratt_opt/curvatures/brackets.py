@@ -28,16 +28,14 @@ from ratt_opt.curvatures.planar.planar import LARGEST_DIMENSION
 from ratt_opt.curvatures.planar.planar_marginals import PlanarBrackets
 from ratt_opt.curvatures.separable.context_search import ContextSearch
 from ratt_opt.curvatures.separable.minorants import others_of
-from ratt_opt.setfunctions.information import (
-    InformationObjective,
-    LogDetObjective,
-    MaxEigenvalueObjective,
-    TraceObjective,
-)
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["Budget", "bracket_marginals"]
 

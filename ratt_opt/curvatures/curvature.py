@@ -18,7 +18,8 @@ from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.curvatures.marginals import Marginals, enumerate_marginals
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.properties import Violation, find_submodularity_violation
 from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.stopping import Stop

@@ -22,7 +22,7 @@ from ratt_opt.curvatures.curvature import check_monotone, curvature, total_curva
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.curvatures.marginals import domain_values, enumerate_marginals, groups_of
 from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.information import LogDetObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -10,7 +10,9 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from ratt_opt.scenario.record import Whole
-from ratt_opt.setfunctions.information import LogDetObjective, MaxEigenvalueObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
 if TYPE_CHECKING:
     import networkx as nx

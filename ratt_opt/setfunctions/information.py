@@ -1,14 +1,14 @@
-"""Criteria of the posterior information matrices: trace (A), log-det (D), max-eigenvalue (E).
+"""What all criteria of the posterior information matrices have in common.
 
 For a set ``S`` of elements, target ``j``'s posterior information is
 ``Lambda_j(S) = prior[j]^{-1} + sum_{e in S} information[e, j]``. Every criterion
-is normalised, non-decreasing in ``S`` and concave in ``Lambda``.
+is normalised, non-decreasing in ``S`` and concave in ``Lambda``; each has a file under ``criteria/``.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -17,9 +17,11 @@ from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SetFunction, check_table_size
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
-__all__ = ["InformationObjective", "LogDetObjective", "MaxEigenvalueObjective", "TraceObjective"]
+__all__ = ["InformationObjective", "Tangent"]
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
@@ -79,8 +81,35 @@ def _check_weights(value: ArrayLike | None, targets: int) -> FloatArray:
     return weights
 
 
+@dataclass(frozen=True, slots=True)
+class Tangent:
+    """``value(L) <= offset + sum_j <slope_j, L_j>`` for every positive definite ``L``; ``slope`` (M, d, d)."""
+
+    slope: FloatArray
+    offset: float
+
+
+OPTIONAL_PARTS = (
+    "cut_values",
+    "combine",
+    "compiled_code",
+    "is_submodular",
+    "name",
+    "planar_criterion",
+    "prior_criterion",
+    "tangent",
+    "tangent_targets",
+    "unit",
+)
+"""Parts of a criterion that hold for its own formula only: a subclass with another formula does not inherit them."""
+
+
 class InformationObjective(SetFunction):
     """A criterion of the posterior information matrices.
+
+    A criterion of your own subclasses this with :meth:`criterion` (or :meth:`value`, 0 at the prior information) and
+    :meth:`gradient`; it must be concave in the information and non-decreasing (relied on, not checked). The
+    rest is optional: what a criterion does not state is done by generic bounds, or refused by the name of that part.
 
     Parameters
     ----------
@@ -98,6 +127,20 @@ class InformationObjective(SetFunction):
 
     __slots__ = ("_baseline", "information", "prior", "prior_information", "weights")
 
+    name: ClassVar[str] = ""
+    """What files, tables and the command line call it; empty for a criterion that is not registered."""
+    unit: ClassVar[str] = ""
+    is_submodular: ClassVar[bool] = False
+    """Whether theory proves it submodular for all data."""
+    compiled_code: ClassVar[int | None] = None
+    """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if {"criterion", "value", "gradient"} & set(vars(cls)):
+            for part in set(OPTIONAL_PARTS) - set(vars(cls)):
+                setattr(cls, part, vars(InformationObjective)[part])
+
     def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
         checked = _check_prior(prior)
         targets, dimension, _ = checked.shape
@@ -107,7 +150,11 @@ class InformationObjective(SetFunction):
         inverse = np.linalg.inv(checked)
         self.prior_information: FloatArray = readonly((inverse + np.swapaxes(inverse, -1, -2)) / 2)
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
-        self._baseline: FloatArray = readonly(self.criterion(self.prior_information))
+        own = type(self)
+        if own.criterion is not InformationObjective.criterion:
+            self._baseline: FloatArray = readonly(self.criterion(self.prior_information))
+        elif own.value is InformationObjective.value:
+            raise self._without("criterion", "weighted criterion per target")
 
     @property
     def n(self) -> int:
@@ -124,25 +171,56 @@ class InformationObjective(SetFunction):
         """Dimension d of a target's state."""
         return int(self.prior.shape[1])
 
-    @abstractmethod
-    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
         """Weighted criterion per target, lower is better: (..., M, d, d) -> (..., M)."""
+        raise self._without("criterion", "weighted criterion per target")
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
+        """A supergradient of the value with respect to ``Lambda``: (..., M, d, d), positive semidefinite.
+
+        For every ``L'``: ``value(L') <= value(L) + sum_j <gradient_j, L'_j - L_j>`` (concavity).
+        """
+        raise self._without("gradient", "supergradient of its value")
+
+    def _without(self, part: str, what: str) -> InputError:
+        return InputError("objective", f"must define {part}(posterior_information), the {what}", type(self).__name__)
+
+    def combine(self, per_target: FloatArray) -> FloatArray:
+        """The criterion of the team from that of each target: (..., M) -> (...); a sum."""
+        return np.asarray(per_target.sum(axis=-1))
+
+    def value(self, posterior_information: FloatArray) -> FloatArray:
+        """Value as a concave function of the posterior information: (..., M, d, d) -> (...); a sum over targets."""
+        return np.asarray((self._baseline - self.criterion(posterior_information)).sum(axis=-1))
 
     @property
     def prior_criterion(self) -> float | None:
         """The criterion before any measurement, where it is a size (trace, max-eigenvalue) and not a logarithm."""
         return None
 
-    @abstractmethod
-    def gradient(self, posterior_information: FloatArray) -> FloatArray:
-        """A supergradient of the value with respect to ``Lambda``: (..., M, d, d), positive semidefinite.
+    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
+        """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
+        rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
+        return self.criterion(rows)
 
-        For every ``L'``: ``value(L') <= value(L) + sum_j <gradient_j, L'_j - L_j>`` (concavity).
+    def tangent_targets(self, point: FloatArray, level: float, most: int) -> list[int | None]:  # noqa: ARG002
+        """Targets to take tangents for at ``point`` (M, d, d), at most ``most``; ``None`` is all of them together.
+
+        ``level`` : tangents that do not cut this value off are of no use.
         """
+        return [None]
 
-    def value(self, posterior_information: FloatArray) -> FloatArray:
-        """Value as a concave function of the posterior information: (..., M, d, d) -> (...); a sum over targets."""
-        return np.asarray((self._baseline - self.criterion(posterior_information)).sum(axis=-1))
+    def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002
+        """Bound the value of all information by the tangent at ``point`` (M, d, d), for one of its targets.
+
+        Relies on :meth:`gradient` and :meth:`value` being exact at ``point`` up to rounding.
+        """
+        slope = self.gradient(point)
+        return Tangent(slope, float(self.value(point)) - float(np.einsum("jkl,jkl->", slope, point)))
+
+    def cut_values(self, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:  # noqa: ARG002
+        """What tangents for these ``targets`` bound, up to a constant: (K, ..., M, d, d) -> (K, ...)."""
+        return self.value(points)
 
     def posterior_information(self, subset: IntArray) -> FloatArray:
         """(M, d, d) ``Lambda(S)`` of the given distinct elements, added in ascending order."""
@@ -186,85 +264,3 @@ class InformationObjective(SetFunction):
         for i, step in enumerate(steps):
             sums[1 << i : 2 << i] = sums[: 1 << i] + step
         return sums
-
-
-def _determinant2(matrices: FloatArray) -> FloatArray:
-    return np.asarray(matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 0, 1])
-
-
-def _largest_inverse_eigenvalue2(matrices: FloatArray) -> FloatArray:
-    """``lambda_max(L^{-1}) = lambda_max(L) / det(L)`` of 2 by 2 matrices, free of cancellation in the numerator."""
-    a, b, c = matrices[..., 0, 0], matrices[..., 0, 1], matrices[..., 1, 1]
-    half = (a - c) / 2
-    return np.asarray(((a + c) / 2 + np.sqrt(half * half + b * b)) / _determinant2(matrices))
-
-
-class TraceObjective(InformationObjective):
-    """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2]."""
-
-    __slots__ = ()
-
-    @property
-    def prior_criterion(self) -> float:
-        """``sum_j w_j tr(prior_j)``."""
-        return float(self._baseline.sum())
-
-    def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted traces of the posterior covariances."""
-        if self.dimension == 2:
-            trace = posterior_information[..., 0, 0] + posterior_information[..., 1, 1]
-            return np.asarray(self.weights * trace / _determinant2(posterior_information))
-        covariance = np.linalg.inv(posterior_information)
-        return np.asarray(self.weights * np.trace(covariance, axis1=-2, axis2=-1))
-
-    def gradient(self, posterior_information: FloatArray) -> FloatArray:
-        """``w_j Lambda_j^{-2}``: (..., M, d, d)."""
-        covariance = np.linalg.inv(posterior_information)
-        return np.asarray(self.weights[:, None, None] * (covariance @ covariance))
-
-
-class LogDetObjective(InformationObjective):
-    """``sum_j w_j [logdet(Lambda_j(S)) - logdet(prior_j^{-1})]``: decrease of the log volume (D-criterion) [nat]."""
-
-    __slots__ = ()
-
-    def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted log-determinants of the posterior covariances."""
-        if self.dimension == 2:
-            return np.asarray(-self.weights * np.log(_determinant2(posterior_information)))
-        return np.asarray(-self.weights * np.linalg.slogdet(posterior_information)[1])
-
-    def gradient(self, posterior_information: FloatArray) -> FloatArray:
-        """``w_j Lambda_j^{-1}``: (..., M, d, d)."""
-        return np.asarray(self.weights[:, None, None] * np.linalg.inv(posterior_information))
-
-
-class MaxEigenvalueObjective(InformationObjective):
-    """``max_j w_j lambda_max(prior_j) - max_j w_j lambda_max(Lambda_j(S)^{-1})``: worst axis (E-criterion) [m^2]."""
-
-    __slots__ = ()
-
-    @property
-    def prior_criterion(self) -> float:
-        """``max_j w_j lambda_max(prior_j)``."""
-        return float(self._baseline.max())
-
-    def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted largest eigenvalues of the posterior covariances."""
-        if self.dimension == 2:
-            return np.asarray(self.weights * _largest_inverse_eigenvalue2(posterior_information))
-        return np.asarray(self.weights / np.linalg.eigvalsh(posterior_information)[..., 0])
-
-    def value(self, posterior_information: FloatArray) -> FloatArray:
-        """Value as a concave function of the posterior information: (..., M, d, d) -> (...)."""
-        return np.asarray(self._baseline.max() - self.criterion(posterior_information).max(axis=-1))
-
-    def gradient(self, posterior_information: FloatArray) -> FloatArray:
-        """``w_j lambda^2 v v'`` at the lowest-indexed worst target, zero elsewhere: (..., M, d, d)."""
-        eigenvalues, vectors = np.linalg.eigh(posterior_information)
-        scores = self.weights / eigenvalues[..., 0]
-        worst = scores.argmax(axis=-1)[..., None]
-        vector = vectors[..., 0]
-        rank_one = vector[..., :, None] * vector[..., None, :]
-        factor = np.where(np.arange(self.n_targets) == worst, self.weights / eigenvalues[..., 0] ** 2, 0.0)
-        return np.asarray(factor[..., None, None] * rank_one)

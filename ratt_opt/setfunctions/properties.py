@@ -12,7 +12,8 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.information import InformationObjective, LogDetObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample
 
 if TYPE_CHECKING:

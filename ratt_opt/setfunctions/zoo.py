@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.information import TraceObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.reference import (
     ConcaveOfModular,
     Coverage,

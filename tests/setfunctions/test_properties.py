@@ -7,7 +7,8 @@ import pytest
 
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SetFunction
-from ratt_opt.setfunctions.information import LogDetObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.lattice import second_differences
 from ratt_opt.setfunctions.properties import (
     NotFound,

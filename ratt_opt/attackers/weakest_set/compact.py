@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import (
-    InformationObjective,
-    LogDetObjective,
-    MaxEigenvalueObjective,
-    TraceObjective,
-)
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import flint
 
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.information import LogDetObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.bounds.cuts import worst_targets
 from ratt_opt.solvers.maxmin.branching import divide_by_scores, divide_elements, mixing_gains, rounding_losses
 from ratt_opt.solvers.maxmin.cut_store import CutStore
 from ratt_opt.solvers.maxmin.node_program import NodeProgram
@@ -275,7 +274,7 @@ class BranchAndBound:
             inside=self.pool.membership()[groups] > 0,
             points=points[groups],
             weights=weights,
-            targets=[worst_targets(self.objective, points[g], -np.inf, 1)[0] for g in groups.tolist()],
+            targets=[self.objective.tangent_targets(points[g], -np.inf, 1)[0] for g in groups.tolist()],
         )
         i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(self._singles[node.choices[r]]))))
         heaviest = points[groups[int(weights.argmax())]] if len(weights) else self.objective.prior_information
@@ -331,7 +330,7 @@ class BranchAndBound:
                 continue
             members = list(self.pool.groups[winner])
             point = np.asarray(self.objective.prior_information + of_robot[members].sum(axis=0))
-            for target in worst_targets(self.objective, point, level, TARGETS_A_CUT):
+            for target in self.objective.tangent_targets(point, level, TARGETS_A_CUT):
                 self._use(self._cuts.tangent(outcome, winner, point, target))
             cut_groups.add(winner)
         return bool(cut_groups)

@@ -21,8 +21,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import MaxEigenvalueObjective
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -95,7 +93,7 @@ def mixing_gains(
         return gains
     support = np.flatnonzero((selection > SUPPORT) & (selection < 1 - SUPPORT))
     owners = problem.robot[support]
-    before = _per_group(objective, points, targets)
+    before = objective.cut_values(points, targets)
     for i in np.unique(owners).tolist():
         own, rows = support[owners == i], np.flatnonzero(inside[:, i])
         if not len(rows) or len(own) < 2:
@@ -104,17 +102,9 @@ def mixing_gains(
         information = objective.information[own]
         change = information - np.tensordot(share, information, axes=1)
         own_targets = [targets[k] for k in rows.tolist()]
-        after = _per_group(objective, points[rows, None] + change[None], own_targets)
+        after = objective.cut_values(points[rows, None] + change[None], own_targets)
         gains[i] = weights[rows] @ (before[rows] - after @ share)
     return gains
-
-
-def _per_group(objective: InformationObjective, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:
-    """Value up to a constant of (K, ..., M, d, d) points: (K, ...)."""
-    if not isinstance(objective, MaxEigenvalueObjective):
-        return objective.value(points)
-    criterion = objective.criterion(points)
-    return -np.stack([row[..., target] for row, target in zip(criterion, targets, strict=True)])
 
 
 def divide_elements(

@@ -1,0 +1,111 @@
+"""The one budget of a search: deadline, nodes, interrupt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from time import monotonic
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+from ratt_opt.stopping import Stop
+
+__all__ = ["Budget", "OutOfBudget"]
+
+
+class OutOfBudget(Exception):  # noqa: N818  (a signal within a search, never seen by a user)
+    """The budget is spent; ``stop`` says which part of it."""
+
+    def __init__(self, stop: Stop) -> None:
+        super().__init__(stop)
+        self.stop = stop
+
+
+@dataclass(slots=True)
+class _Interrupt:
+    """Whether the user interrupted; one for a budget and all its parts."""
+
+    happened: bool = False
+
+
+@dataclass(slots=True)
+class Budget:
+    """Seconds and nodes that a search may spend, and whether the user interrupted it.
+
+    A search passes its budget down and asks it in every loop that can be long. Inner searches get a
+    :meth:`part` of it. Whoever catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
+    that every search around it stops too instead of taking the inner result for a finished one.
+
+    Parameters
+    ----------
+    time_limit : seconds from now; ``None`` is unlimited, 0 is spent at once
+    max_nodes : nodes; ``None`` is unlimited
+
+    Raises
+    ------
+    InputError : ``max_nodes`` is not an integer >= 0 or ``time_limit`` is not a number >= 0.
+    """
+
+    time_limit: float | None = None
+    max_nodes: int | None = None
+    nodes: int = field(default=0, init=False)
+    started: float = field(default_factory=monotonic, init=False)
+    _interrupt: _Interrupt = field(default_factory=_Interrupt, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.max_nodes is not None:
+            self.max_nodes = check_integer("max_nodes", self.max_nodes, low=0)
+        if self.time_limit is not None and not (isinstance(self.time_limit, (int, float)) and self.time_limit >= 0):
+            raise InputError("time_limit", "must be a number of seconds >= 0", self.time_limit)
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the budget was made."""
+        return monotonic() - self.started
+
+    @property
+    def seconds_left(self) -> float:
+        """Seconds that may still be spent, at least 0; infinite without a limit."""
+        return inf if self.time_limit is None else max(self.time_limit - self.elapsed, 0.0)
+
+    def stop(self) -> Stop | None:
+        """Why to stop now, if at all."""
+        if self._interrupt.happened:
+            return Stop.INTERRUPTED
+        if self.time_limit is not None and self.elapsed >= self.time_limit:
+            return Stop.TIME
+        if self.max_nodes is not None and self.nodes >= self.max_nodes:
+            return Stop.NODES
+        return None
+
+    def check(self) -> None:
+        """Raise :class:`OutOfBudget` when the time is up or the user interrupted; nodes are not asked."""
+        if (stop := self.stop()) not in {None, Stop.NODES}:
+            assert stop is not None
+            raise OutOfBudget(stop)
+
+    def nodes_left(self, at_most: int) -> int:
+        """Nodes that may still be spent, at most ``at_most``; raises :class:`OutOfBudget` when none is left."""
+        if (stop := self.stop()) is not None:
+            raise OutOfBudget(stop)
+        return at_most if self.max_nodes is None else min(at_most, self.max_nodes - self.nodes)
+
+    def spend(self, nodes: int = 1) -> None:
+        """Count nodes before they are explored; raises :class:`OutOfBudget` when none is left."""
+        self.nodes_left(nodes)
+        self.nodes += nodes
+
+    def part(self, share: float = 1.0, *, max_nodes: int | None = None, at_least: float = 0.0) -> Budget:
+        """A budget of its own nodes with ``share`` of the seconds left (never less than ``at_least`` of them).
+
+        An interrupt of either is an interrupt of both.
+        """
+        seconds = None if self.time_limit is None else min(max(share * self.seconds_left, at_least), self.seconds_left)
+        inner = Budget(seconds, max_nodes)
+        inner._interrupt = self._interrupt
+        return inner
+
+    def interrupt(self) -> Stop:
+        """Note that the user interrupted; returns the reason to stop with."""
+        self._interrupt.happened = True
+        return Stop.INTERRUPTED

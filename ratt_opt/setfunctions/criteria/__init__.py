@@ -1,0 +1,6 @@
+"""Criteria of the posterior information matrices: one file each, and one registry.
+
+Open ``trace.py`` first: a criterion is a subclass of ``InformationObjective`` (``../information.py``) that owns its
+name, unit, value, supergradient and, optionally, a Fenchel cut, a conic form and a two-by-two kernel. ``registry.py``
+finds them by name; ``two_by_two.py`` has the formulas of planar targets, ``compiled.py`` the same ones compiled.
+"""

@@ -1,0 +1,49 @@
+"""The log-det criterion (D): the volume of the error ellipsoids."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ratt_opt.setfunctions.criteria.two_by_two import determinant
+from ratt_opt.setfunctions.information import InformationObjective, Tangent
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["LogDetObjective"]
+
+
+class LogDetObjective(InformationObjective):
+    """``sum_j w_j [logdet(Lambda_j(S)) - logdet(prior_j^{-1})]``: decrease of the log volume (D-criterion) [nat]."""
+
+    __slots__ = ()
+
+    name: ClassVar[str] = "logdet"
+    unit: ClassVar[str] = "nat"
+    is_submodular: ClassVar[bool] = True
+    compiled_code: ClassVar[int | None] = 1
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """(..., M) weighted log-determinants of the posterior covariances."""
+        if self.dimension == 2:
+            rows = posterior_information
+            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+        return np.asarray(-self.weights * np.linalg.slogdet(posterior_information)[1])
+
+    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
+        """(..., M) the same in closed form."""
+        return np.asarray(-self.weights * np.log(determinant(a, b, c)))
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:
+        """``w_j Lambda_j^{-1}``: (..., M, d, d)."""
+        return np.asarray(self.weights[:, None, None] * np.linalg.inv(posterior_information))
+
+    def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
+        """``logdet L <= tr(Y L) - logdet Y - d`` for *any* ``Y > 0``: an inexact inverse costs strength only."""
+        inverse = np.linalg.inv(point)
+        y = (inverse + np.swapaxes(inverse, -1, -2)) / 2
+        # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
+        logdets = np.linalg.slogdet(y)[1] + self.dimension
+        return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))

@@ -1,0 +1,34 @@
+"""Criteria of one symmetric matrix ``[[a, b], [b, c]]`` in closed form.
+
+Written once for both languages: on arrays NumPy evaluates them entry by entry, and ``compiled.py`` compiles these
+same functions for numbers.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+__all__ = ["determinant", "largest_of_inverse", "trace_of_inverse", "triples"]
+
+
+def determinant(a: Any, b: Any, c: Any) -> Any:
+    """``det L``."""
+    return a * c - b * b
+
+
+def trace_of_inverse(a: Any, b: Any, c: Any) -> Any:
+    """``tr(L^{-1}) = tr(L) / det(L)``."""
+    return (a + c) / (a * c - b * b)
+
+
+def largest_of_inverse(a: Any, b: Any, c: Any) -> Any:
+    """``lambda_max(L^{-1}) = lambda_max(L) / det(L)``, free of cancellation in the numerator."""
+    half = (a - c) / 2
+    return ((a + c) / 2 + np.sqrt(half * half + b * b)) / (a * c - b * b)
+
+
+def triples(matrices: Any) -> Any:
+    """(..., 2, 2) symmetric matrices as (..., 3)."""
+    return np.ascontiguousarray(np.stack([matrices[..., 0, 0], matrices[..., 0, 1], matrices[..., 1, 1]], axis=-1))
