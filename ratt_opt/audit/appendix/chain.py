@@ -1,66 +1,106 @@
-"""From a chain to ledger entries: every line as a step, as written, and from the chain's start."""
+"""Chains of (in)equalities, and their ledger entries: every line as a step, as written, and from the chain's start."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Case, Chain, Detour, Entry, Line, SizedClaim
-from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality, Linear
-from ratt_opt.audit.engine.polynomial import ONE
+from ratt_opt.audit.appendix.entry import ClaimEntry, Detour, EntryKind, Reference, SizedClaim
+from ratt_opt.audit.engine.polynomial import ONE, Polynomial
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["AS_WRITTEN", "entries_of"]
+    from ratt_opt.audit.appendix.roles import Team
+    from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
 
-AS_WRITTEN = "step as equality"
+__all__ = ["Case", "Chain", "Line", "entries_of"]
+
+STEP, AS_WRITTEN, CUMULATIVE = EntryKind.STEP, EntryKind.AS_WRITTEN, EntryKind.CUMULATIVE
 
 
-def entries_of(chain: Chain) -> Iterator[Entry]:
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of a chain: ``previous (relation) expression / denominator``.
+
+    ``readings`` : name -> extra premises, where the text admits several.
+    ``cited`` : the only premises the stated reason uses, where they are fewer than all roles.
+    """
+
+    relation: str
+    expression: Linear
+    statement: str
+    denominator: Polynomial = ONE
+    readings: dict[str, tuple[Inequality, ...]] = field(default_factory=dict, kw_only=True)
+    cited: tuple[Inequality, ...] | None = field(default=None, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One size of a chain in words: the roles, where the chain starts, its lines, and what holds beside the roles."""
+
+    size: str
+    team: Team
+    start: Linear
+    lines: tuple[Line, ...]
+    given: tuple[Inequality, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chain:
+    """A chain of (in)equalities, given at several sizes with the same lines, smallest first."""
+
+    name: str
+    function_class: FunctionClass
+    hypotheses: str
+    cases: tuple[Case, ...]
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """The lines at the smallest size: relations, statements and readings are the same at all."""
+        return self.cases[0].lines
+
+    def label(self, number: int) -> str:
+        """The paper's label of a line, counted from 0 (from the end where negative)."""
+        return self.name if len(self.lines) == 1 else f"{self.name}_{number % len(self.lines) + 1}"
+
+
+def entries_of(chain: Chain) -> Iterator[ClaimEntry]:
     """Yield the entries of a chain, line by line: step, step as equality (where written ``=``), cumulative."""
-    for number, line in enumerate(chain.cases[0].lines):
-        readings = list(line.readings) or [""]
-        for reading in readings:
-            yield _entry(chain, number, "step", reading)
+    for number, line in enumerate(chain.lines):
+        for reading in line.readings or ("",):
+            yield _entry(chain, number, STEP, reading)
             if line.relation == "=":
                 yield _entry(chain, number, AS_WRITTEN, reading)
-            yield _entry(chain, number, "cumulative", reading)
+            yield _entry(chain, number, CUMULATIVE, reading)
 
 
-def _entry(chain: Chain, number: int, kind: str, reading: str) -> Entry:
-    line = chain.cases[0].lines[number]
-    last = chain.cases[0].lines[-1].label
-    claims = tuple(claim for case in chain.cases for claim in _claims(chain.kind, case, number, kind, reading))
-    origin = (
-        "the start of its chain" if kind == "cumulative" else ("the line before" if number else "the left-hand side")
-    )
-    relation = "=" if kind == AS_WRITTEN else ">="
-    return Entry(
-        label=line.label,
+def _entry(chain: Chain, number: int, kind: EntryKind, reading: str) -> ClaimEntry:
+    line, label, is_whole = chain.lines[number], chain.label(number), kind is CUMULATIVE
+    origin = "the start of its chain" if is_whole else "the line before" if number else "the left-hand side"
+    hypotheses = chain.hypotheses
+    if line.cited is not None and not is_whole:
+        hypotheses = f"only what the stated reason uses: {'; '.join(premise.reason for premise in line.cited)}"
+    return ClaimEntry(
+        label=label,
         kind=kind,
         chain=chain.name,
-        statement=f"from {origin}: {relation} {line.statement}",
-        hypotheses=_hypotheses(chain, line, kind),
-        claims=claims,
+        statement=f"from {origin}: {'=' if kind is AS_WRITTEN else '>='} {line.statement}",
+        hypotheses=hypotheses,
+        claims=tuple(claim for case in chain.cases for claim in _claims(chain, case, number, kind, reading)),
         reading=reading,
-        survives_by="" if kind == "cumulative" else f"{last}/cumulative",
-        serves_by=_serves_by(line, kind, reading),
-        detours=partial(_detours, chain, number, reading) if kind == "step" and number > 1 else None,
+        survives_by=None if is_whole else Reference(chain.label(-1), CUMULATIVE),
+        serves_by=_serves_by(line, label, kind, reading),
+        detours=partial(_detours, chain, number, reading) if kind is STEP and number > 1 else None,
     )
 
 
-def _hypotheses(chain: Chain, line: Line, kind: str) -> str:
-    if kind == "cumulative" or line.cited is None:
-        return chain.hypotheses
-    return f"only what the stated reason uses: {'; '.join(premise.reason for premise in line.cited)}"
-
-
-def _serves_by(line: Line, kind: str, reading: str) -> str:
+def _serves_by(line: Line, label: str, kind: EntryKind, reading: str) -> Reference | None:
     """A paper's "=" may serve as ">="; a line with too few premises follows from all of RATT's choices."""
-    if kind == AS_WRITTEN:
-        return f"{line.label}/step"
-    return f"{line.label}/cumulative/{reading}" if kind == "step" and line.cited is not None else ""
+    if kind is AS_WRITTEN:
+        return Reference(label, STEP)
+    return Reference(label, CUMULATIVE, reading) if kind is STEP and line.cited is not None else None
 
 
 def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:
@@ -69,28 +109,26 @@ def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:
         claims = []
         for case in chain.cases:
             before, line = case.lines[start], case.lines[number]
-            premises = case.team.premises + line.readings.get(reading, ())
+            premises = case.team.premises + case.given + line.readings.get(reading, ())
             left, right = before.expression * line.denominator, line.expression * before.denominator
-            claims.append(_sized(chain.kind, case, premises, left, right))
-        yield Detour(chain.cases[0].lines[start].label, tuple(claims))
+            claims.append(_sized(chain.function_class, case, premises, left, right))
+        yield Detour(chain.label(start), tuple(claims))
 
 
-def _claims(kind: FunctionClass, case: Case, number: int, form: str, reading: str) -> Iterator[SizedClaim]:
-    line = case.lines[number]
-    if form == "cumulative" or number == 0:
-        left, left_denominator = case.start, ONE
-    else:
-        left, left_denominator = case.lines[number - 1].expression, case.lines[number - 1].denominator
-    extra = line.readings.get(reading, ())
-    premises = case.team.premises if form == "cumulative" or line.cited is None else line.cited
-    first, second = left * line.denominator, line.expression * left_denominator
-    yield _sized(kind, case, premises + extra, first, second)
-    if form == AS_WRITTEN:
-        yield _sized(kind, case, premises + extra, second, first)
+def _claims(chain: Chain, case: Case, number: int, kind: EntryKind, reading: str) -> Iterator[SizedClaim]:
+    line, before = case.lines[number], Line("", case.start, "")
+    if kind is not CUMULATIVE and number:
+        before = case.lines[number - 1]
+    roles = case.team.premises if kind is CUMULATIVE or line.cited is None else line.cited
+    premises = roles + case.given + line.readings.get(reading, ())
+    left, right = before.expression * line.denominator, line.expression * before.denominator
+    yield _sized(chain.function_class, case, premises, left, right)
+    if kind is AS_WRITTEN:
+        yield _sized(chain.function_class, case, premises, right, left)
 
 
 def _sized(
-    kind: FunctionClass, case: Case, premises: tuple[Inequality, ...], left: Linear, right: Linear
+    function_class: FunctionClass, case: Case, premises: tuple[Inequality, ...], left: Linear, right: Linear
 ) -> SizedClaim:
-    claim = Claim(kind=kind, ground=case.team.ground, premises=premises, conclusion=(left - right).reduced())
-    return SizedClaim(size=case.size, robots=len(case.team.robots), claim=claim, left=left, right=right, team=case.team)
+    claim = case.team.comparison(function_class, left, right, premises)
+    return SizedClaim(size=case.size, robots=len(case.team.robots), claim=claim, team=case.team)

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Entry, SizedClaim
-from ratt_opt.audit.appendix.roles import Team
-from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality
+from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
+from ratt_opt.audit.appendix.roles import Team, team_of
+from ratt_opt.audit.engine.claim import FunctionClass, Inequality
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.graph.threat import Threat
@@ -23,18 +23,19 @@ from ratt_opt.graph.threat import Threat
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["deciding_outcome", "dominance_entries"]
+__all__ = ["SETTINGS", "deciding_outcome", "dominance_entries"]
 
 SETTINGS = {2: (6, 1, 9), 3: (7, 2, 12)}
 """Distribution -> (N, alpha_s, alpha_c): CAA gives n_max = 3 and 4, so groups (3, 3) and (4, 3)."""
 SURVIVORS = ("b1", "b2", "b3")
 RIVALS = ("g1", "g2")
-WORST = "A* is the worst attack"
+STATED, WORST = "stated reason only", "A* is the worst attack"
+FAMILIES = {FunctionClass.TOTAL_CURVATURE: "total curvature", FunctionClass.CURVATURE: "submodular"}
 
 
 def _team(distribution: int) -> Team:
     """One control per robot: RATT's plan is the only plan, so nothing else is in play."""
-    bait = tuple(f"b{i + 1}" for i in range(SETTINGS[distribution][0] - 2))
+    bait = team_of(SETTINGS[distribution][0] - 2, 0).bait
     return Team(bait, RIVALS, without_optimum=frozenset((*bait, *RIVALS)))
 
 
@@ -49,58 +50,54 @@ def deciding_outcome(distribution: int) -> tuple[tuple[str, ...], ...]:
     return groups
 
 
-def dominance_entries() -> Iterator[Entry]:
+def dominance_entries() -> Iterator[ClaimEntry]:
     """Yield the claim with its stated reason, and with "A* is the worst attack" added, for both classes."""
     for distribution in SETTINGS:
-        for kind in (FunctionClass.TOTAL_CURVATURE, FunctionClass.CURVATURE):
-            team = _team(distribution)
-            stated = f"more baits than greedy robots survive, each bait is individually better; {kind.value}"
-            yield _entry(
-                distribution, kind, "stated reason only", stated, (_sized(distribution, kind, team.bait_premises()),)
-            )
-            worst = f"RATT's choices, and A* is the worst attack on its plan; {kind.value}"
-            claims = tuple(_cases(distribution, kind))
-            yield _entry(distribution, kind, WORST, worst, claims)
+        team = _team(distribution)
+        for kind in FAMILIES:
+            text = f"more baits than greedy robots survive, each bait is individually better; {kind.value}"
+            stated = _sized(distribution, kind, team.bait_premises())
+            yield _entry(distribution, kind, STATED, text, (stated,))
+            text = f"RATT's choices, and A* is the worst attack on its plan; {kind.value}"
+            yield _entry(distribution, kind, WORST, text, tuple(_cases(distribution, kind)))
 
 
-def _cases(distribution: int, kind: FunctionClass) -> Iterator[SizedClaim]:
+def _cases(distribution: int, function_class: FunctionClass) -> Iterator[SizedClaim]:
     team = _team(distribution)
-    target = team.chosen(RIVALS)
     for group in deciding_outcome(distribution):
-        reason = f"the best group of the other attack is {{{','.join(group)}}}, and A* is no better for the team"
-        reaches = Inequality(reason, team.chosen(group) - target)
-        yield _sized(
-            distribution, kind, (*team.premises, reaches), f"; other attack's best group {{{','.join(group)}}}"
-        )
+        name = f"{{{','.join(group)}}}"
+        reason = f"the best group of the other attack is {name}, and A* is no better for the team"
+        reaches = Inequality(reason, team.chosen(group) - team.chosen(RIVALS))
+        case = f"; other attack's best group {name}"
+        yield _sized(distribution, function_class, (*team.premises, reaches), case)
 
 
-def _sized(distribution: int, kind: FunctionClass, premises: tuple[Inequality, ...], case: str = "") -> SizedClaim:
+def _sized(
+    distribution: int, function_class: FunctionClass, premises: tuple[Inequality, ...], case: str = ""
+) -> SizedClaim:
     n_robots, alpha_s, alpha_c = SETTINGS[distribution]
     team = _team(distribution)
-    left, right = team.chosen(SURVIVORS), team.chosen(RIVALS)
     return SizedClaim(
         size=f"N = {n_robots}, alpha_s = {alpha_s}, alpha_c = {alpha_c}: 3 baits of V1 and 2 greedy of V2 left{case}",
         robots=n_robots,
-        claim=Claim(kind=kind, ground=team.ground, premises=premises, conclusion=left - right),
-        left=left,
-        right=right,
+        claim=team.comparison(function_class, team.chosen(SURVIVORS), team.chosen(RIVALS), premises),
         team=team,
     )
 
 
 def _entry(
-    distribution: int, kind: FunctionClass, reading: str, hypotheses: str, claims: tuple[SizedClaim, ...]
-) -> Entry:
-    family = "total curvature" if kind is FunctionClass.TOTAL_CURVATURE else "submodular"
-    label = f"nd_p2d{distribution}v2_dominance"
-    return Entry(
+    distribution: int, function_class: FunctionClass, reading: str, hypotheses: str, claims: tuple[SizedClaim, ...]
+) -> ClaimEntry:
+    family, label = FAMILIES[function_class], f"nd_p2d{distribution}v2_dominance"
+    proved = Reference(label, EntryKind.CLAIM, f"{WORST}; {family}")
+    return ClaimEntry(
         label=label,
-        kind="claim",
+        kind=EntryKind.CLAIM,
         chain="dominance",
         statement="f(u on V1\\A*) >= f(u on V2\\A*) when only greedy robots of V2 survive",
         hypotheses=hypotheses,
         claims=claims,
         reading=f"{reading}; {family}",
-        survives_by=f"nd_p2d{distribution}v2/cumulative",
-        serves_by="" if reading == WORST else f"{label}/claim/{WORST}; {family}",
+        survives_by=Reference(f"nd_p2d{distribution}v2", EntryKind.CUMULATIVE),
+        serves_by=None if reading == WORST else proved,
     )

@@ -3,57 +3,99 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING
-
-from ratt_opt.audit.engine.polynomial import ONE, Polynomial
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ratt_opt.audit.appendix.roles import Team
-    from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality, Linear
+    from ratt_opt.audit.engine.claim import Claim
     from ratt_opt.audit.engine.decide import Verdict
 
-__all__ = ["Case", "Chain", "Counted", "Detour", "Entry", "EnumeratedEntry", "Line", "SizedClaim"]
+__all__ = ["ClaimEntry", "Counted", "Detour", "Entry", "EntryKind", "EnumeratedEntry", "Reference", "SizedClaim"]
+
+
+class EntryKind(StrEnum):
+    """In which sense a statement is decided; the texts are those of the ledger."""
+
+    STEP = "step"
+    """A line from the line before it."""
+    AS_WRITTEN = "step as equality"
+    """A line that the paper writes with ``=``, in both directions."""
+    CUMULATIVE = "cumulative"
+    """A line from the start of its chain."""
+    LEMMA = "lemma"
+    CLAIM = "claim"
+    THEOREM = "theorem"
+    MEASUREMENT = "measurement"
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """Another entry: one reading of it, or all of them (``None``)."""
+
+    label: str
+    kind: EntryKind
+    reading: str | None = None
+
+    def __str__(self) -> str:
+        return "/".join(part for part in (self.label, self.kind, self.reading) if part is not None)
+
+    @staticmethod
+    def parse(text: str) -> Reference:
+        """Read what ``str`` writes."""
+        label, kind, *reading = text.split("/", 2)
+        return Reference(label, EntryKind(kind), *reading)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SizedClaim:
-    """One linear claim of an entry: a size, who is attacked, and the question.
+    """One linear claim of an entry: a size and who is attacked in words, robots in play, the question.
 
-    ``left``, ``right`` : the two sides of ``left >= right`` where a best factor makes sense.
     ``team`` : the roles, where the elements have any.
     """
 
     size: str
     robots: int
     claim: Claim
-    left: Linear | None = None
-    right: Linear | None = None
     team: Team | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """A statement of the paper (or ours) decided by the cone, size by size.
+    """A statement of the paper (or ours).
 
     ``label`` : the paper's without ``eq:``; ours where it has none.
-    ``kind`` : ``step``, ``step as equality``, ``cumulative``, ``lemma``, ``reading``, ``claim`` or ``theorem``.
-    ``survives_by`` : the entry (label/kind or label/kind/reading) that shows the conclusion without this step.
+    ``reading`` : in which sense the text is read, where it admits several.
+    ``survives_by`` : the entry that shows the conclusion without this step.
     ``serves_by`` : the entry of a weaker statement that the proof could use in its place.
-    ``detours`` : the same line from earlier ones: (label, claims), the latest first.
     """
 
     label: str
-    kind: str
+    kind: EntryKind
     chain: str
     statement: str
     hypotheses: str
-    claims: tuple[SizedClaim, ...]
     reading: str = ""
-    survives_by: str = ""
-    serves_by: str = ""
-    detours: Callable[[], Iterator[Detour]] | None = None
+    survives_by: Reference | None = None
+    serves_by: Reference | None = None
+
+    @property
+    def names(self) -> tuple[Reference, Reference]:
+        """The two references that mean this entry: with all its readings, and alone."""
+        return Reference(self.label, self.kind), Reference(self.label, self.kind, self.reading)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClaimEntry(Entry):
+    """An entry decided by the cone, size by size.
+
+    ``detours`` : the same line from earlier ones, the latest first.
+    """
+
+    claims: tuple[SizedClaim, ...] = field(repr=False)
+    detours: Callable[[], Iterator[Detour]] | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,52 +117,7 @@ class Counted:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EnumeratedEntry:
-    """A statement about sizes, groups or counts, decided by running ``enumerate_cases``."""
+class EnumeratedEntry(Entry):
+    """An entry about sizes, groups or counts, decided by running ``enumerate_cases``."""
 
-    label: str
-    kind: str
-    chain: str
-    statement: str
-    hypotheses: str
-    enumerate_cases: Callable[[], Counted]
-    reading: str = ""
-    survives_by: str = ""
-    serves_by: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Line:
-    """One numbered line of a chain: ``previous (relation) expression / denominator``.
-
-    ``readings`` : name -> extra premises, where the text admits several.
-    ``cited`` : the only premises the stated reason uses, where they are fewer than all roles.
-    """
-
-    label: str
-    relation: str
-    expression: Linear
-    statement: str
-    denominator: Polynomial = ONE
-    readings: dict[str, tuple[Inequality, ...]] = field(default_factory=dict)
-    cited: tuple[Inequality, ...] | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
-    """One size of a chain: the roles, who is attacked, where the chain starts, and its lines."""
-
-    size: str
-    team: Team
-    start: Linear
-    lines: tuple[Line, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Chain:
-    """A chain of (in)equalities, given at several sizes with the same lines, smallest first."""
-
-    name: str
-    kind: FunctionClass
-    hypotheses: str
-    cases: tuple[Case, ...]
+    enumerate_cases: Callable[[], Counted] = field(repr=False)

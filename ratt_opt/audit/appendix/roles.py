@@ -8,16 +8,33 @@ ones: on sets with one element per robot a function cannot tell a copy from its 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import Enum
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.engine.claim import Ground, Inequality, Linear
+from ratt_opt.audit.engine.claim import Claim, Ground, Inequality, Linear
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
-__all__ = ["Team", "optimum", "own_best", "worst_for"]
+    from ratt_opt.audit.engine.claim import FunctionClass
+
+    Robots = tuple[str, ...]
+    """Robots by the name of RATT's element for each."""
+
+__all__ = ["Side", "Team", "attacks_on", "optimum", "own_best", "team_of", "whose_worst", "worst_for"]
+
+PLAN_WORST = "A* hurts RATT's plan most in its group"
+OPTIMUM_WORST = "A* hurts the optimum most in its group"
+ANY_ATTACK = "A* worst for the team only, so any attack on a group that is not the best"
+
+
+class Side(Enum):
+    """Whose value an attack is judged by."""
+
+    RATT = "RATT's plan"
+    OPTIMUM = "the optimum"
 
 
 def optimum(robot: str) -> str:
@@ -74,12 +91,13 @@ class Team:
         """The compared plan's value on a set of robots."""
         return self.f(optimum(robot) for robot in robots)
 
+    def value(self, side: Side, robots: Iterable[str]) -> Linear:
+        """RATT's or the compared plan's value on a set of robots."""
+        return self.chosen(robots) if side is Side.RATT else self.compared(robots)
+
     def singles(self, names: Iterable[str]) -> Linear:
         """Sum of individual values."""
-        total = Linear()
-        for name in names:
-            total = total + self.f([name])
-        return total
+        return sum((self.f([name]) for name in names), Linear())
 
     def bait_premises(self) -> tuple[Inequality, ...]:
         """Bait is its robot's best control, and no control of a greedy robot is better than any bait."""
@@ -111,6 +129,23 @@ class Team:
         """Everything RATT's choices guarantee."""
         return self.bait_premises() + self.greedy_premises()
 
+    def claim(
+        self, function_class: FunctionClass, conclusion: Linear, premises: tuple[Inequality, ...] | None = None
+    ) -> Claim:
+        """``conclusion >= 0``, from all that RATT's choices guarantee unless other premises are given."""
+        given = self.premises if premises is None else premises
+        return Claim(function_class=function_class, ground=self.ground, premises=given, conclusion=conclusion)
+
+    def comparison(
+        self, function_class: FunctionClass, left: Linear, right: Linear, premises: tuple[Inequality, ...] | None = None
+    ) -> Claim:
+        """``left >= right``, with the common power of ``t`` divided out."""
+        return replace(self.claim(function_class, (left - right).reduced(), premises), sides=(left, right))
+
+    def text(self, attacked: Robots = ()) -> str:
+        """Roles and attack in words."""
+        return f"{len(self.bait)} bait, {len(self.greedy)} greedy, blinded: {','.join(attacked) or 'none'}"
+
     def _elements_of(self, robot: str) -> list[str]:
         elements = [robot]
         if robot not in self.without_optimum:
@@ -120,17 +155,36 @@ class Team:
         return elements
 
 
-def worst_for(team: Team, group: tuple[str, ...], attacked: tuple[str, ...], *, plan: str) -> tuple[Inequality, ...]:
-    """Premises: among attacks on ``len(attacked)`` robots of ``group``, ``attacked`` leaves the least.
+def team_of(n_bait: int, n_greedy: int) -> Team:
+    """Baits b1.. and greedy robots g1.. in greedy order."""
+    return Team(tuple(f"b{i + 1}" for i in range(n_bait)), tuple(f"g{i + 1}" for i in range(n_greedy)))
 
-    ``plan`` is ``"chosen"`` (RATT's plan suffers) or ``"compared"`` (the optimum suffers).
-    """
-    value = team.chosen if plan == "chosen" else team.compared
-    left = value(set(group) - set(attacked))
-    who = "RATT's plan" if plan == "chosen" else "the optimum"
+
+def attacks_on(group: Robots, count: int) -> Iterator[Robots]:
+    """Attacks on ``count`` robots of a group, one per symmetry class: baits are alike, the first are attacked first."""
+    baits = [robot for robot in group if robot.startswith("b")]
+    for attacked in combinations(group, count):
+        used = [robot for robot in attacked if robot.startswith("b")]
+        if used == baits[: len(used)]:
+            yield attacked
+
+
+def worst_for(team: Team, group: Robots, attacked: Robots, *, side: Side) -> tuple[Inequality, ...]:
+    """Premises: among attacks on ``len(attacked)`` robots of ``group``, ``attacked`` leaves ``side`` the least."""
+    left = team.value(side, set(group) - set(attacked))
     out = []
     for other in combinations(group, len(attacked)):
         if set(other) != set(attacked):
-            reason = f"blinding {{{','.join(attacked)}}} hurts {who} at least as much as blinding {{{','.join(other)}}}"
-            out.append(Inequality(reason, value(set(group) - set(other)) - left))
+            hurts = f"hurts {side.value} at least as much as blinding {{{','.join(other)}}}"
+            reason = f"blinding {{{','.join(attacked)}}} {hurts}"
+            out.append(Inequality(reason, team.value(side, set(group) - set(other)) - left))
     return tuple(out)
+
+
+def whose_worst(team: Team, group: Robots, attacked: Robots) -> dict[str, tuple[Inequality, ...]]:
+    """Readings of A*: the plan's worst attack in the group, the optimum's in the group, or the team's."""
+    return {
+        PLAN_WORST: worst_for(team, group, attacked, side=Side.RATT),
+        OPTIMUM_WORST: worst_for(team, group, attacked, side=Side.OPTIMUM),
+        ANY_ATTACK: (),
+    }

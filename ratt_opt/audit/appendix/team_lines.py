@@ -9,199 +9,142 @@ least the minimum the paper writes (opt >= 0).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Entry, SizedClaim
+from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
+from ratt_opt.audit.appendix.factor import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor
 from ratt_opt.audit.appendix.roles import Team
-from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality, Linear
-from ratt_opt.audit.engine.polynomial import ONE, Polynomial, T, constant
+from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
+from ratt_opt.audit.engine.polynomial import T, constant
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
-Groups = tuple[tuple[str, ...], ...]
+    Groups = tuple[tuple[str, ...], ...]
 
-__all__ = ["Grouping", "every_group", "summaries"]
+__all__ = ["OPT", "TEAM", "team_lines"]
 
 TEAM, OPT = Linear.of("team"), Linear.of("opt")
 PLAN, OPTIMUM = "A* is the plan's worst attack", "A* is the optimum's worst attack"
-ND, SUB = FunctionClass.TOTAL_CURVATURE, FunctionClass.CURVATURE
-T2, T3 = T * T, T * T * T
-SUB_FACTOR = (T, constant(2) - T)
+STEP, CUMULATIVE = EntryKind.STEP, EntryKind.CUMULATIVE
 HYPOTHESES = "the class, RATT's choices; team >= its value in every group, opt <= the compared plan's best group"
+ALPHA_CS = constant(2)
+"""alpha_cs of the groupings of Pattern 2."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Grouping:
-    """Robots left in each group by A* (``left``) and by another attack (``other``), and each group's factor."""
+@dataclass(frozen=True, slots=True)
+class _Grouping:
+    """Groups left by A* (``left``) and by another attack (``other``), and each of the former's factor; in words."""
 
     size: str
     team: Team
-    left: tuple[tuple[str, ...], ...]
-    other: tuple[tuple[str, ...], ...]
-    factors: tuple[tuple[Polynomial, Polynomial], ...]
+    left: Groups
+    other: Groups
+    factors: tuple[Factor, ...]
+
+    @property
+    def bounds(self) -> tuple[Inequality, ...]:
+        """What the chains of the groups show."""
+        return tuple(
+            Inequality(f"bound of group {k + 1}", factor.gap(self.team.chosen(group), self.team.compared(group)))
+            for k, (group, factor) in enumerate(zip(self.left, self.factors, strict=True))
+        )
 
 
-def _bounds(case: Grouping) -> tuple[Inequality, ...]:
-    team = case.team
-    return tuple(
-        Inequality(f"bound of group {k + 1}", team.chosen(group) * below - team.compared(group) * above)
-        for k, (group, (above, below)) in enumerate(zip(case.left, case.factors, strict=True))
+@dataclass(frozen=True, slots=True)
+class _Bound:
+    """What a summing-up line states about its groupings, in symbols."""
+
+    function_class: FunctionClass
+    text: str
+    factor: Factor
+
+
+ND_1 = _Bound(FunctionClass.TOTAL_CURVATURE, "(1-c)^3", CUBED)
+ND_2 = _Bound(FunctionClass.TOTAL_CURVATURE, "min[(1-c)^3, (1-c)^2/alpha_cs]", Factor(T2, ALPHA_CS))
+SUB_2 = _Bound(FunctionClass.CURVATURE, "min[(1-k)/(1+k), (1-k)/alpha_cs]", Factor(T, ALPHA_CS))
+
+
+def team_lines() -> Iterator[ClaimEntry]:
+    """Yield the summing-up entries of the whole appendix, in its order."""
+    for pattern, bound, groupings in (("nd_p1", ND_1, _pattern1()), ("nd_p2", ND_2, _pattern2(CUBED, ND_2.factor))):
+        for number, grouping in enumerate(groupings):
+            yield from _distribution(f"{pattern}_d{number + 1}", bound, grouping)
+        yield from _overall(pattern, bound, groupings)
+    yield from _distribution("sub_p2_d1", SUB_2, _pattern2(KEPT_OVER_ONE_PLUS_K, SUB_2.factor)[0])
+
+
+def _pattern1() -> tuple[_Grouping, ...]:
+    b1, b2, b3, g1 = ("b1",), ("b2",), ("b3",), ("g1",)
+    small, large, factors = Team(b1 + b2, g1), Team(b1 + b2 + b3, g1), (CUBED, SQUARED)
+    third = "V1 = {b1,b2,g1}, V2 = {b3,..}, one blinded in each, A* hits b1"
+    return (
+        _Grouping("V1 = {b1,g1}, V2 = {b2}, A* = {g1}", small, (b1, b2), (g1, b2), factors),
+        _Grouping("V1 = {b1,g1}, V2 = {b2,b3}, A* = {b2}", large, (b1 + g1, b3), (g1, b2 + b3), factors),
+        _Grouping(third, large, (b2 + g1, b3), (b1 + b2, b3), factors),
     )
 
 
-def _claims(kind: FunctionClass, case: Grouping, reading: str, *, is_step: bool) -> Iterator[SizedClaim]:
-    team = case.team
-    given = _bounds(case) if is_step else team.premises
-    attained = case.left if reading == PLAN else case.other
-    worth = tuple(Inequality("team >= RATT's value in a group", TEAM - team.chosen(group)) for group in attained)
-    for winner, group in enumerate(case.left):
-        loses = (Inequality("opt <= the optimum's best group", team.compared(group) - OPT),)
-        rivals = case.other if reading == OPTIMUM else ((),)
-        for rival in rivals:
-            more = (Inequality("opt <= its value under another attack", team.compared(rival) - OPT),) if rival else ()
-            above, below = case.factors[winner]
-            claim = Claim(
+def _pattern2(many: Factor, few: Factor) -> tuple[_Grouping, ...]:
+    """V1 = {b1, b2, g1}, V2 = {b3, x1}; alpha_cs = 2."""
+    b1, b3, x1 = ("b1",), ("b3",), ("x1",)
+    team, factors = Team(b1 + b3, x1), (many, few)
+    third = "V1 = {b1,..}, V2 = {b3,x1}, one blinded in each, A* hits x1"
+    return (
+        _Grouping("V1 = {b1,b2}, V2 = {b3,x1}, A* = {b2}, other attack {x1}", team, (b1, b3 + x1), (b1, b3), factors),
+        _Grouping("V1 = {b1,..}, V2 = {b3,x1}, A* = {b3}, other attack {x1}", team, (b1, x1), (b1, b3), factors),
+        _Grouping(third, team, (b1, b3), (b1, x1), factors),
+    )
+
+
+def _distribution(label: str, bound: _Bound, grouping: _Grouping) -> Iterator[ClaimEntry]:
+    for reading in (PLAN, OPTIMUM):
+        for kind, origin in ((STEP, "the bounds of its groups"), (CUMULATIVE, "RATT's choices alone")):
+            is_step = kind is STEP
+            yield ClaimEntry(
+                label=label,
                 kind=kind,
-                ground=team.ground,
-                premises=given + worth + loses + more,
-                conclusion=TEAM * below - OPT * above,
+                chain=label,
+                statement=f"from {origin}: RATT's worst-case value >= {bound.text} of the optimum's",
+                hypotheses=HYPOTHESES,
+                claims=tuple(_claims(bound.function_class, grouping, reading, is_step=is_step)),
+                reading=reading,
+                survives_by=Reference(label, CUMULATIVE) if is_step else None,
+                serves_by=Reference(label, STEP, PLAN) if is_step and reading == OPTIMUM else None,
             )
-            size = f"{case.size}; the optimum's best group is V{winner + 1}"
+
+
+def _claims(function_class: FunctionClass, grouping: _Grouping, reading: str, *, is_step: bool) -> Iterator[SizedClaim]:
+    team = grouping.team
+    given = grouping.bounds if is_step else team.premises
+    attained = grouping.left if reading == PLAN else grouping.other
+    worth = tuple(Inequality("team >= RATT's value in a group", TEAM - team.chosen(group)) for group in attained)
+    for winner, group in enumerate(grouping.left):
+        loses = (Inequality("opt <= the optimum's best group", team.compared(group) - OPT),)
+        for rival in grouping.other if reading == OPTIMUM else ((),):
+            more = (Inequality("opt <= its value under another attack", team.compared(rival) - OPT),) if rival else ()
+            conclusion = grouping.factors[winner].gap(TEAM, OPT)
+            claim = team.claim(function_class, conclusion, given + worth + loses + more)
+            size = f"{grouping.size}; the optimum's best group is V{winner + 1}"
             yield SizedClaim(size=size, robots=len(team.robots), claim=claim, team=team)
 
 
-def _distribution(label: str, kind: FunctionClass, cases: tuple[Grouping, ...], bound: str) -> Iterator[Entry]:
-    for reading in (PLAN, OPTIMUM):
-        for form in ("step", "cumulative"):
-            origin = "the bounds of its groups" if form == "step" else "RATT's choices alone"
-            claims = tuple(c for case in cases for c in _claims(kind, case, reading, is_step=form == "step"))
-            yield Entry(
-                label=label,
-                kind=form,
-                chain=label,
-                statement=f"from {origin}: RATT's worst-case value >= {bound} of the optimum's",
-                hypotheses=HYPOTHESES,
-                claims=claims,
-                reading=reading,
-                survives_by="" if form == "cumulative" else f"{label}/cumulative",
-                serves_by=f"{label}/step/{PLAN}" if form == "step" and reading == OPTIMUM else "",
-            )
-
-
-def _pattern1(number: int) -> Grouping:
-    cubed, squared = (T3, ONE), (T2, ONE)
-    b1, b2, g1 = ("b1",), ("b2",), ("g1",)
-    left: Groups
-    other: Groups
-    if number == 1:
-        team = Team(("b1", "b2"), g1)
-        return Grouping(
-            size="V1 = {b1,g1}, V2 = {b2}, A* = {g1}",
-            team=team,
-            left=(b1, b2),
-            other=(g1, b2),
-            factors=(cubed, squared),
-        )
-    if number == 2:
-        team = Team(("b1", "b2", "b3"), g1)
-        left, other = (("b1", "g1"), ("b3",)), (g1, ("b2", "b3"))
-        text = "V1 = {b1,g1}, V2 = {b2,b3}, A* = {b2}"
-        return Grouping(size=text, team=team, left=left, other=other, factors=(cubed, squared))
-    team = Team(("b1", "b2", "b3"), g1)
-    left, other = (("b2", "g1"), ("b3",)), (("b1", "b2"), ("b3",))
-    text = "V1 = {b1,b2,g1}, V2 = {b3,..}, one blinded in each, A* hits b1"
-    return Grouping(size=text, team=team, left=left, other=other, factors=(cubed, squared))
-
-
-def _pattern2(number: int, many: tuple[Polynomial, Polynomial], few: tuple[Polynomial, Polynomial]) -> Grouping:
-    """V1 = {b1, b2, g1}, V2 = {b3, x1}; alpha_cs = 2."""
-    small = Team(("b1", "b3"), ("x1",))
-    left: Groups
-    other: Groups
-    if number == 1:
-        left, other = (("b1",), ("b3", "x1")), (("b1",), ("b3",))
-        text = "V1 = {b1,b2}, V2 = {b3,x1}, A* = {b2}, other attack {x1}"
-    elif number == 2:
-        left, other = (("b1",), ("x1",)), (("b1",), ("b3",))
-        text = "V1 = {b1,..}, V2 = {b3,x1}, A* = {b3}, other attack {x1}"
-    else:
-        left, other = (("b1",), ("b3",)), (("b1",), ("x1",))
-        text = "V1 = {b1,..}, V2 = {b3,x1}, one blinded in each, A* hits x1"
-    return Grouping(size=text, team=small, left=left, other=other, factors=(many, few))
-
-
-def summaries() -> Iterator[Entry]:
-    """Yield the summing-up entries of the whole appendix, in its order."""
-    half = constant(2)
-    p1 = [_pattern1(i) for i in (1, 2, 3)]
-    p2 = [_pattern2(i, (T3, ONE), (T2, half)) for i in (1, 2, 3)]
-    for i in (1, 2, 3):
-        yield from _distribution(f"nd_p1_d{i}", ND, (p1[i - 1],), "(1-c)^3")
-    yield from _overall("nd_p1", ND, tuple(p1), factor=(T3, ONE), bound="(1-c)^3")
-    for i in (1, 2, 3):
-        yield from _distribution(f"nd_p2_d{i}", ND, (p2[i - 1],), "min[(1-c)^3, (1-c)^2/alpha_cs]")
-    yield from _overall("nd_p2", ND, tuple(p2), factor=(T2, half), bound="min[(1-c)^3, (1-c)^2/alpha_cs]")
-    sub = _pattern2(1, SUB_FACTOR, (T, half))
-    yield from _distribution("sub_p2_d1", SUB, (sub,), "min[(1-k)/(1+k), (1-k)/alpha_cs]")
-
-
-def _overall(
-    label: str,
-    kind: FunctionClass,
-    cases: tuple[Grouping, ...],
-    *,
-    factor: tuple[Polynomial, Polynomial],
-    bound: str,
-) -> Iterator[Entry]:
+def _overall(label: str, bound: _Bound, groupings: Sequence[_Grouping]) -> Iterator[ClaimEntry]:
     """A line that repeats the bound of its parts: the step is the bound itself; cumulatively, all parts again."""
-    above, below = factor
-    team = cases[0].team
-    bound_holds = Inequality("the bound of the part", TEAM * below - OPT * above)
-    same = Claim(kind=kind, ground=team.ground, premises=(bound_holds,), conclusion=TEAM * below - OPT * above)
+    team, kind = groupings[0].team, bound.function_class
+    part = bound.factor.gap(TEAM, OPT)
+    same = team.claim(kind, part, (Inequality("the bound of the part", part),))
     step = (SizedClaim(size="each part", robots=len(team.robots), claim=same),)
-    again = tuple(c for case in cases for c in _claims(kind, case, PLAN, is_step=False))
+    again = tuple(claim for grouping in groupings for claim in _claims(kind, grouping, PLAN, is_step=False))
     for form, claims, origin in (
-        ("step", step, "Distributions 1 to 3"),
-        ("cumulative", again, "RATT's choices alone"),
+        (STEP, step, "Distributions 1 to 3"),
+        (CUMULATIVE, again, "RATT's choices alone"),
     ):
-        yield Entry(
+        yield ClaimEntry(
             label=label,
             kind=form,
             chain=label,
-            statement=f"from {origin}: worst-case value >= {bound} of the optimum's",
+            statement=f"from {origin}: worst-case value >= {bound.text} of the optimum's",
             hypotheses=HYPOTHESES,
             claims=claims,
         )
-
-
-def every_group(
-    kind: FunctionClass, above: Polynomial, below: Polynomial, *, largest: int, smallest: int = 1
-) -> Iterator[SizedClaim]:
-    """For every set S of surviving robots: ``f(u on S) >= above/below f(o on S)``, whatever the pattern.
-
-    S has any baits and any of the greedy robots; greedy robots outside S were still chosen before
-    some in S. Baits outside S and greedy robots chosen later play no part.
-    """
-    for total in range(smallest, largest + 1):
-        for n_greedy in range(total + 1):
-            greedy = tuple(f"g{i + 1}" for i in range(n_greedy))
-            bait = tuple(f"b{i + 1}" for i in range(total - n_greedy))
-            for chosen in _subsets_with_last(greedy):
-                outside = frozenset(greedy) - set(chosen)
-                team = Team(bait, greedy, without_optimum=outside)
-                group = bait + chosen
-                conclusion = (team.chosen(group) * below - team.compared(group) * above).reduced()
-                claim = Claim(kind=kind, ground=team.ground, premises=team.premises, conclusion=conclusion)
-                text = f"S = {{{','.join(group)}}} of {len(bait)} bait, {n_greedy} greedy"
-                yield SizedClaim(size=text, robots=total, claim=claim, team=team)
-
-
-def _subsets_with_last(greedy: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    if not greedy:
-        yield ()
-        return
-    for size in range(len(greedy)):
-        for rest in combinations(greedy[:-1], size):
-            yield (*rest, greedy[-1])

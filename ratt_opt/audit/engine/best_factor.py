@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import floor
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.engine.claim import Claim
-from ratt_opt.audit.engine.decide import CURVATURE_GRID
+from ratt_opt.audit.engine.decide import curvatures_tried
 from ratt_opt.audit.engine.polynomial import constant
 from ratt_opt.audit.engine.prover import find_proof
 from ratt_opt.audit.engine.refuter import find_witness, least_ratio
@@ -16,16 +15,18 @@ from ratt_opt.audit.engine.refuter import find_witness, least_ratio
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt.audit.appendix.entry import SizedClaim
-    from ratt_opt.audit.engine.claim import Linear
+    from ratt_opt.audit.engine.claim import Claim
 
-__all__ = ["Weakened", "weaken"]
+__all__ = ["BestFactor", "best_factors"]
 
-_STEP = Fraction(1, 1000)
+STEP = Fraction(1, 1000)
+"""A factor is the best when this much more is refuted: the ledger prints factors to three digits."""
+SIMPLE = 200
+"""Denominators up to here are tried before the digits: the best factors are simple fractions of the curvature's."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Weakened:
+class BestFactor:
     """``left >= factor * right`` is proved at ``curvature``; ``is_best``: with ``factor + 1/1000`` it is refuted.
 
     Factor 0 is trivial: no positive factor was found.
@@ -36,23 +37,20 @@ class Weakened:
     is_best: bool
 
 
-def weaken(refuted: Sequence[SizedClaim]) -> tuple[Weakened, ...]:
-    """Return, at each curvature of the grid, the best factor that was found and checked for all of these sizes."""
-    if not refuted or any(sized.left is None or sized.right is None for sized in refuted):
+def best_factors(refuted: Sequence[Claim]) -> tuple[BestFactor, ...]:
+    """Return, at each curvature of the grid, the best factor that was found and checked for all of these claims."""
+    if not refuted or any(claim.sides is None for claim in refuted):
         return ()
-    kind = refuted[0].claim.kind
-    grid: tuple[Fraction | None, ...] = CURVATURE_GRID if kind.is_parametric else (None,)
-    found = (_for_all(refuted, curvature) for curvature in sorted(grid, key=lambda v: v or 0))
+    grid = sorted(curvatures_tried(refuted[0]), key=lambda curvature: curvature or 0)
+    found = (_for_all(refuted, curvature) for curvature in grid)
     return tuple(item for item in found if item is not None)
 
 
-def _for_all(refuted: Sequence[SizedClaim], curvature: Fraction | None) -> Weakened | None:
-    """The smallest factor of the sizes: every value in a claim is non-negative, so it serves the other sizes too."""
+def _for_all(refuted: Sequence[Claim], curvature: Fraction | None) -> BestFactor | None:
+    """The smallest factor: every value in a claim is non-negative, so it serves the other claims too."""
     each = []
-    for sized in refuted:
-        assert sized.left is not None
-        assert sized.right is not None
-        found = _at(sized.claim, sized.left, sized.right, curvature)
+    for claim in refuted:
+        found = _at(claim, curvature)
         if found is None:
             return None
         each.append(found)
@@ -61,24 +59,26 @@ def _for_all(refuted: Sequence[SizedClaim], curvature: Fraction | None) -> Weake
     return min(each, key=lambda found: found.factor)
 
 
-def _at(claim: Claim, left: Linear, right: Linear, curvature: Fraction | None) -> Weakened | None:
-    ratio = least_ratio(claim, left, right, curvature=curvature)
-    if ratio is None:
+def _at(claim: Claim, curvature: Fraction | None) -> BestFactor | None:
+    assert claim.sides is not None
+    least = least_ratio(claim, *claim.sides, curvature=curvature)
+    if least is None:
         return None
-    simple, rounded = Fraction(max(ratio, 0.0)).limit_denominator(200), Fraction(floor(max(ratio, 0.0) * 1000), 1000)
-    proved = (factor for factor in (simple, rounded) if _is_proved(_scaled(claim, left, right, factor), curvature))
-    factor = next(proved, None)
+    ratio = max(least, 0.0)
+    tried = (Fraction(ratio).limit_denominator(SIMPLE), floor(ratio * STEP.denominator) * STEP)
+    factor = next((factor for factor in tried if _is_proved(_scaled(claim, factor), curvature)), None)
     if factor is None:
         return None
-    above = find_witness(_scaled(claim, left, right, factor + _STEP), curvature=curvature)
-    return Weakened(curvature=curvature if claim.kind.is_parametric else None, factor=factor, is_best=above is not None)
+    above = find_witness(_scaled(claim, factor + STEP), curvature=curvature)
+    at = curvature if claim.function_class.is_parametric else None
+    return BestFactor(curvature=at, factor=factor, is_best=above is not None)
 
 
 def _is_proved(claim: Claim, curvature: Fraction | None) -> bool:
-    proofs = (find_proof(claim, feasible=feasible, curvature=curvature) for feasible in (True, False))
-    return any(proof is not None for proof in proofs)
+    return any(find_proof(claim, feasible=feasible, curvature=curvature) is not None for feasible in (True, False))
 
 
-def _scaled(claim: Claim, left: Linear, right: Linear, factor: Fraction) -> Claim:
-    conclusion = left - right * constant(factor)
-    return Claim(kind=claim.kind, ground=claim.ground, premises=claim.premises, conclusion=conclusion)
+def _scaled(claim: Claim, factor: Fraction) -> Claim:
+    assert claim.sides is not None
+    left, right = claim.sides
+    return replace(claim, conclusion=left - right * constant(factor))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
+from functools import cache
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.engine.polynomial import ONE, ZERO, Polynomial, constant, signed_sum
@@ -33,6 +34,11 @@ class FunctionClass(Enum):
     def symbol(self) -> str:
         """Letter of the curvature in texts."""
         return "c" if self is FunctionClass.TOTAL_CURVATURE else "k"
+
+    @property
+    def is_submodular(self) -> bool:
+        """Whether marginals diminish."""
+        return self in (FunctionClass.SUBMODULAR, FunctionClass.CURVATURE)
 
     @property
     def is_parametric(self) -> bool:
@@ -62,16 +68,21 @@ class Ground:
 
     def members(self, mask: int) -> tuple[int, ...]:
         """Indices of the elements of ``mask``."""
-        return tuple(e for e in range(self.n) if mask >> e & 1)
+        return _members(mask)
 
     def is_feasible(self, mask: int) -> bool:
         """Whether no robot owns two elements of ``mask``."""
-        owners = [self.owner[e] for e in self.members(mask)]
+        owners = [self.owner[e] for e in _members(mask)]
         return len(set(owners)) == len(owners)
 
     def text(self, mask: int) -> str:
         """``f(a,b)`` for the set of ``mask``."""
         return f"f({','.join(self.names[e] for e in self.members(mask))})"
+
+
+@cache
+def _members(mask: int) -> tuple[int, ...]:
+    return tuple(e for e in range(mask.bit_length()) if mask >> e & 1)
 
 
 Key = int | str
@@ -83,6 +94,9 @@ class Linear:
     """``sum of coefficient * value``; the value of the empty set is zero and never stored."""
 
     terms: Mapping[Key, Polynomial] = field(default_factory=dict)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.terms.items()))
 
     @staticmethod
     def of(key: Key, coefficient: Polynomial = ONE) -> Linear:
@@ -133,32 +147,46 @@ class Linear:
 
 @dataclass(frozen=True, slots=True)
 class Inequality:
-    """``expression >= 0``, with the reason or role it stands for."""
+    """``expression >= 0``, with the reason or role it stands for, which is no part of the statement."""
 
-    reason: str
+    reason: str = field(compare=False)
     expression: Linear
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """For every function of ``kind`` on ``ground`` that satisfies ``premises``: ``conclusion >= 0``."""
+    """For every function of the class on ``ground`` that satisfies ``premises``: ``conclusion >= 0``.
 
-    kind: FunctionClass
+    ``sides`` : (left, right) where the claim is ``left >= right`` and the best factor on the right makes sense.
+    Claims are equal when they are the same question: neither reasons nor sides count.
+    """
+
+    function_class: FunctionClass
     ground: Ground
     premises: tuple[Inequality, ...] = ()
     conclusion: Linear
+    sides: tuple[Linear, Linear] | None = field(default=None, compare=False)
+
+    @property
+    def symbol(self) -> str:
+        """Letter of the curvature in texts."""
+        return self.function_class.symbol
+
+    @property
+    def expressions(self) -> tuple[Linear, ...]:
+        """Everything the claim speaks of, premises first."""
+        return (*(premise.expression for premise in self.premises), self.conclusion)
+
+    @property
+    def sets(self) -> tuple[int, ...]:
+        """Bit masks of the sets whose values occur, ascending."""
+        return tuple(sorted({key for e in self.expressions for key in e.terms if isinstance(key, int)}))
 
     @property
     def auxiliaries(self) -> tuple[str, ...]:
         """Names of the numbers that are not function values, in order of appearance."""
-        expressions = [p.expression for p in self.premises] + [self.conclusion]
-        return tuple(dict.fromkeys(key for e in expressions for key in e.terms if isinstance(key, str)))
+        return tuple(dict.fromkeys(key for e in self.expressions for key in e.terms if isinstance(key, str)))
 
-    def signature(self) -> object:
-        """Equal for claims that are the same question."""
-
-        def frozen(expression: Linear) -> frozenset[tuple[Key, Polynomial]]:
-            return frozenset(expression.terms.items())
-
-        premises = frozenset(frozen(p.expression) for p in self.premises)
-        return (self.kind, self.ground, premises, frozen(self.conclusion))
+    def text(self, expression: Linear | None = None) -> str:
+        """The conclusion (or another inequality on these elements) as ``... >= 0``."""
+        return f"{(expression or self.conclusion).text(self.ground, self.symbol)} >= 0"

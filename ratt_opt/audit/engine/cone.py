@@ -50,7 +50,7 @@ def largest_marginal(ground: Ground, element: int) -> str:
     return f"m({ground.names[element]})"
 
 
-def elementary(kind: FunctionClass, ground: Ground, key: Elementary) -> Inequality:
+def elementary(function_class: FunctionClass, ground: Ground, key: Elementary) -> Inequality:
     """Rebuild the inequality that ``key`` names.
 
     Raises
@@ -59,10 +59,10 @@ def elementary(kind: FunctionClass, ground: Ground, key: Elementary) -> Inequali
     """
     x = key.elements[0]
     added = sum(1 << e for e in key.elements)
-    if key.rule not in _RULES[kind] or key.base & added or len(set(key.elements)) != len(key.elements):
-        raise ProofError(f"{key} is no elementary inequality of the class '{kind.value}'")
+    if key.rule not in _RULES[function_class] or key.base & added or len(set(key.elements)) != len(key.elements):
+        raise ProofError(f"{key} is no elementary inequality of the class '{function_class.value}'")
     if (key.rule == "diminishing") != (len(key.elements) == 2) or key.base >> ground.n or added >> ground.n:
-        raise ProofError(f"{key} is no elementary inequality of the class '{kind.value}'")
+        raise ProofError(f"{key} is no elementary inequality of the class '{function_class.value}'")
     marginal = Linear.of(key.base | 1 << x) - Linear.of(key.base)
     name, base = ground.names[x], ground.text(key.base)[2:-1] or "nothing"
     if key.rule == "monotone":
@@ -86,33 +86,33 @@ def elementary(kind: FunctionClass, ground: Ground, key: Elementary) -> Inequali
     return Inequality(f"{name} adds no more to {{{base}}} once {ground.names[y]} is there", marginal - later)
 
 
-def elementary_keys(kind: FunctionClass, ground: Ground, *, feasible: bool) -> Iterator[Elementary]:
+def elementary_keys(function_class: FunctionClass, ground: Ground, *, feasible: bool) -> Iterator[Elementary]:
     """Yield enough elementary inequalities to span the class (redundant ones are left out)."""
     sets = [m for m in range(1 << ground.n) if not feasible or ground.is_feasible(m)]
     for base in sets:
         free = [x for x in range(ground.n) if not base >> x & 1 and (not feasible or _fits(ground, base, x))]
         for x in free:
-            yield from _single(kind, base, x, is_last=_is_last(ground, x, free, feasible=feasible))
-        if kind in (FunctionClass.SUBMODULAR, FunctionClass.CURVATURE):
+            yield from _single(function_class, base, x, is_last=_is_last(ground, x, free, feasible=feasible))
+        if function_class.is_submodular:
             for i, x in enumerate(free):
                 for y in free[i + 1 :]:
                     if not feasible or ground.owner[x] != ground.owner[y]:
                         yield Elementary("diminishing", (x, y), base)
 
 
-def _single(kind: FunctionClass, base: int, x: int, *, is_last: bool) -> Iterator[Elementary]:
-    if kind is FunctionClass.NON_DECREASING:
+def _single(function_class: FunctionClass, base: int, x: int, *, is_last: bool) -> Iterator[Elementary]:
+    if function_class is FunctionClass.NON_DECREASING:
         yield Elementary("monotone", (x,), base)
-    elif kind is FunctionClass.TOTAL_CURVATURE:
+    elif function_class is FunctionClass.TOTAL_CURVATURE:
         if not base:
             # With c = 0 the two bounds below allow negative weights.
             yield Elementary("monotone", (x,), base)
         yield Elementary("low", (x,), base)
         yield Elementary("high", (x,), base)
-    elif is_last and kind is not FunctionClass.ANY:
+    elif is_last and function_class is not FunctionClass.ANY:
         # Diminishing marginals: the smallest one is at the largest set.
         yield Elementary("monotone", (x,), base)
-        if kind is FunctionClass.CURVATURE and base:
+        if function_class is FunctionClass.CURVATURE and base:
             yield Elementary("curvature", (x,), base)
 
 

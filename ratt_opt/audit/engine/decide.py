@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from functools import cache
@@ -13,9 +13,10 @@ from ratt_opt.audit.engine.refuter import LARGEST_GROUND, find_witness
 
 if TYPE_CHECKING:
     from ratt_opt.audit.engine.claim import Claim
-    from ratt_opt.audit.engine.proof import Proof, Witness
+    from ratt_opt.audit.engine.counterexample import Witness
+    from ratt_opt.audit.engine.proof import Proof
 
-__all__ = ["CURVATURE_GRID", "Decision", "Verdict", "decide"]
+__all__ = ["CURVATURE_GRID", "Decision", "Verdict", "curvatures_tried", "decide"]
 
 CURVATURE_GRID = tuple(Fraction(i, 4) for i in (2, 1, 3))
 """Curvatures tried for counterexamples, and for proofs where none covers all values at once."""
@@ -46,14 +47,19 @@ class Decision:
     @property
     def scope(self) -> str:
         """For which curvatures the verdict holds."""
-        if not self.claim.kind.is_parametric:
+        if not self.claim.function_class.is_parametric:
             return "no curvature in the claim"
-        symbol = self.claim.kind.symbol
+        symbol = self.claim.symbol
         if self.witness is not None:
             return f"{symbol} = {self.witness.curvature}"
         if self.proofs and self.proofs[0].curvature is None:
             return f"all {symbol} in [0, 1]"
         return f"grid {symbol} in {{{', '.join(str(v) for v in sorted(CURVATURE_GRID))}}}"
+
+
+def curvatures_tried(claim: Claim) -> tuple[Fraction | None, ...]:
+    """The grid, or the one ``None`` where the class has no curvature."""
+    return CURVATURE_GRID if claim.function_class.is_parametric else (None,)
 
 
 def decide(claim: Claim) -> Decision:
@@ -62,35 +68,15 @@ def decide(claim: Claim) -> Decision:
     Order: a proof for all curvatures from feasible sets only, a counterexample over all
     sets, a proof over all sets or of higher degree, proofs on the curvature grid.
     """
-    cached = _decide(_Question(claim))
-    return Decision(claim=claim, verdict=cached.verdict, proofs=cached.proofs, witness=cached.witness)
-
-
-class _Question:
-    """A claim compared by its reduced question, premises in order (proofs refer to them by index)."""
-
-    __slots__ = ("claim", "signature")
-
-    def __init__(self, claim: Claim) -> None:
-        self.claim = claim
-        order = tuple(frozenset(p.expression.terms.items()) for p in claim.premises)
-        self.signature = (claim.signature(), order)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Question) and self.signature == other.signature
-
-    def __hash__(self) -> int:
-        return hash(self.signature)
+    return replace(_decide(claim), claim=claim)
 
 
 @cache
-def _decide(question: _Question) -> Decision:
-    claim = question.claim
+def _decide(claim: Claim) -> Decision:
     proof = find_proof(claim, feasible=True)
     if proof is not None:
         return Decision(claim=claim, verdict=Verdict.PROVED, proofs=(proof,))
-    grid: tuple[Fraction | None, ...] = CURVATURE_GRID if claim.kind.is_parametric else (None,)
-    for curvature in grid:
+    for curvature in curvatures_tried(claim):
         witness = find_witness(claim, curvature=curvature)
         if witness is not None:
             return Decision(claim=claim, verdict=Verdict.REFUTED, witness=witness)
@@ -98,15 +84,14 @@ def _decide(question: _Question) -> Decision:
         proof = find_proof(claim, feasible=feasible, extra=extra)
         if proof is not None:
             return Decision(claim=claim, verdict=Verdict.PROVED, proofs=(proof,))
-    return _on_grid(claim, grid)
+    return _on_grid(claim)
 
 
-def _on_grid(claim: Claim, grid: tuple[Fraction | None, ...]) -> Decision:
+def _on_grid(claim: Claim) -> Decision:
     proofs = []
-    for curvature in grid:
-        proof = find_proof(claim, feasible=True, curvature=curvature) or find_proof(
-            claim, feasible=False, curvature=curvature
-        )
+    for curvature in curvatures_tried(claim):
+        each = (find_proof(claim, feasible=feasible, curvature=curvature) for feasible in (True, False))
+        proof = next((found for found in each if found is not None), None)
         if proof is None:
             searched = claim.ground.n <= LARGEST_GROUND
             return Decision(claim=claim, verdict=Verdict.NO_VIOLATION if searched else Verdict.UNDECIDED)

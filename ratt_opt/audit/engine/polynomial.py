@@ -7,14 +7,16 @@ Non-negativity on ``[0, 1]`` is shown by non-negative Bernstein coefficients: wi
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
 
 import flint
 
+from ratt_opt.audit.engine.rationals import fraction, rational
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from fractions import Fraction
 
 __all__ = ["LARGEST_FORM", "ONE", "ZERO", "Polynomial", "T", "constant", "power_of", "signed_sum"]
 
@@ -32,13 +34,13 @@ class Polynomial:
 
     def __init__(self, coefficients: Iterable[Fraction | int] | flint.fmpq_poly = ()) -> None:
         if not isinstance(coefficients, flint.fmpq_poly):
-            coefficients = flint.fmpq_poly([_rational(value) for value in coefficients])
+            coefficients = flint.fmpq_poly([rational(value) for value in coefficients])
         self._inner = coefficients
 
     @property
     def coefficients(self) -> tuple[Fraction, ...]:
         """By power of ``t``, ascending; none for zero."""
-        return tuple(_fraction(value) for value in self._inner.coeffs())
+        return tuple(fraction(value) for value in self._inner.coeffs())
 
     @property
     def degree(self) -> int:
@@ -77,7 +79,7 @@ class Polynomial:
 
     def __call__(self, t: Fraction) -> Fraction:
         """Value at ``t``."""
-        return _fraction(self._inner(_rational(t)))
+        return fraction(self._inner(rational(t)))
 
     def form(self, degree: int) -> tuple[Fraction, ...]:
         """Coefficients of ``t^a s^(degree-a)``, a = 0..degree, where ``s = 1 - t``.
@@ -86,7 +88,7 @@ class Polynomial:
         """
         powers = zip(self._inner.coeffs(), _homogeneous(degree), strict=False)
         total = sum((value * power for value, power in powers), flint.fmpq_poly())
-        return tuple(_fraction(total[a]) for a in range(degree + 1))
+        return tuple(fraction(total[a]) for a in range(degree + 1))
 
     def lowest_power(self) -> int:
         """Largest ``p`` such that ``t^p`` divides the polynomial (0 for zero)."""
@@ -121,14 +123,6 @@ class Polynomial:
 def _homogeneous(degree: int) -> tuple[flint.fmpq_poly, ...]:
     """``t^j (t+s)^(degree-j)`` for j = 0..degree, as polynomials in ``t`` with ``s = 1``."""
     return tuple(flint.fmpq_poly([0, 1]) ** j * flint.fmpq_poly([1, 1]) ** (degree - j) for j in range(degree + 1))
-
-
-def _rational(value: Fraction | int) -> flint.fmpq:
-    return flint.fmpq(value.numerator, value.denominator)
-
-
-def _fraction(value: flint.fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
 
 
 def signed_sum(terms: Sequence[str]) -> str:

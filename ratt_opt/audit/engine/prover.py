@@ -10,29 +10,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.audit.engine.cone import elementary, elementary_keys
-from ratt_opt.audit.engine.exact_systems import solve_exactly
-from ratt_opt.audit.engine.linear_program import Program, solve
-from ratt_opt.audit.engine.polynomial import ZERO, Polynomial, constant
+from ratt_opt.audit.engine.polynomial import ONE, ZERO, Polynomial, T, constant
 from ratt_opt.audit.engine.proof import Proof, ProofStep, check_proof
+from ratt_opt.audit.engine.rationals import solve_exactly
 from ratt_opt.errors import ProofError
+from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.audit.engine.claim import Claim, Key, Linear
     from ratt_opt.audit.engine.cone import Elementary
 
-__all__ = ["find_proof"]
+    Entries = dict[tuple[Key, int], Fraction]
+    """Coefficients by value and power of ``t``: the rows of the linear program."""
 
-_DENOMINATORS = (1, 12, 1000)
-_NONZERO = 1e-9
+__all__ = ["SECONDS", "find_proof"]
+
+SECONDS = 60.0
+"""Longest that one linear program may take; the ledger's hardest takes less than two, so this stops only a runaway."""
+DENOMINATORS = (1, 12, 1000)
+"""Rounded multipliers are tried over these, simplest first: a proof in twelfths is shorter to read than the vertex."""
+NONZERO = 1e-9
+"""Multipliers below this are the solver's rounding of zero; its own feasibility tolerance is a hundred times larger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +48,11 @@ class _Column:
     source: Elementary | int
     power: int
     degree: int
-    entries: dict[tuple[Key, int], Fraction]
+    entries: Entries
+
+    def multiplier(self, value: Fraction) -> Polynomial:
+        """``value * t^power (1-t)^(degree-power)``."""
+        return constant(value) * T**self.power * (ONE - T) ** (self.degree - self.power)
 
 
 def find_proof(claim: Claim, *, feasible: bool, curvature: Fraction | None = None, extra: int = 0) -> Proof | None:
@@ -54,16 +64,16 @@ def find_proof(claim: Claim, *, feasible: bool, curvature: Fraction | None = Non
     curvature : one value, or ``None`` for all values in [0, 1]
     extra : how much the multipliers' degree may exceed the claim's
     """
-    if feasible and not _is_feasible(claim):
+    if feasible and not all(map(claim.ground.is_feasible, claim.sets)):
         return None
     degree = claim.conclusion.degree + extra if curvature is None else 0
     target = _entries(claim.conclusion, degree, 0, curvature)
     columns = list(_columns(claim, degree, curvature, feasible=feasible))
-    answer = _multipliers(columns, target)
+    answer = _claimed_multipliers(columns, target)
     if answer is None:
         return None
     for solution in _roundings(columns, target, answer):
-        proof = _assemble(columns, solution, curvature, feasible=feasible)
+        proof = Proof(steps=_steps(columns, solution), curvature=curvature, feasible=feasible)
         try:
             check_proof(claim, proof)
         except ProofError:
@@ -72,25 +82,18 @@ def find_proof(claim: Claim, *, feasible: bool, curvature: Fraction | None = Non
     return None
 
 
-def _is_feasible(claim: Claim) -> bool:
-    expressions = [premise.expression for premise in claim.premises] + [claim.conclusion]
-    return all(claim.ground.is_feasible(key) for e in expressions for key in e.terms if isinstance(key, int))
-
-
 def _columns(claim: Claim, degree: int, curvature: Fraction | None, *, feasible: bool) -> Iterator[_Column]:
     rows: list[tuple[Elementary | int, Linear]] = [(i, p.expression) for i, p in enumerate(claim.premises)]
-    for key in elementary_keys(claim.kind, claim.ground, feasible=feasible):
-        rows.append((key, elementary(claim.kind, claim.ground, key).expression))
+    for key in elementary_keys(claim.function_class, claim.ground, feasible=feasible):
+        rows.append((key, elementary(claim.function_class, claim.ground, key).expression))
     for source, expression in rows:
         free = 0 if curvature is not None else degree - expression.degree
         for power in range(free + 1):
             yield _Column(source, power, free, _entries(expression, degree - free, power, curvature))
 
 
-def _entries(
-    expression: Linear, degree: int, power: int, curvature: Fraction | None
-) -> dict[tuple[Key, int], Fraction]:
-    """Coefficients of the expression (degree ``degree``) times ``t^power``, by value and power of ``t``, as forms."""
+def _entries(expression: Linear, degree: int, power: int, curvature: Fraction | None) -> Entries:
+    """Coefficients of the expression (degree ``degree``) times ``t^power``, as forms."""
     if curvature is not None:
         return {(key, 0): value for key, c in expression.terms.items() if (value := c(1 - curvature))}
     return {
@@ -101,57 +104,37 @@ def _entries(
     }
 
 
-def _multipliers(columns: list[_Column], target: dict[tuple[Key, int], Fraction]) -> FloatArray | None:
-    rows = {name: i for i, name in enumerate(dict.fromkeys(k for c in [*columns] for k in c.entries))}
+def _claimed_multipliers(columns: Sequence[_Column], target: Entries) -> FloatArray | None:
+    rows: dict[tuple[Key, int], tuple[list[int], list[float]]] = {}
+    for j, column in enumerate(columns):
+        for name, value in column.entries.items():
+            places, values = rows.setdefault(name, ([], []))
+            places.append(j)
+            values.append(float(value))
     if any(name not in rows for name in target):
         return None
-    right = np.zeros(len(rows))
-    for name, value in target.items():
-        right[rows[name]] = float(value)
-    count = len(columns)
-    program = Program(
-        cost=np.ones(count),
-        columns=[[(rows[name], float(value)) for name, value in column.entries.items()] for column in columns],
-        row_lower=right,
-        row_upper=right,
-        column_lower=np.zeros(count),
-        column_upper=np.full(count, np.inf),
-    )
-    return solve(program)
+    right = np.array([float(target.get(name, 0)) for name in rows])
+    program = LinearProgram(np.ones(len(columns)), rows=rows_of(list(rows.values()), right, right))
+    claimed = program.solve(SECONDS)
+    return claimed.x if claimed.is_optimal else None
 
 
-def _roundings(
-    columns: list[_Column], target: dict[tuple[Key, int], Fraction], answer: FloatArray
-) -> Iterator[dict[int, Fraction]]:
+def _roundings(columns: Sequence[_Column], target: Entries, answer: FloatArray) -> Iterator[dict[int, Fraction]]:
     """Candidate rational multipliers: rounded, then the exact solution on the same non-zero unknowns."""
-    support = [int(i) for i in np.flatnonzero(answer > _NONZERO)]
-    for denominator in _DENOMINATORS:
+    support = [int(i) for i in np.flatnonzero(answer > NONZERO)]
+    for denominator in DENOMINATORS:
         yield {i: Fraction(float(answer[i])).limit_denominator(denominator) for i in support}
-    names = {
-        name: j for j, name in enumerate(dict.fromkeys([*target, *(k for i in support for k in columns[i].entries)]))
-    }
-    exact = solve_exactly(
-        [{names[k]: v for k, v in columns[i].entries.items()} for i in support],
-        {names[k]: v for k, v in target.items()},
-    )
+    names = dict.fromkeys([*target, *(name for i in support for name in columns[i].entries)])
+    index = {name: j for j, name in enumerate(names)}
+    numbered = [{index[name]: v for name, v in e.items()} for e in (*(columns[i].entries for i in support), target)]
+    exact = solve_exactly(numbered[:-1], numbered[-1])
     if exact is not None:
         yield dict(zip(support, exact, strict=True))
 
 
-def _assemble(
-    columns: list[_Column], solution: dict[int, Fraction], curvature: Fraction | None, *, feasible: bool
-) -> Proof:
+def _steps(columns: Sequence[_Column], solution: dict[int, Fraction]) -> tuple[ProofStep, ...]:
     multipliers: dict[Elementary | int, Polynomial] = {}
     for i, value in solution.items():
-        column = columns[i]
-        term = constant(value) if curvature is not None else _monomial(value, column.power, column.degree)
-        multipliers[column.source] = multipliers.get(column.source, ZERO) + term
-    steps = tuple(ProofStep(source, multiplier) for source, multiplier in multipliers.items() if multiplier)
-    return Proof(steps=steps, curvature=curvature, feasible=feasible)
-
-
-def _monomial(value: Fraction, power: int, degree: int) -> Polynomial:
-    """``value * t^power (1-t)^(degree-power)``."""
-    rest = degree - power
-    signed = [value * comb(rest, j) * (-1) ** j for j in range(rest + 1)]
-    return Polynomial((*[Fraction(0)] * power, *signed))
+        source = columns[i].source
+        multipliers[source] = multipliers.get(source, ZERO) + columns[i].multiplier(value)
+    return tuple(ProofStep(source, multiplier) for source, multiplier in multipliers.items() if multiplier)

@@ -6,7 +6,7 @@ from functools import partial
 from itertools import combinations_with_replacement, permutations
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Counted, EnumeratedEntry
+from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry
 from ratt_opt.audit.engine.decide import Verdict
 from ratt_opt.audit.enumeration.evaluation_counts import evaluation_bound, evaluation_count, fit_growth
 from ratt_opt.scenario.generator import random_scenario
@@ -27,7 +27,7 @@ def running_time_entries() -> Iterator[EnumeratedEntry]:
     """Yield Theorem 2 as a bound on the number of evaluations, and its measured growth."""
     yield EnumeratedEntry(
         label="thm:ratt_run_time",
-        kind="theorem",
+        kind=EntryKind.THEOREM,
         chain="theorems",
         statement="RATT evaluates f at most |U|^2 times, |U| the number of all controls",
         hypotheses="first greedy round reuses the single values; every order in which greedy robots may be picked",
@@ -35,7 +35,7 @@ def running_time_entries() -> Iterator[EnumeratedEntry]:
     )
     yield EnumeratedEntry(
         label="thm:ratt_run_time",
-        kind="measurement",
+        kind=EntryKind.MEASUREMENT,
         chain="theorems",
         statement="on Section VI scenarios (log-det, 12 controls a robot) the count stays below |U|^2, and lazy "
         "evaluation finds the same plan",

@@ -1,9 +1,8 @@
-"""Budgets, what RATT and CAA derive from them, and how groups can be filled: shared by the enumerated claims."""
+"""Robots, budgets and what RATT and CAA derive from them, and the outcome of trying a claim on all of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import permutations, product
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import Counted
@@ -11,29 +10,18 @@ from ratt_opt.audit.engine.decide import Verdict
 from ratt_opt.graph.caa import caa
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
-__all__ = [
-    "LARGEST",
-    "Arrangement",
-    "Budgets",
-    "arrangements",
-    "caa_split",
-    "counted",
-    "cut_size",
-    "every_budget",
-    "is_pattern1",
-    "is_pattern2",
-    "partitions",
-    "pattern2_pairs",
-]
+__all__ = ["LARGEST", "SHOWN_CASES", "Setting", "counted", "every_link_budget", "every_setting"]
 
 LARGEST = 8
-"""Largest team enumerated."""
+"""Largest team enumerated: no claim that fails first fails above 6, and each robot more takes about twice as long."""
+SHOWN_CASES = 3
+"""Cases that an entry of the ledger prints."""
 
 
 @dataclass(frozen=True, slots=True)
-class Budgets:
+class Setting:
     """One instance's numbers: N, alpha_s, alpha_c and what RATT derives from them."""
 
     n_robots: int
@@ -51,6 +39,11 @@ class Budgets:
         return self.alpha_s + self.alpha_cs
 
     @property
+    def n_greedy(self) -> int:
+        """Number of greedy robots; negative where there are more attacks than robots."""
+        return self.n_robots - self.alpha
+
+    @property
     def n_max(self) -> int:
         """Largest group by CAA."""
         return self.n_robots - self.alpha_cs
@@ -60,77 +53,31 @@ class Budgets:
         return f"N = {self.n_robots}, alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}, alpha_cs = {self.alpha_cs}"
 
 
-def partitions(total: int, largest: int) -> Iterator[tuple[int, ...]]:
-    """Integer partitions of ``total`` with parts at most ``largest``, largest first."""
-    if total == 0:
-        yield ()
-        return
-    for part in range(min(total, largest), 0, -1):
-        for rest in partitions(total - part, part):
-            yield (part, *rest)
-
-
-def cut_size(sizes: tuple[int, ...]) -> int:
-    """Links between groups of these sizes in a complete graph."""
-    total = sum(sizes)
-    return total * (total - 1) // 2 - sum(s * (s - 1) // 2 for s in sizes)
-
-
-def every_budget(largest: int) -> Iterator[Budgets]:
-    """Yield all budgets of 2 to ``largest`` robots, by N, then alpha_c, then alpha_s."""
-    for n_robots in range(2, largest + 1):
+def every_link_budget(smallest: int, largest: int) -> Iterator[tuple[int, int]]:
+    """Yield (N, alpha_c) for every team and every number of links of its complete graph."""
+    for n_robots in range(smallest, largest + 1):
         for alpha_c in range(n_robots * (n_robots - 1) // 2 + 1):
-            for alpha_s in range(n_robots + 1):
-                yield Budgets(n_robots, alpha_s, alpha_c)
+            yield n_robots, alpha_c
 
 
-def counted(cases: Sequence[str], sizes: str, checked: int, what: str) -> Counted:
-    """The outcome of an enumeration of ``checked`` items; ``cases`` break the claim. Nothing seen proves nothing."""
-    verdict = Verdict.REFUTED if cases else Verdict.PROVED if checked else Verdict.UNDECIDED
+def every_setting(largest: int) -> Iterator[Setting]:
+    """Yield all settings of 2 to ``largest`` robots, by N, then alpha_c, then alpha_s."""
+    for n_robots, alpha_c in every_link_budget(2, largest):
+        for alpha_s in range(n_robots + 1):
+            yield Setting(n_robots, alpha_s, alpha_c)
+
+
+def counted(faults: Iterable[str], sizes: str, what: str) -> Counted:
+    """The outcome of an enumeration: ``faults`` says for each item what breaks the claim, or is empty.
+
+    Nothing seen proves nothing.
+    """
+    found = list(faults)
+    cases = [fault for fault in found if fault]
+    verdict = Verdict.REFUTED if cases else Verdict.PROVED if found else Verdict.UNDECIDED
     return Counted(
         verdict=verdict,
         sizes=sizes,
-        detail=f"{checked} {what} enumerated, {len(cases)} break the claim",
-        cases=tuple(cases[:3]),
+        detail=f"{len(found)} {what} enumerated, {len(cases)} break the claim",
+        cases=tuple(cases[:SHOWN_CASES]),
     )
-
-
-def caa_split(n_robots: int, n_max: int) -> tuple[int, ...]:
-    """CAA's groups: as many of ``n_max`` robots as fit, and the rest."""
-    full, rest = divmod(n_robots, n_max)
-    return (n_max,) * full + ((rest,) if rest else ())
-
-
-Arrangement = tuple[tuple[int, int], ...]
-"""Groups as (baits, greedy robots)."""
-
-
-def arrangements(budgets: Budgets) -> Iterator[Arrangement]:
-    """Every way to fill CAA's own groups with RATT's baits and greedy robots (the paper's most favourable reading)."""
-    sizes = caa_split(budgets.n_robots, budgets.n_max)
-    seen = set()
-    for greedy in product(*(range(size + 1) for size in sizes)):
-        if sum(greedy) == budgets.n_robots - budgets.alpha:
-            arrangement = tuple(sorted(((s - g, g) for s, g in zip(sizes, greedy, strict=True)), reverse=True))
-            if arrangement not in seen:
-                seen.add(arrangement)
-                yield arrangement
-
-
-def is_pattern1(arrangement: Arrangement, budgets: Budgets) -> bool:
-    """Whether one group holds alpha_s baits and all greedy robots."""
-    rest = budgets.n_robots - budgets.alpha
-    return any(b == budgets.alpha_s and g == rest for b, g in arrangement)
-
-
-def is_pattern2(arrangement: Arrangement, budgets: Budgets) -> bool:
-    """Whether two groups are the V1 and V2 of Pattern 2."""
-    return any(True for _ in pattern2_pairs(arrangement, budgets))
-
-
-def pattern2_pairs(arrangement: Arrangement, budgets: Budgets) -> Iterator[tuple[int, int]]:
-    """Yield the indices of the groups that can be V1 and V2 of Pattern 2."""
-    rest = budgets.n_robots - budgets.alpha
-    for (i, (b1, g1)), (j, (b2, g2)) in permutations(enumerate(arrangement), 2):
-        if g1 + g2 == rest and b1 == budgets.alpha_s + g2 and b2 + g2 <= budgets.alpha_cs and b2 > 0:
-            yield i, j

@@ -2,48 +2,83 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import EnumeratedEntry
-from ratt_opt.audit.enumeration.setting import LARGEST, Budgets, counted, every_budget
+from ratt_opt.audit.appendix.entry import EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND
+from ratt_opt.audit.enumeration.setting import LARGEST, counted, every_setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ratt_opt.audit.appendix.entry import Counted
+    from ratt_opt.audit.enumeration.setting import Setting
 
-__all__ = ["count_entries"]
+    Check = Callable[[Setting], str]
+    """What is wrong at one setting, or the empty string."""
 
-PART_ATTACKED, MANY_BAITS = "nd_p1d3v1_7/cumulative", "sub_p2d1v1_10/cumulative"
+__all__ = ["size_entries"]
+
+PART_ATTACKED = Reference("nd_p1d3v1_7", EntryKind.CUMULATIVE)
+MANY_BAITS = Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE)
+LARGEST_FOR_BOUND = 5
 
 
-def count_entries() -> Iterator[EnumeratedEntry]:
+def size_entries() -> Iterator[EnumeratedEntry]:
     """Yield the claims about sizes; a claim that fails as printed is followed by its repair."""
-    rows: tuple[tuple[str, str, Callable[[Budgets], str], str], ...] = (
-        ("pattern1_sizes", "|V1| = n_max when V1 has alpha_s baits and all greedy robots", _pattern1_size, ""),
-        ("pattern2_sizes", "|V1| = n_max gives |V1b| = alpha_s + |V2g| and |V2| <= alpha_cs", _pattern2_sizes, ""),
-        ("nd_p1d1v1_4_counts", "as many baits survive as greedy robots are blinded", _blinded_balance, ""),
-        ("nd_p1d3v1_sizes", "|V1b1| = alpha - alpha_s^1", _safe_baits, PART_ATTACKED),
-        ("nd_p1d3v1_sizes_repaired", "|V1b1| = alpha_s - alpha_s^1 (repaired)", _safe_baits_repaired, ""),
-        ("nd_p1d3v1_4_counts", "|V1b1\\A*| = number of blinded greedy robots (printed)", _wrong_balance, PART_ATTACKED),
-        ("nd_p1d3v1_4_counts_repaired", "|V1b2\\A*| = number of blinded greedy robots (repaired)", _right_balance, ""),
-        ("sub_p2d1v1_sizes", "|V1b1| = alpha - alpha_s^1 in Pattern 2'", _safe_baits_submodular, MANY_BAITS),
-        ("sub_p2d1v1_sizes_repaired", "|V1b1| = |V2g| in Pattern 2' (repaired)", _safe_baits_submodular_repaired, ""),
+    yield _claim("pattern1_sizes", "|V1| = n_max when V1 has alpha_s baits and all greedy robots", _pattern1_size)
+    yield _claim("pattern2_sizes", "|V1| = n_max gives |V1b| = alpha_s + |V2g| and |V2| <= alpha_cs", _pattern2_sizes)
+    yield _claim("nd_p1d1v1_4_counts", "as many baits survive as greedy robots are blinded", _blinded_balance)
+    yield from _repaired(
+        ("nd_p1d3v1_sizes", "|V1b1| = alpha - alpha_s^1", _safe_baits),
+        ("|V1b1| = alpha_s - alpha_s^1 (repaired)", _safe_baits_repaired),
+        PART_ATTACKED,
     )
-    repaired = {label for label, *_ in rows if label.endswith("_repaired")}
-    for label, statement, check, survives_by in rows:
-        serves_by = f"{label}_repaired/claim" if f"{label}_repaired" in repaired else ""
-        yield _entry(label, statement, partial(_all_budgets, check), survives_by, serves_by)
+    yield from _repaired(
+        ("nd_p1d3v1_4_counts", "|V1b1\\A*| = number of blinded greedy robots (printed)", _wrong_balance),
+        ("|V1b2\\A*| = number of blinded greedy robots (repaired)", _right_balance),
+        PART_ATTACKED,
+    )
+    yield from _repaired(
+        ("sub_p2d1v1_sizes", "|V1b1| = alpha - alpha_s^1 in Pattern 2'", _safe_baits_submodular),
+        ("|V1b1| = |V2g| in Pattern 2' (repaired)", _safe_baits_submodular_repaired),
+        MANY_BAITS,
+    )
     defined = "Theorem 1's bound is defined for every budget (alpha_cs > 0)"
-    free = "pattern_free_nd/theorem"
-    yield _entry("bound_defined", defined, _no_division_by_zero, free, free)
+    yield _entry("bound_defined", defined, _no_division_by_zero, PATTERN_FREE_ND, PATTERN_FREE_ND)
 
 
-def _entry(label: str, statement: str, run: Callable[[], Counted], survives_by: str, serves_by: str) -> EnumeratedEntry:
+def _repaired(
+    printed: tuple[str, str, Check], repair: tuple[str, Check], survives_by: Reference
+) -> Iterator[EnumeratedEntry]:
+    """The claim as printed, with its label, and its repair, which serves in its place."""
+    label = f"{printed[0]}_repaired"
+    yield _claim(*printed, survives_by, Reference(label, EntryKind.CLAIM))
+    yield _claim(label, *repair)
+
+
+def _claim(
+    label: str,
+    statement: str,
+    check: Check,
+    survives_by: Reference | None = None,
+    serves_by: Reference | None = None,
+) -> EnumeratedEntry:
+    return _entry(label, statement, partial(_all_settings, check), survives_by, serves_by)
+
+
+def _entry(
+    label: str,
+    statement: str,
+    run: Callable[[], Counted],
+    survives_by: Reference | None,
+    serves_by: Reference | None,
+) -> EnumeratedEntry:
     return EnumeratedEntry(
         label=label,
-        kind="claim",
+        kind=EntryKind.CLAIM,
         chain="sizes",
         statement=statement,
         hypotheses="RATT's and CAA's definitions",
@@ -53,99 +88,112 @@ def _entry(label: str, statement: str, run: Callable[[], Counted], survives_by: 
     )
 
 
-def _all_budgets(check: Callable[[Budgets], str]) -> Counted:
-    """``check`` returns what is wrong at one budget, or the empty string; budgets with N <= alpha are left out."""
-    bad, count = [], 0
-    for budgets in every_budget(LARGEST):
-        if budgets.alpha < budgets.n_robots:
-            count += 1
-            if fault := check(budgets):
-                bad.append(f"{budgets.text()}: {fault}")
-    return counted(bad, f"N <= {LARGEST}, every alpha_s and alpha_c with N > alpha", count, "budgets")
+def _all_settings(check: Check) -> Counted:
+    settings = (setting for setting in every_setting(LARGEST) if setting.n_greedy > 0)
+    faults = (f"{setting.text()}: {fault}" if (fault := check(setting)) else "" for setting in settings)
+    return counted(faults, f"N <= {LARGEST}, every alpha_s and alpha_c with N > alpha", "budgets")
 
 
 def _no_division_by_zero() -> Counted:
-    bad = [f"{b.text()}: the bound divides by zero" for b in every_budget(5) if b.alpha_cs == 0]
-    return counted(bad, "N <= 5, every budget", sum(1 for _ in every_budget(5)), "budgets")
+    settings = every_setting(LARGEST_FOR_BOUND)
+    faults = ("" if s.alpha_cs else f"{s.text()}: the bound divides by zero" for s in settings)
+    return counted(faults, f"N <= {LARGEST_FOR_BOUND}, every budget", "budgets")
 
 
-def _pattern1_size(b: Budgets) -> str:
-    size = b.alpha_s + b.n_robots - b.alpha
-    return "" if size == b.n_max else f"|V1| = {size}, n_max = {b.n_max}"
+def _first(faults: Iterator[str]) -> str:
+    return next(faults, "")
 
 
-def _pattern2_sizes(b: Budgets) -> str:
-    """With |V1| = n_max and g2 greedy robots in V2, V1 has n_max - (N - alpha - g2) baits; V2 is in the rest."""
-    for g2 in range(1, b.n_robots - b.alpha + 1):
-        if b.n_max - (b.n_robots - b.alpha - g2) != b.alpha_s + g2 or b.n_robots - b.n_max > b.alpha_cs:
-            return f"|V2g| = {g2}"
-    return ""
+def _pattern1_size(s: Setting) -> str:
+    size = s.alpha_s + s.n_greedy
+    return "" if size == s.n_max else f"|V1| = {size}, n_max = {s.n_max}"
 
 
-def _blinded_balance(b: Budgets) -> str:
+def _many_baits(s: Setting, g2: int) -> int:
+    """Baits of V1 when it is of n_max robots and ``g2`` greedy robots are in V2."""
+    return s.n_max - (s.n_greedy - g2)
+
+
+def _pattern2_sizes(s: Setting) -> str:
+    """V2 is in what V1 leaves."""
+    greedy = range(1, s.n_greedy + 1)
+    too_many = s.n_robots - s.n_max > s.alpha_cs
+    return _first(f"|V2g| = {g2}" for g2 in greedy if _many_baits(s, g2) != s.alpha_s + g2 or too_many)
+
+
+def _blinded_balance(s: Setting) -> str:
     """V1 holds alpha_s baits and all greedy robots, and alpha_s of its robots are blinded."""
-    baits, greedy = range(b.alpha_s), range(b.alpha_s, b.n_max)
-    for hit in range(min(b.alpha_s, len(greedy)) + 1):
-        blinded = {*greedy[:hit], *baits[: b.alpha_s - hit]}
+    baits, greedy = range(s.alpha_s), range(s.alpha_s, s.n_max)
+    for hit in range(min(s.alpha_s, len(greedy)) + 1):
+        blinded = {*greedy[:hit], *baits[: s.alpha_s - hit]}
         survivors = len(set(baits) - blinded)
-        if len(blinded) != b.alpha_s or survivors != hit:
+        if len(blinded) != s.alpha_s or survivors != hit:
             return f"{survivors} baits survive, {hit} greedy robots are blinded"
     return ""
 
 
-def _part_attacked(b: Budgets) -> Iterator[tuple[int, int, int, int]]:
-    """Yield (alpha_s^1, |V1b1|, |V1b2 minus A*|, blinded greedy robots) of Pattern 1, Distribution 3.
+@dataclass(frozen=True, slots=True)
+class _Spread:
+    """Counts of Pattern 1, Distribution 3, where A* blinds ``part`` robots of V1, baits only of V1b2.
 
-    V1b has alpha_s baits. A* blinds alpha_s^1 robots of V1, baits only of V1b2; V1b1 is the rest of V1b.
+    ``safe`` : |V1b1|, the baits of V1 beyond V1b2; ``left`` : |V1b2 minus A*|; ``hit`` : blinded greedy robots.
     """
-    for part in range(1, b.alpha_s):
-        baits = range(b.alpha_s)
+
+    part: int
+    safe: int
+    left: int
+    hit: int
+
+
+def _spreads(s: Setting) -> Iterator[_Spread]:
+    """V1b has alpha_s baits, of which V1b2 are the first alpha_s^1."""
+    for part in range(1, s.alpha_s):
+        baits = range(s.alpha_s)
         touched = set(baits[:part])
-        for hit in range(min(part, b.n_robots - b.alpha) + 1):
+        for hit in range(min(part, s.n_greedy) + 1):
             blinded = set(baits[: part - hit])
-            yield part, len(set(baits) - touched), len(touched - blinded), hit
+            yield _Spread(part, len(set(baits) - touched), len(touched - blinded), hit)
 
 
-def _safe_baits(b: Budgets) -> str:
-    for part, safe, _, _ in _part_attacked(b):
-        if safe != b.alpha - part:
-            return f"alpha_s^1 = {part}: |V1b1| = {safe}, the text says alpha - alpha_s^1 = {b.alpha - part}"
-    return ""
-
-
-def _safe_baits_repaired(b: Budgets) -> str:
-    wrong = (
-        f"alpha_s^1 = {part}: |V1b1| = {safe}" for part, safe, _, _ in _part_attacked(b) if safe != b.alpha_s - part
+def _safe_baits(s: Setting) -> str:
+    return _first(
+        f"alpha_s^1 = {one.part}: |V1b1| = {one.safe}, the text says alpha - alpha_s^1 = {s.alpha - one.part}"
+        for one in _spreads(s)
+        if one.safe != s.alpha - one.part
     )
-    return next(wrong, "")
 
 
-def _wrong_balance(b: Budgets) -> str:
+def _safe_baits_repaired(s: Setting) -> str:
+    wrong = (one for one in _spreads(s) if one.safe != s.alpha_s - one.part)
+    return _first(f"alpha_s^1 = {one.part}: |V1b1| = {one.safe}" for one in wrong)
+
+
+def _wrong_balance(s: Setting) -> str:
     """The reason of nd_p1d3v1_4 as printed, with V1b1, of which none is blinded."""
-    for part, safe, _, hit in _part_attacked(b):
-        if safe != hit:
-            return f"alpha_s^1 = {part}: |V1b1\\A*| = {safe}, greedy robots blinded: {hit}"
-    return ""
+    wrong = (one for one in _spreads(s) if one.safe != one.hit)
+    return _first(f"alpha_s^1 = {one.part}: |V1b1\\A*| = {one.safe}, greedy robots blinded: {one.hit}" for one in wrong)
 
 
-def _right_balance(b: Budgets) -> str:
-    wrong = (
-        f"alpha_s^1 = {part}, greedy robots blinded: {hit}" for part, _, left, hit in _part_attacked(b) if left != hit
+def _right_balance(s: Setting) -> str:
+    wrong = (one for one in _spreads(s) if one.left != one.hit)
+    return _first(f"alpha_s^1 = {one.part}, greedy robots blinded: {one.hit}" for one in wrong)
+
+
+def _in_v2(s: Setting) -> range:
+    """How many greedy robots V2 can have in Pattern 2'."""
+    return range(1, min(s.n_greedy, s.alpha_cs - 1) + 1)
+
+
+def _safe_baits_submodular(s: Setting) -> str:
+    printed = s.alpha - s.alpha_s
+    return _first(
+        f"|V2g| = {g2} = |V1b1|, the text says alpha - alpha_s^1 = {printed} (all alpha_s in V1)"
+        for g2 in _in_v2(s)
+        if printed != g2
     )
-    return next(wrong, "")
 
 
-def _safe_baits_submodular(b: Budgets) -> str:
-    for g2 in range(1, min(b.n_robots - b.alpha, b.alpha_cs - 1) + 1):
-        if b.alpha - b.alpha_s != g2:
-            return f"|V2g| = {g2} = |V1b1|, the text says alpha - alpha_s^1 = {b.alpha - b.alpha_s} (all alpha_s in V1)"
-    return ""
-
-
-def _safe_baits_submodular_repaired(b: Budgets) -> str:
+def _safe_baits_submodular_repaired(s: Setting) -> str:
     """V1b has alpha_s + |V2g| baits, of which V1b2 are alpha_s."""
-    for g2 in range(1, min(b.n_robots - b.alpha, b.alpha_cs - 1) + 1):
-        baits = set(range(b.n_max - (b.n_robots - b.alpha - g2)))
-        if len(baits - set(range(b.alpha_s))) != g2:
-            return f"|V2g| = {g2}"
-    return ""
+    rest = (g2 for g2 in _in_v2(s) if len(set(range(_many_baits(s, g2))) - set(range(s.alpha_s))) != g2)
+    return _first(f"|V2g| = {g2}" for g2 in rest)

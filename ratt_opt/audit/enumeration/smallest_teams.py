@@ -6,26 +6,40 @@ over the groups is enumerated, smallest team first.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from itertools import permutations, product
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Counted, EnumeratedEntry
+from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.setting import Arrangement, Budgets, arrangements, every_budget, pattern2_pairs
+from ratt_opt.audit.enumeration.arrangements import Arrangement, arrangements, pattern2_pairs
+from ratt_opt.audit.enumeration.setting import LARGEST, Setting, every_setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    Situation = tuple[Arrangement, tuple[int, int], tuple[int, ...]]
-    """Groups, the indices of V1 and V2, and how many robots are blinded in each group."""
-
-__all__ = ["first_occurrence", "occurrence_entries"]
-
-LARGEST = 8
+__all__ = ["Situation", "first_occurrence", "smallest_team_entries"]
 
 
-def occurrence_entries() -> Iterator[EnumeratedEntry]:
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """Groups, which two are V1 and V2, and how many robots are blinded in each group."""
+
+    setting: Setting
+    groups: Arrangement
+    v1: int
+    v2: int
+    blinded: tuple[int, ...]
+
+    def text(self) -> str:
+        """The situation in words."""
+        spread = zip(self.groups, self.blinded, strict=True)
+        groups = ", ".join(f"{b} bait + {g} greedy ({hit} blinded)" for (b, g), hit in spread)
+        return f"{self.setting.text()}; groups {groups}; V1 is group {self.v1 + 1}, V2 group {self.v2 + 1}"
+
+
+def smallest_team_entries() -> Iterator[EnumeratedEntry]:
     """Yield one entry a pattern and distribution, and one for each dominance claim."""
     where = {1: "all blinded robots in V1", 2: "all of them outside V1 (Pattern 2: in V2)", 3: "in V1 and elsewhere"}
     for pattern in (1, 2):
@@ -43,10 +57,10 @@ def occurrence_entries() -> Iterator[EnumeratedEntry]:
         )
 
 
-def _entry(label: str, statement: str, occurs: Callable[[Budgets, Situation], bool]) -> EnumeratedEntry:
+def _entry(label: str, statement: str, occurs: Callable[[Situation], bool]) -> EnumeratedEntry:
     return EnumeratedEntry(
         label=label,
-        kind="claim",
+        kind=EntryKind.CLAIM,
         chain="smallest teams",
         statement=statement,
         hypotheses="N > alpha, alpha_s >= 1, CAA's own groups",
@@ -54,49 +68,41 @@ def _entry(label: str, statement: str, occurs: Callable[[Budgets, Situation], bo
     )
 
 
-def first_occurrence(occurs: Callable[[Budgets, Situation], bool]) -> Counted:
+def first_occurrence(occurs: Callable[[Situation], bool]) -> Counted:
     """Enumerate situations, smallest team first, until one qualifies."""
     seen = 0
-    for budgets in every_budget(LARGEST):
-        for situation in _situations(budgets):
+    for setting in every_setting(LARGEST):
+        for situation in _situations(setting):
             seen += 1
-            if occurs(budgets, situation):
-                groups, pair, blinded = situation
-                text = ", ".join(
-                    f"{b} bait + {g} greedy ({hit} blinded)" for (b, g), hit in zip(groups, blinded, strict=True)
-                )
-                detail = f"smallest: {budgets.text()}; groups {text}; V1 is group {pair[0] + 1}, V2 group {pair[1] + 1}"
-                return Counted(
-                    verdict=Verdict.PROVED, sizes=f"{seen} situations, N <= {budgets.n_robots}", detail=detail
-                )
+            if occurs(situation):
+                sizes = f"{seen} situations, N <= {setting.n_robots}"
+                return Counted(verdict=Verdict.PROVED, sizes=sizes, detail=f"smallest: {situation.text()}")
     return Counted(verdict=Verdict.REFUTED, sizes=f"{seen} situations, N <= {LARGEST}", detail="none qualifies")
 
 
-def _situations(budgets: Budgets) -> Iterator[Situation]:
-    if not budgets.alpha_s or budgets.alpha >= budgets.n_robots:
+def _situations(setting: Setting) -> Iterator[Situation]:
+    if not setting.alpha_s or setting.n_greedy <= 0:
         return
-    for groups in arrangements(budgets):
+    for groups in arrangements(setting):
         for blinded in product(*(range(b + g + 1) for b, g in groups)):
-            if sum(blinded) == budgets.alpha_s:
-                for pair in permutations(range(len(groups)), 2):
-                    yield groups, pair, blinded
+            if sum(blinded) == setting.alpha_s:
+                for v1, v2 in permutations(range(len(groups)), 2):
+                    yield Situation(setting, groups, v1, v2, blinded)
 
 
-def _is_distribution(pattern: int, distribution: int, budgets: Budgets, situation: Situation) -> bool:
-    groups, pair, blinded = situation
+def _is_distribution(pattern: int, distribution: int, at: Situation) -> bool:
+    setting, groups = at.setting, at.groups
     if pattern == 1:
-        fits = groups[pair[0]] == (budgets.alpha_s, budgets.n_robots - budgets.alpha)
+        fits = groups[at.v1] == (setting.alpha_s, setting.n_greedy)
     else:
-        fits = groups[pair[1]][1] > 0 and pair in pattern2_pairs(groups, budgets)
-    first, all_of_them = blinded[pair[0]], budgets.alpha_s
-    outside = blinded[pair[1]] if pattern == 2 else all_of_them - first
+        fits = groups[at.v2][1] > 0 and (at.v1, at.v2) in pattern2_pairs(groups, setting)
+    first, all_of_them = at.blinded[at.v1], setting.alpha_s
+    outside = at.blinded[at.v2] if pattern == 2 else all_of_them - first
     return fits and (first == all_of_them, outside == all_of_them, 0 < first < all_of_them)[distribution - 1]
 
 
-def _is_dominance(distribution: int, budgets: Budgets, situation: Situation) -> bool:
+def _is_dominance(distribution: int, at: Situation) -> bool:
     """V2 keeps two greedy robots at least when its blinded robots are its baits, and no more."""
-    groups, pair, blinded = situation
-    if not _is_distribution(2, distribution, budgets, situation):
-        return False
-    bait, greedy = groups[pair[1]]
-    return bait <= blinded[pair[1]] and bait + greedy - blinded[pair[1]] >= 2
+    bait, greedy = at.groups[at.v2]
+    left = bait + greedy - at.blinded[at.v2]
+    return _is_distribution(2, distribution, at) and bait <= at.blinded[at.v2] and left >= 2

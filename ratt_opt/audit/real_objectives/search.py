@@ -7,13 +7,12 @@ claim applies. The largest violation is replayed without rounding.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.real_objectives.cast import Cast, Stage, is_castable
 from ratt_opt.audit.real_objectives.exact_criteria import ExactCriterion
 from ratt_opt.errors import InputError
@@ -23,9 +22,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt.audit.appendix.entry import SizedClaim
+    from ratt_opt.audit.appendix.roles import Team
+    from ratt_opt.audit.engine.claim import FunctionClass
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["Finding", "exact_violation", "objective_for", "realistic_search"]
+__all__ = ["Origin", "RealSearch", "Trial", "exact_violation", "objective_for", "search_real_objectives"]
 
 SEEDS = tuple(range(10))
 N_TARGETS = 3
@@ -37,27 +38,60 @@ SPREAD = (30.0, 10.0, 3.0, 1.0)
 """[m] standard deviations of the moves of robots and targets, one after the other."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
-    """The largest violation of one claim: ``-conclusion`` relative to the largest value in it.
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a scenario comes from: Section VI's with ``seed``, moved at random until ``step`` (0: not moved)."""
 
-    ``origin`` : where the scenario comes from, with its seed; ``players`` : the element in each role.
+    n_robots: int
+    seed: int
+    step: int = 0
+    has_start: bool = True
+    """Whether the claim applied to the scenario before the moves."""
+
+    def __str__(self) -> str:
+        first = f"random_scenario({self.n_robots}, {N_TARGETS}, alpha_s=0, alpha_c=0, seed={self.seed})"
+        if not self.has_start:
+            first = f"random_scenario seed {self.seed}"
+        return f"{first}, then moved at random (step {self.step} of default_rng({SEEDS[0]}))" if self.step else first
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trial:
+    """One claim on one scenario: ``violation`` is ``-conclusion`` relative to the largest value in it.
+
+    ``players`` : the element in each role
     """
 
     violation: float
-    sized: SizedClaim
-    scenario: Scenario
-    origin: str
+    sized: SizedClaim = field(repr=False)
+    scenario: Scenario = field(repr=False)
+    origin: Origin
     players: tuple[int, ...]
 
 
-def objective_for(kind: FunctionClass) -> str:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RealSearch:
+    """What trying the claims of one entry found.
+
+    ``applied``, ``broken`` : cases of Section VI to which a claim applies, and those that break it
+    ``worst`` : the largest violation, after moves; ``None`` where no claim ever applied
+    ``violated_exactly`` : whether ``worst`` breaks its claim without rounding
+    """
+
+    objective: str
+    applied: int
+    broken: int
+    worst: Trial | None
+    violated_exactly: bool
+
+
+def objective_for(function_class: FunctionClass) -> str:
     """Criterion that is of the class: log-det is submodular, the trace is non-decreasing only."""
-    return "logdet" if kind in (FunctionClass.SUBMODULAR, FunctionClass.CURVATURE) else "trace"
+    return "logdet" if function_class.is_submodular else "trace"
 
 
-def realistic_search(claims: Sequence[SizedClaim], *, refuted: bool) -> dict[str, object] | None:
-    """Try the claims of one entry; return the counts and the worst instance as JSON data, ``None`` where none applies.
+def search_real_objectives(claims: Sequence[SizedClaim], *, refuted: bool) -> RealSearch | None:
+    """Try the claims of one entry; ``None`` where none can be cast in the roles of an instance.
 
     Parameters
     ----------
@@ -66,73 +100,71 @@ def realistic_search(claims: Sequence[SizedClaim], *, refuted: bool) -> dict[str
     usable = [sized for sized in claims if is_castable(sized.claim, sized.team)]
     if not usable:
         return None
-    applied, found = 0, []
+    applied, trials = 0, []
     for sized in usable:
-        assert sized.team is not None
         for seed in SEEDS:
-            scenario = _section_vi(len(sized.team.robots), seed)
-            origin = f"random_scenario({scenario.n_robots}, {N_TARGETS}, alpha_s=0, alpha_c=0, seed={seed})"
-            tried = list(_violations(sized, scenario, origin))
+            origin = Origin(len(_team(sized).robots), seed)
+            stage = _stage_vi(origin, objective_for(sized.claim.function_class))
+            tried = list(_trials(sized, stage, _section_vi(origin), origin))
             applied += bool(tried)
-            found += tried
-    worst = max(found, key=lambda finding: finding.violation, default=None)
-    broken = {(finding.origin, finding.sized.size) for finding in found if finding.violation > FOOTING}
-    worst = _climb(worst, usable[0], STEPS[refuted])
-    return {
-        "objective": objective_for(usable[0].claim.kind),
-        "section_vi_instances": applied,
-        "section_vi_violations": len(broken),
-        "worst": None if worst is None else _record(worst),
-    }
+            trials += tried
+    broken = {(trial.origin, trial.sized.size) for trial in trials if trial.violation > FOOTING}
+    start = max(trials, key=lambda trial: trial.violation, default=None)
+    worst = _climb(start, usable[0], STEPS[refuted])
+    exact = None if worst is None else exact_violation(worst)
+    return RealSearch(
+        objective=objective_for(usable[0].claim.function_class),
+        applied=applied,
+        broken=len(broken),
+        worst=worst,
+        violated_exactly=exact is not None and bool(exact > 0),
+    )
+
+
+def _team(sized: SizedClaim) -> Team:
+    assert sized.team is not None, "only claims about roles are tried"
+    return sized.team
 
 
 @lru_cache(maxsize=64)
-def _section_vi(n_robots: int, seed: int) -> Scenario:
-    return random_scenario(n_robots, N_TARGETS, alpha_s=0, alpha_c=0, seed=seed)
+def _section_vi(origin: Origin) -> Scenario:
+    return random_scenario(origin.n_robots, N_TARGETS, alpha_s=0, alpha_c=0, seed=origin.seed)
 
 
 @lru_cache(maxsize=128)
-def _stage_vi(n_robots: int, seed: int, objective: str) -> Stage:
-    return Stage(_section_vi(n_robots, seed).problem(objective))
+def _stage_vi(origin: Origin, objective: str) -> Stage:
+    return Stage(_section_vi(origin).problem(objective))
 
 
-def _violations(sized: SizedClaim, scenario: Scenario, origin: str, stage: Stage | None = None) -> Iterator[Finding]:
+def _trials(sized: SizedClaim, stage: Stage, scenario: Scenario, origin: Origin) -> Iterator[Trial]:
     """The relative violation, negative where the claim holds, for each naming of the baits that meets the premises."""
-    assert sized.team is not None
-    kind = sized.claim.kind
-    if stage is None:
-        seed = int(origin.rsplit("=", 1)[1].rstrip(")"))
-        stage = _stage_vi(scenario.n_robots, seed, objective_for(kind))
-    for cast in stage.casts(sized.team):
-        if any(cast.evaluate(p.expression, 1.0) < -FOOTING * cast.scale(p.expression) for p in sized.claim.premises):
+    claim = sized.claim
+    for cast in stage.casts(_team(sized)):
+        if any(cast.evaluate(p.expression, 1.0) < -FOOTING * cast.scale(p.expression) for p in claim.premises):
             continue
-        scale = cast.scale(sized.claim.conclusion)
+        scale = cast.scale(claim.conclusion)
         if scale > 0:
-            kept = cast.kept(submodular=objective_for(kind) == "logdet") if sized.claim.conclusion.degree else 1.0
-            violation = -float(cast.evaluate(sized.claim.conclusion, kept)) / scale
-            yield Finding(violation=violation, sized=sized, scenario=scenario, origin=origin, players=cast.elements)
+            kept = cast.kept(submodular=claim.function_class.is_submodular) if claim.conclusion.degree else 1.0
+            violation = -float(cast.evaluate(claim.conclusion, kept)) / scale
+            yield Trial(violation=violation, sized=sized, scenario=scenario, origin=origin, players=cast.elements)
 
 
-def _climb(start: Finding | None, sized: SizedClaim, steps: int) -> Finding | None:
+def _climb(start: Trial | None, sized: SizedClaim, steps: int) -> Trial | None:
     """Move robots and targets at random, keeping what makes the violation larger."""
-    best = start
-    sized = sized if start is None else start.sized
-    assert sized.team is not None
-    seed = SEEDS[0]
-    rng = np.random.default_rng(seed)
-    scenario = _section_vi(len(sized.team.robots), seed) if start is None else start.scenario
-    first = f"random_scenario seed {seed}" if start is None else start.origin
+    best, sized = start, sized if start is None else start.sized
+    rng = np.random.default_rng(SEEDS[0])
+    origin = Origin(len(_team(sized).robots), SEEDS[0]) if start is None else start.origin
+    base = _section_vi(origin)
     for step in range(steps):
-        base = scenario if best is None else best.scenario
         try:
             moved = _moved(base, rng, SPREAD[step % len(SPREAD)])
         except InputError:  # a robot landed on a target
             continue
-        stage = Stage(moved.problem(objective_for(sized.claim.kind)))
-        origin = f"{first}, then moved at random (step {step + 1} of default_rng({seed}))"
-        found = max(_violations(sized, moved, origin, stage), key=lambda finding: finding.violation, default=None)
+        stage = Stage(moved.problem(objective_for(sized.claim.function_class)))
+        at = Origin(origin.n_robots, origin.seed, step + 1, start is not None)
+        found = max(_trials(sized, stage, moved, at), key=lambda trial: trial.violation, default=None)
         if found is not None and (best is None or found.violation > best.violation):
-            best = found
+            best, base = found, moved
     return best
 
 
@@ -152,32 +184,16 @@ def _moved(scenario: Scenario, rng: np.random.Generator, spread: float) -> Scena
     return scenario.replace(robots=robots, targets=targets)
 
 
-def exact_violation(finding: Finding) -> Any:
+def exact_violation(trial: Trial) -> Any:
     """Replay without rounding: minus the conclusion, as a rational (trace) or a ball (log-det).
 
     ``None`` where a premise is not met exactly.
     """
-    claim, team = finding.sized.claim, finding.sized.team
-    assert team is not None
-    problem = finding.scenario.problem(objective_for(claim.kind))
-    cast = Cast(team.ground, finding.players, ExactCriterion(problem.objective))
+    claim = trial.sized.claim
+    problem = trial.scenario.problem(objective_for(claim.function_class))
+    cast = Cast(_team(trial.sized).ground, trial.players, ExactCriterion(problem.objective))
     one = cast.of(0) + 1
     if not all(cast.evaluate(premise.expression, one) >= 0 for premise in claim.premises):
         return None
-    kept = cast.kept(submodular=objective_for(claim.kind) == "logdet") if claim.conclusion.degree else one
+    kept = cast.kept(submodular=claim.function_class.is_submodular) if claim.conclusion.degree else one
     return -cast.evaluate(claim.conclusion, kept)
-
-
-def _record(finding: Finding) -> dict[str, object]:
-    """The worst instance, complete: the scenario file's content, the roles, and the sign of the violation."""
-    exact = exact_violation(finding)
-    team = finding.sized.team
-    assert team is not None
-    return {
-        "origin": finding.origin,
-        "claim": finding.sized.size,
-        "relative_violation": finding.violation,
-        "violated_exactly": exact is not None and bool(exact > 0),
-        "elements": dict(zip(team.ground.names, finding.players, strict=True)),
-        "scenario": finding.scenario.model_dump(mode="json"),
-    }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ratt_opt.audit.report.findings import findings
 from ratt_opt.audit.report.words import evidence, per_chain, proof_lines, shown_claim, title
@@ -11,6 +11,7 @@ from ratt_opt.audit.report.words import evidence, per_chain, proof_lines, shown_
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ratt_opt.audit.report.document import EntryRecord, LedgerDocument
     from ratt_opt.audit.report.findings import Finding
 
 __all__ = ["html_report"]
@@ -26,7 +27,7 @@ summary{cursor:pointer}pre{white-space:pre-wrap;overflow-wrap:anywhere;backgroun
 """
 
 
-def html_report(document: dict[str, Any]) -> str:
+def html_report(document: LedgerDocument) -> str:
     """Return the page; all text from the ledger is escaped."""
     counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
     state = "" if document["complete"] else "<p><strong>The run was interrupted: entries are missing.</strong></p>"
@@ -52,7 +53,7 @@ def _finding(finding: Finding) -> str:
     return f"<h2>{escape(finding.heading)}</h2>{sentences}{_table(finding.table)}"
 
 
-def _verdicts(document: dict[str, Any]) -> str:
+def _verdicts(document: LedgerDocument) -> str:
     columns = list(document["counts"])
     rows = [(name, *(str(cell) for cell in counts.values())) for name, counts in per_chain(document).items()]
     return _table([("chain", *columns), *rows])
@@ -65,7 +66,7 @@ def _table(rows: Sequence[Sequence[str]]) -> str:
     return f"<table><tr>{''.join(f'<th>{escape(name)}</th>' for name in head)}</tr>{body}</table>"
 
 
-def _entry(record: dict[str, Any]) -> str:
+def _entry(record: EntryRecord) -> str:
     style = record["verdict"].replace(" ", "-")
     scope = "; ".join([record["sizes"], *record.get("curvature", [])])
     parts = [

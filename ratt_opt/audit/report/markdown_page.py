@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ratt_opt.audit.report.findings import findings
 from ratt_opt.audit.report.words import evidence, per_chain, title
 
 if TYPE_CHECKING:
+    from ratt_opt.audit.report.document import EntryRecord, LedgerDocument
     from ratt_opt.audit.report.findings import Finding
 
 __all__ = ["finding_lines", "markdown_report"]
 
 
-def markdown_report(document: dict[str, Any]) -> str:
+def markdown_report(document: LedgerDocument) -> str:
     """Return the report as text; every cell is escaped."""
     lines = ["# Proof ledger", "", _opening(document), ""]
     for finding in findings(document):
@@ -40,13 +41,13 @@ def finding_lines(finding: Finding) -> list[str]:
     return [*lines, _row(list(head)), _row(["---"] * len(head)), *(_row(list(row)) for row in rows), ""]
 
 
-def _opening(document: dict[str, Any]) -> str:
+def _opening(document: LedgerDocument) -> str:
     state = "" if document["complete"] else " The run was interrupted: entries are missing."
     counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
     return f"{len(document['entries'])} entries: {counts}. {document['seconds']:.0f} s.{state}"
 
 
-def _refuted(record: dict[str, Any]) -> list[str]:
+def _refuted(record: EntryRecord) -> list[str]:
     lines = [f"### {_escape(title(record))}", "", _escape(record["statement"]), ""]
     lines += [_escape(f"Given: {record['hypotheses']}."), ""]
     return [*lines, *(f"- {_escape(line)}" for line in evidence(record)), ""]

@@ -1,117 +1,99 @@
-"""Records of the ledger: an entry, its verdict and its evidence as JSON data."""
+"""From a decided entry to its record in ``audit.json``."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
+from typing import TYPE_CHECKING, cast
 
 from ratt_opt.audit.engine.proof import step_inequality
-from ratt_opt.problem import Problem
-from ratt_opt.solvers.ratt import bait_and_greedy
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable
 
-    from ratt_opt.audit.appendix.entry import Counted, Entry, EnumeratedEntry, SizedClaim
-    from ratt_opt.audit.appendix.roles import Team
-    from ratt_opt.audit.engine.best_factor import Weakened
+    from ratt_opt.audit.decided import DecidedClaim, DecidedEntry
+    from ratt_opt.audit.engine.best_factor import BestFactor
     from ratt_opt.audit.engine.claim import Claim
-    from ratt_opt.audit.engine.decide import Decision, Verdict
-    from ratt_opt.audit.engine.proof import Proof, Witness
+    from ratt_opt.audit.engine.counterexample import Witness
+    from ratt_opt.audit.engine.proof import Proof
+    from ratt_opt.audit.real_objectives.search import RealSearch
+    from ratt_opt.audit.report.document import (
+        ClaimRecord,
+        EntryHead,
+        EntryRecord,
+        FactorRecord,
+        ProofRecord,
+        RealRecord,
+        WitnessRecord,
+        WorstRecord,
+    )
 
-__all__ = ["claim_record", "enumerated_record", "factor_records", "replays"]
+__all__ = ["entry_record"]
 
-Record = dict[str, object]
+ENUMERATED = "exhaustive enumeration"
+BY_CONE = "linear programming over the set-function cone, re-checked exactly"
 
 
-def _head(entry: Entry | EnumeratedEntry, verdict: Verdict, decided_by: str) -> Record:
-    return {
+def entry_record(decided: DecidedEntry) -> EntryRecord:
+    """The record of one entry, without what other entries say about it."""
+    counted, remains = decided.counted, decided.remains
+    if counted is not None:
+        record = _begun(decided, ENUMERATED)
+        record["sizes"], record["detail"] = counted.sizes, counted.detail
+        record["counterexamples"], record["claims"] = list(counted.cases), []
+        record["seconds"] = decided.seconds
+        return record
+    robots = [claim.sized.robots for claim in decided.claims]
+    in_play = f"{min(robots)} to {max(robots)} robots in play, {len(robots)} cases"
+    record = _begun(decided, BY_CONE)
+    record["function_class"] = decided.claims[0].sized.claim.function_class.value
+    record["sizes"] = f"for all functions of the class, {in_play}"
+    record["curvature"] = sorted({claim.decision.scope for claim in decided.claims})
+    record["claims"] = [_claim(claim) for claim in decided.claims]
+    if remains is not None:
+        record["best_factors"] = _factors(remains.factors)
+        record["realistic"] = None if remains.real is None else _real(remains.real)
+        if remains.has_detours:
+            record["follows_from"] = remains.follows_from
+    record["seconds"] = decided.seconds
+    return record
+
+
+def _begun(decided: DecidedEntry, decided_by: str) -> EntryRecord:
+    """A record without its evidence, which the caller adds in the order of the file."""
+    entry = decided.entry
+    head: EntryHead = {
         "label": entry.label,
-        "kind": entry.kind,
+        "kind": entry.kind.value,
         "chain": entry.chain,
         "reading": entry.reading,
         "statement": entry.statement,
         "hypotheses": entry.hypotheses,
         "decided_by": decided_by,
-        "verdict": verdict.value,
+        "verdict": decided.verdict.value,
     }
+    return cast("EntryRecord", head)
 
 
-def enumerated_record(entry: EnumeratedEntry, counted: Counted, *, seconds: float) -> Record:
-    """Record of an entry decided by enumeration; ``witness`` holds the first cases that break it."""
-    record = _head(entry, counted.verdict, "exhaustive enumeration")
-    record.update(
-        sizes=counted.sizes,
-        detail=counted.detail,
-        counterexamples=list(counted.cases),
-        claims=[],
-        survives_by=entry.survives_by,
-        serves_by=entry.serves_by,
-        seconds=seconds,
-    )
-    return record
-
-
-def claim_record(
-    entry: Entry,
-    claims: Sequence[SizedClaim],
-    decisions: Sequence[Decision],
-    verdict: Verdict,
-) -> Record:
-    """Record of an entry decided by the cone: every size with its proof or counterexample."""
-    record = _head(entry, verdict, "linear programming over the set-function cone, re-checked exactly")
-    kind = claims[0].claim.kind
-    robots = sorted({sized.robots for sized in claims})
-    record.update(
-        function_class=kind.value,
-        sizes=f"for all functions of the class, {robots[0]} to {robots[-1]} robots in play, {len(claims)} cases",
-        curvature=sorted({decision.scope for decision in decisions}),
-        claims=[_sized(sized, decision) for sized, decision in zip(claims, decisions, strict=True)],
-        survives_by=entry.survives_by,
-        serves_by=entry.serves_by,
-    )
-    return record
-
-
-def factor_records(weaker: Sequence[Weakened]) -> list[Record]:
-    """Best factors of a refuted step as JSON data."""
-    return [
-        {
-            "curvature": None if w.curvature is None else str(w.curvature),
-            "factor": str(w.factor),
-            "cannot_exceed_by_1/1000": w.is_best,
-        }
-        for w in weaker
-    ]
-
-
-def _sized(sized: SizedClaim, decision: Decision) -> Record:
-    claim = sized.claim
+def _claim(decided: DecidedClaim) -> ClaimRecord:
+    claim, decision = decided.sized.claim, decided.decision
     return {
-        "size": sized.size,
-        "robots": sized.robots,
-        "claim": f"{claim.conclusion.text(claim.ground, claim.kind.symbol)} >= 0",
+        "size": decided.sized.size,
+        "robots": decided.sized.robots,
+        "claim": claim.text(),
         "premises": len(claim.premises),
         "verdict": decision.verdict.value,
         "scope": decision.scope,
         "proofs": [_proof(claim, proof) for proof in decision.proofs],
-        "witness": None if decision.witness is None else _witness(sized, decision.witness),
+        "witness": None if decision.witness is None else _witness(claim, decision.witness, decided.chooses_roles),
     }
 
 
-def _proof(claim: Claim, proof: Proof) -> Record:
+def _proof(claim: Claim, proof: Proof) -> ProofRecord:
     """Multiplier, reason and inequality of every step; the steps sum to the claim."""
     steps = []
     for step in proof.steps:
         inequality = step_inequality(claim, step)
-        steps.append(
-            [
-                step.multiplier.form_text(claim.kind.symbol),
-                inequality.reason,
-                f"{inequality.expression.text(claim.ground, claim.kind.symbol)} >= 0",
-            ]
-        )
+        multiplier = step.multiplier.form_text(claim.symbol)
+        steps.append([multiplier, inequality.reason, claim.text(inequality.expression)])
     return {
         "curvature": None if proof.curvature is None else str(proof.curvature),
         "curvature_domain": "feasible sets" if proof.feasible else "all sets",
@@ -119,34 +101,49 @@ def _proof(claim: Claim, proof: Proof) -> Record:
     }
 
 
-def _witness(sized: SizedClaim, witness: Witness) -> Record:
-    """The function's values on all subsets, by bit mask over ``elements``.
-
-    ``ratt_chooses_the_roles`` : whether RATT itself, run on the function with this many baits,
-    picks the elements named as its choices (``None`` where the elements have no roles).
-    """
-    claim = sized.claim
+def _witness(claim: Claim, witness: Witness, chooses_roles: bool | None) -> WitnessRecord:
     return {
         "elements": list(witness.names),
         "robot": list(claim.ground.owner),
         "values": list(witness.values),
-        "values_in_play": {claim.ground.text(mask): witness.values[mask] for mask in _sets_in_play(claim)},
+        "values_in_play": {claim.ground.text(mask): witness.values[mask] for mask in claim.sets},
         "auxiliary": {name: str(value) for name, value in witness.auxiliary.items()},
         "curvature": None if witness.curvature is None else str(witness.curvature),
         "violation": str(witness.violation),
         "premises": [premise.reason for premise in claim.premises],
-        "ratt_chooses_the_roles": None if sized.team is None else replays(sized.team, witness),
+        "ratt_chooses_the_roles": chooses_roles,
     }
 
 
-def _sets_in_play(claim: Claim) -> list[int]:
-    """Sets whose values the claim or its premises speak of, by bit mask."""
-    expressions = [claim.conclusion, *(premise.expression for premise in claim.premises)]
-    return sorted({key for expression in expressions for key in expression.terms if isinstance(key, int)})
+def _factors(found: Iterable[BestFactor]) -> list[FactorRecord]:
+    return [
+        {
+            "curvature": None if best.curvature is None else str(best.curvature),
+            "factor": str(best.factor),
+            "cannot_exceed_by_1/1000": best.is_best,
+        }
+        for best in found
+    ]
 
 
-def replays(team: Team, witness: Witness) -> bool:
-    """Run RATT's bait and greedy rules on the witness: are its choices the elements named as such?"""
-    problem = Problem(witness.function(), np.array(team.ground.owner), None, 0, 0)
-    plan = bait_and_greedy(problem, len(team.bait))
-    return bool((plan.elements == np.arange(len(team.robots))).all())
+def _real(found: RealSearch) -> RealRecord:
+    return {
+        "objective": found.objective,
+        "section_vi_instances": found.applied,
+        "section_vi_violations": found.broken,
+        "worst": _worst(found),
+    }
+
+
+def _worst(found: RealSearch) -> WorstRecord | None:
+    worst = found.worst
+    if worst is None or worst.sized.team is None:
+        return None
+    return {
+        "origin": str(worst.origin),
+        "claim": worst.sized.size,
+        "relative_violation": worst.violation,
+        "violated_exactly": found.violated_exactly,
+        "elements": dict(zip(worst.sized.team.ground.names, worst.players, strict=True)),
+        "scenario": worst.scenario.model_dump(mode="json"),
+    }

@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ratt_opt.audit.report.document import (
+        ClaimRecord,
+        EntryHead,
+        EntryRecord,
+        FactorRecord,
+        LedgerDocument,
+        RealRecord,
+        WitnessRecord,
+    )
 
 __all__ = ["evidence", "per_chain", "proof_lines", "shown_claim", "title"]
 
@@ -10,13 +21,13 @@ SHOWN_SETS = 60
 """Most values of a counterexample that a report prints."""
 
 
-def title(record: dict[str, Any]) -> str:
+def title(record: EntryHead) -> str:
     """Label, kind and reading of an entry."""
     reading = f" ({record['reading']})" if record["reading"] else ""
     return f"{record['label']}, {record['kind']}{reading}"
 
 
-def per_chain(document: dict[str, Any]) -> dict[str, dict[str, int]]:
+def per_chain(document: LedgerDocument) -> dict[str, dict[str, int]]:
     """Verdict counts of each chain, in order of appearance, then of all."""
     table: dict[str, dict[str, int]] = {}
     for record in document["entries"]:
@@ -26,33 +37,27 @@ def per_chain(document: dict[str, Any]) -> dict[str, dict[str, int]]:
     return table
 
 
-def shown_claim(record: dict[str, Any]) -> dict[str, Any] | None:
+def shown_claim(record: EntryRecord) -> ClaimRecord | None:
     """The claim whose evidence a report prints: the first refuted one, else the first with a proof that has steps."""
-    claims: list[dict[str, Any]] = record["claims"]
+    claims = record["claims"]
     refuted = [claim for claim in claims if claim["witness"] is not None]
     stepped = [claim for claim in claims if claim["proofs"] and claim["proofs"][0]["steps"]]
     return next(iter(refuted or stepped or claims), None)
 
 
-def evidence(record: dict[str, Any]) -> list[str]:
+def evidence(record: EntryRecord) -> list[str]:
     """Counterexample or enumeration, what is left of the step, and whether the conclusion survives."""
-    lines = list(record.get("counterexamples", []))
-    if "detail" in record:
-        lines.insert(0, f"{record['sizes']}: {record['detail']}")
     claim = shown_claim(record)
+    is_refuted = claim is not None and claim["witness"] is not None
+    lines = [f"{record['sizes']}: {record['detail']}"] if "detail" in record else []
+    lines += record.get("counterexamples", [])
     if claim is not None and claim["witness"] is not None:
-        lines += _witness_lines(claim)
-    for weaker in record.get("best_factors", []):
-        if weaker["factor"] == "0":
-            where = "" if weaker["curvature"] is None else f" at curvature {weaker['curvature']}"
-            lines.append(f"no positive factor on the right saves the step{where}")
-            continue
-        best = "and no larger factor (within 1/1000)" if weaker["cannot_exceed_by_1/1000"] else "a valid factor"
-        where = "" if weaker["curvature"] is None else f" at curvature {weaker['curvature']}"
-        lines.append(f"with the factor {weaker['factor']} on the right the step holds{where}, {best}")
-    if record.get("realistic"):
-        lines += _realistic_lines(record["realistic"])
-    elif claim is not None and claim["witness"] is not None and "realistic" in record:
+        lines += _witness_lines(claim, claim["witness"])
+    lines += [_factor_line(best) for best in record.get("best_factors", [])]
+    found = record.get("realistic")
+    if found:
+        lines += _realistic_lines(found)
+    elif is_refuted and "realistic" in record:
         lines.append("not tried on EKF objectives: no roles, numbers that are no values, or many robots")
     if record.get("follows_from"):
         lines.append(f"a direct step that serves the proof: the line follows from {record['follows_from']} (proved)")
@@ -66,8 +71,15 @@ def evidence(record: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _witness_lines(claim: dict[str, Any]) -> list[str]:
-    witness = claim["witness"]
+def _factor_line(best: FactorRecord) -> str:
+    where = "" if best["curvature"] is None else f" at curvature {best['curvature']}"
+    if best["factor"] == "0":
+        return f"no positive factor on the right saves the step{where}"
+    how = "and no larger factor (within 1/1000)" if best["cannot_exceed_by_1/1000"] else "a valid factor"
+    return f"with the factor {best['factor']} on the right the step holds{where}, {how}"
+
+
+def _witness_lines(claim: ClaimRecord, witness: WitnessRecord) -> list[str]:
     lines = [f"smallest counterexample found: {claim['size']}; {claim['scope']}; the claim {claim['claim']}"]
     lines.append(f"fails by {witness['violation']} for the function with values {_values(witness)}")
     if witness["ratt_chooses_the_roles"] is not None:
@@ -78,7 +90,7 @@ def _witness_lines(claim: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _realistic_lines(found: dict[str, Any]) -> list[str]:
+def _realistic_lines(found: RealRecord) -> list[str]:
     """The search on EKF objectives in words."""
     seen, broken = found["section_vi_instances"], found["section_vi_violations"]
     lines = [f"on Section VI scenarios ({found['objective']}): violated in {broken} of {seen} cases it applies to"]
@@ -97,7 +109,7 @@ def _realistic_lines(found: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _values(witness: dict[str, Any]) -> str:
+def _values(witness: WitnessRecord) -> str:
     """The values that the claim and its premises speak of."""
     shown = [f"{name} = {value}" for name, value in witness["values_in_play"].items()]
     if len(shown) > SHOWN_SETS:
@@ -105,7 +117,7 @@ def _values(witness: dict[str, Any]) -> str:
     return f"{', '.join(shown)} (all {len(witness['values'])} values are in audit.json)"
 
 
-def proof_lines(claim: dict[str, Any]) -> list[str]:
+def proof_lines(claim: ClaimRecord) -> list[str]:
     """The printed proof of a claim: multiplier times inequality, one per line; their sum is the claim."""
     lines = []
     for proof in claim["proofs"]:

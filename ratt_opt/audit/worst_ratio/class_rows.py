@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["FunctionClass", "NonDecreasing", "Submodular"]
+__all__ = ["ClassRows", "NonDecreasing", "Submodular"]
 
 ROUNDING = 1e-9
 MOST_ROWS = 3000
@@ -31,7 +31,7 @@ MOST_COMPLETE = 1 << 12
 """Columns up to which all rows of diminishing returns fit in a program from the start (67,584 rows for 4,096)."""
 
 
-class FunctionClass(Protocol):
+class ClassRows(Protocol):
     """Columns for the values of subsets (column 0 is the ratio), and the rows that put them in the class."""
 
     n_columns: int

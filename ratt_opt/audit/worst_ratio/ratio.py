@@ -10,20 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
-from ratt_opt.audit.worst_ratio.class_rows import FunctionClass, NonDecreasing, Submodular
-from ratt_opt.audit.worst_ratio.search import Search
-from ratt_opt.audit.worst_ratio.skeleton import Roles, roles
-from ratt_opt.audit.worst_ratio.witness import PLANNERS, RatioWitness, replay
+from ratt_opt.audit.worst_ratio.class_rows import NonDecreasing, Submodular
+from ratt_opt.audit.worst_ratio.search import RatioSearch
+from ratt_opt.audit.worst_ratio.skeleton import Skeleton, skeleton
+from ratt_opt.audit.worst_ratio.witness import PLANNERS, RatioQuestion, RatioWitness, replay
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.caa import caa
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from ratt_opt.audit.worst_ratio.class_rows import ClassRows
 
-    from ratt_opt._validation import IntArray
-
-__all__ = ["WorstCaseRatio", "pattern_free_bound", "worst_case_ratio"]
+__all__ = ["WorstCaseRatio", "pattern_free_ratio", "worst_case_ratio"]
 
 LARGEST_TEAM = 7
 """Most robots: a witness has ``4**N`` values."""
@@ -95,40 +93,32 @@ def worst_case_ratio(
     Source: the ratio of Theorem 1 (eqn:appro_non_descrease, eqn:appro_submodular); finite by the argument above.
     """
     n_robots = check_integer("n_robots", n_robots, low=1, high=LARGEST_TEAM)
-    alpha_s = _check_sensing(alpha_s, n_robots)
-    alpha_c = check_integer("alpha_c", alpha_c, low=0, high=n_robots * (n_robots - 1) // 2)
-    exact = check_curvature(curvature)
-    for name, value, known in (
-        ("family", family, FAMILIES),
-        ("planner", planner, tuple(PLANNERS)),
-        ("domain", domain, DOMAINS),
-    ):
-        if value not in known:
-            raise InputError(name, f"must be one of {', '.join(known)}", value)
-    if time_limit is not None and not time_limit >= 0:
-        raise InputError("time_limit", "must be None or a number of seconds >= 0", time_limit)
-    n_bait = {"greedy": 0, "myopic": n_robots}.get(planner, min(n_robots, alpha_s + caa(n_robots, alpha_c).alpha_cs))
-    parts = roles(n_robots, alpha_s, alpha_c, n_bait)
-
-    def witness_of(values: IntArray) -> RatioWitness:
-        return RatioWitness(
-            values=values, n_robots=n_robots, alpha_s=alpha_s, alpha_c=alpha_c, curvature=exact,
-            family=family, domain=domain, planner=planner,
-        )  # fmt: skip
-
-    floor = pattern_free_bound(exact, family) if use_theorem else Fraction(0)
-    search = Search(
-        parts, _function_class(parts, exact, family, domain), lambda values: replay(witness_of(values)), floor
+    question = RatioQuestion(
+        n_robots=n_robots,
+        alpha_s=_check_sensing(alpha_s, n_robots),
+        alpha_c=check_integer("alpha_c", alpha_c, low=0, high=n_robots * (n_robots - 1) // 2),
+        curvature=check_curvature(curvature),
+        family=family,
+        domain=domain,
+        planner=planner,
     )
+    _check_names(question)
+    budget = Budget(time_limit)
+    parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
+    floor = pattern_free_ratio(question.curvature, family) if use_theorem else Fraction(0)
+    search = RatioSearch(parts, _class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
+    stop = Stop.EXHAUSTED
     try:
-        stop = Stop.EXHAUSTED if search.run(inf if time_limit is None else time_limit) else Stop.TIME
+        search.run(budget)
+    except OutOfBudget as spent:
+        stop = spent.stop
     except KeyboardInterrupt:
-        stop = Stop.INTERRUPTED
-    return _result(search, stop, witness_of)
+        stop = budget.interrupt()
+    return _result(search, question, stop)
 
 
-def pattern_free_bound(curvature: Fraction, family: str) -> Fraction:
-    """Return ``1 - k`` or ``(1 - c)**2``, which RATT, Greedy and the myopic planner attain at least on any instance.
+def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
+    """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
 
     Proof. Let ``u`` be the plan, ``o`` any plan, ``S`` any set of robots, ``G_i`` the greedy picks before robot ``i``.
     Submodular: the greedy robots in ``S``, in greedy order, give
@@ -137,8 +127,8 @@ def pattern_free_bound(curvature: Fraction, family: str) -> Fraction:
     Non-decreasing: all marginals of ``x`` lie in ``[(1-c) m_x, m_x]``; greedy or bait, ``m_(u_i) >= (1-c) m_(o_i)``;
     so ``phi(u_S) >= (1-c)^2 phi(o_S)``. As ``S`` is any set, it may be the best group of any outcome.
 
-    Neither can be improved for all N: ``tightness.attaining_instance`` attains the first for every ``k < 1``,
-    and the ratios of ``tightness.limit_instance`` tend to the second.
+    Neither can be improved for all N: ``families.attaining_instance`` attains the first for every ``k < 1``,
+    and the ratios of ``families.limit_instance`` tend to the second.
     """
     return 1 - curvature if family == "submodular" else (1 - curvature) ** 2
 
@@ -157,6 +147,17 @@ def check_curvature(value: float | str | Fraction) -> Fraction:
     return number
 
 
+def _check_names(question: RatioQuestion) -> None:
+    choices = (
+        ("family", question.family, FAMILIES),
+        ("planner", question.planner, tuple(PLANNERS)),
+        ("domain", question.domain, DOMAINS),
+    )
+    for name, value, known in choices:
+        if value not in known:
+            raise InputError(name, f"must be one of {', '.join(known)}", value)
+
+
 def _check_sensing(alpha_s: int, n_robots: int) -> int:
     rule = f"must be an integer in [0, {n_robots - 1}] (with every robot blinded the optimum is 0 and no ratio exists)"
     try:
@@ -165,21 +166,19 @@ def _check_sensing(alpha_s: int, n_robots: int) -> int:
         raise InputError("alpha_s", rule, alpha_s) from None
 
 
-def _function_class(parts: Roles, curvature: Fraction, family: str, domain: str) -> FunctionClass:
-    if family == "submodular":
-        return Submodular(parts.n_robots, curvature, domain)
-    groups = sorted({group for outcome in parts.outcomes for group in outcome})
+def _class_rows(parts: Skeleton, question: RatioQuestion) -> ClassRows:
+    if question.family == "submodular":
+        return Submodular(parts.n_robots, question.curvature, question.domain)
     compared = [mask for pair in parts.comparisons for mask in pair]
-    return NonDecreasing(
-        parts.n_robots, curvature, [*compared, *groups, *(group << parts.n_robots for group in groups)]
-    )
+    groups = parts.groups
+    masks = [*compared, *groups, *(group << parts.n_robots for group in groups)]
+    return NonDecreasing(parts.n_robots, question.curvature, masks)
 
 
-def _result(search: Search, stop: Stop, witness_of: Callable[[IntArray], RatioWitness]) -> WorstCaseRatio:
-    n = search.roles.n_robots
-    counts = np.bitwise_count(np.arange(4**n)).astype(np.int64)
+def _result(search: RatioSearch, question: RatioQuestion, stop: Stop) -> WorstCaseRatio:
+    counts = np.bitwise_count(np.arange(4**question.n_robots)).astype(np.int64)
     # The number of elements is in every class, and every plan is optimal for it: ratio 1.
-    witness = witness_of(readonly(counts) if search.table is None else search.table)
+    witness = question.witness(readonly(counts) if search.table is None else search.table)
     lower, upper = search.lower, search.upper
     return WorstCaseRatio(
         lower=_down(lower),

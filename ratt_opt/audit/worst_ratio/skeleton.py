@@ -18,14 +18,14 @@ from ratt_opt.graph.threat import Threat
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["Roles", "roles"]
+__all__ = ["Skeleton", "skeleton"]
 
 Groups = tuple[int, ...]
 """Disjoint robot groups as bit masks, ascending."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Roles:
+class Skeleton:
     """The combinatorial part of a worst-case program.
 
     ``comparisons`` : pairs of subsets (larger, smaller) that the planner's choices order
@@ -39,9 +39,14 @@ class Roles:
     outcomes: tuple[Groups, ...]
     attacks: tuple[Groups, ...]
 
+    @property
+    def groups(self) -> list[int]:
+        """Every group of an outcome, ascending."""
+        return sorted({group for outcome in self.outcomes for group in outcome})
 
-def roles(n_robots: int, alpha_s: int, alpha_c: int, n_bait: int) -> Roles:
-    """Return the roles for a team on the complete graph whose planner uses ``n_bait`` bait robots."""
+
+def skeleton(n_robots: int, alpha_s: int, alpha_c: int, n_bait: int) -> Skeleton:
+    """Return the skeleton for a team on the complete graph whose planner uses ``n_bait`` bait robots."""
     threat = Threat(CommunicationGraph.complete(n_robots), alpha_s, alpha_c)
     outcomes = tuple(
         tuple(sorted(sum(1 << i for i in group) for group in outcome)) for outcome in non_dominated_outcomes(threat)
@@ -49,7 +54,7 @@ def roles(n_robots: int, alpha_s: int, alpha_c: int, n_bait: int) -> Roles:
     orbits: dict[tuple[tuple[int, int], ...], Groups] = {}
     for outcome in outcomes:
         orbits.setdefault(_orbit(outcome, n_bait), outcome)
-    return Roles(
+    return Skeleton(
         n_robots=n_robots,
         n_bait=n_bait,
         comparisons=tuple(dict.fromkeys(_comparisons(n_robots, n_bait))),

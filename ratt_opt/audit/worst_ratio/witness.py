@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 from typing import TYPE_CHECKING
@@ -12,6 +12,7 @@ import numpy as np
 from ratt_opt._validation import IntArray, readonly
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.errors import ProofError
+from ratt_opt.graph.caa import caa
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.solvers.baselines import greedy, myopic
@@ -21,7 +22,7 @@ from ratt_opt.solvers.ratt import ratt
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-__all__ = ["PLANNERS", "RatioWitness", "replay", "scaled_values"]
+__all__ = ["PLANNERS", "RatioQuestion", "RatioWitness", "replay", "scaled_values"]
 
 PLANNERS: dict[str, Callable[[Problem], Plan]] = {"ratt": ratt, "myopic": myopic, "greedy": greedy}
 
@@ -30,7 +31,35 @@ LARGEST_VALUE = 2**52
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RatioWitness:
+class RatioQuestion:
+    """Whose worst ratio is asked for: a planner on N robots of the complete graph, a threat, a class of functions.
+
+    ``family`` : ``"submodular"`` or ``"nondecreasing"``; ``domain`` : what ``curvature`` is over, ``"elements"`` or
+    ``"feasible"`` sets; ``planner`` : a name of ``PLANNERS``.
+    """
+
+    n_robots: int
+    alpha_s: int
+    alpha_c: int
+    curvature: Fraction
+    family: str
+    domain: str = "elements"
+    planner: str = "ratt"
+
+    @property
+    def n_bait(self) -> int:
+        """Bait robots of the planner."""
+        alpha = self.alpha_s + caa(self.n_robots, self.alpha_c).alpha_cs
+        return {"greedy": 0, "myopic": self.n_robots}.get(self.planner, min(self.n_robots, alpha))
+
+    def witness(self, values: IntArray) -> RatioWitness:
+        """An instance of this question: (4**N,) values by bit mask."""
+        fields = {field: getattr(self, field) for field in RatioQuestion.__slots__}
+        return RatioWitness(values=values, **fields)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RatioWitness(RatioQuestion):
     """A set function on 2N elements, two per robot, with the threat and the planner it is bad for.
 
     ``values`` : (4**N,) integers, ``values[mask]`` the value of the subset ``mask``. Element ``i`` is the planner's
@@ -38,14 +67,16 @@ class RatioWitness:
     normalised function; integers make every comparison of the replay exact.
     """
 
-    values: IntArray
-    n_robots: int
-    alpha_s: int
-    alpha_c: int
-    curvature: Fraction
-    family: str
-    domain: str
-    planner: str
+    values: IntArray = field(repr=False)
+
+    def _key(self) -> tuple[object, ...]:
+        return (*(getattr(self, name) for name in RatioQuestion.__slots__), self.values.tobytes())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, RatioWitness) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
 
     def problem(self) -> Problem:
         """Return the instance, on the complete graph, for any planner and attacker of the library."""
