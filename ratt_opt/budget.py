@@ -58,6 +58,22 @@ class Budget:
         if self.time_limit is not None and not (isinstance(self.time_limit, (int, float)) and self.time_limit >= 0):
             raise InputError("time_limit", "must be a number of seconds >= 0", self.time_limit)
 
+    @classmethod
+    def inside(cls, outer: Budget | None, time_limit: float | None = None, max_nodes: int | None = None) -> Budget:
+        """These limits, and the seconds and interrupts of ``outer`` where one is given.
+
+        Raises
+        ------
+        InputError : as for a budget of its own.
+        """
+        inner = cls(time_limit, max_nodes)
+        if outer is not None:
+            inner._interrupt = outer._interrupt
+            if outer.time_limit is not None:
+                left = outer.seconds_left
+                inner.time_limit = left if time_limit is None else min(time_limit, left)
+        return inner
+
     @property
     def elapsed(self) -> float:
         """Seconds since the budget was made."""
@@ -100,10 +116,8 @@ class Budget:
 
         An interrupt of either is an interrupt of both.
         """
-        seconds = None if self.time_limit is None else min(max(share * self.seconds_left, at_least), self.seconds_left)
-        inner = Budget(seconds, max_nodes)
-        inner._interrupt = self._interrupt
-        return inner
+        left = self.seconds_left
+        return Budget.inside(self, None if self.time_limit is None else max(share * left, at_least), max_nodes)
 
     def interrupt(self) -> Stop:
         """Note that the user interrupted; returns the reason to stop with."""

@@ -1,9 +1,16 @@
-"""Seeded random instances shared by the tests."""
+"""Random instances shared by the tests: built once, drawn from NumPy's generators (seeded loops) or by Hypothesis.
+
+Every builder takes ``rng``. A seeded loop passes ``np.random.default_rng(seed)``; the strategies at the end pass
+:class:`Drawn`, which answers the same calls with Hypothesis draws, so that a failure shrinks: to fewer robots, fewer
+elements and small round numbers, where equal elements, useless robots and rank-one information are the rule.
+"""
 
 from __future__ import annotations
 
 import networkx as nx
 import numpy as np
+from hypothesis import settings
+from hypothesis import strategies as st
 
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
@@ -96,3 +103,77 @@ def random_problem(rng, n_robots=None, *, kind=None, protect=True, complete=None
 def random_elements(rng, problem):
     """A random plan."""
     return np.array([rng.choice(choice) for choice in problem.choices])
+
+
+SEEDED = settings(max_examples=60, deadline=None, derandomize=True)
+"""Settings of the drawn tests in the quick suite: the same examples in every run."""
+
+
+class Drawn:
+    """The calls of ``numpy.random.Generator`` that the builders use, answered by Hypothesis.
+
+    Real numbers are quarters of small integers: they shrink towards zero, add up exactly and tie often.
+    """
+
+    def __init__(self, draw):
+        self._draw = draw
+
+    def _array(self, size, one):
+        shape = (size,) if isinstance(size, int) else tuple(size)
+        return np.array([one() for _ in range(int(np.prod(shape)))]).reshape(shape)
+
+    def integers(self, low, high=None, size=None):
+        low, high = (0, low) if high is None else (low, high)
+        one = st.integers(int(low), int(high) - 1)
+        return self._draw(one) if size is None else self._array(size, lambda: self._draw(one))
+
+    def random(self, size=None):
+        one = st.integers(0, 15).map(lambda k: k / 16)
+        return self._draw(one) if size is None else self._array(size, lambda: self._draw(one))
+
+    def uniform(self, low=0.0, high=1.0, size=None):
+        return low + (high - low) * self.random(size)
+
+    def normal(self, size=None):
+        one = st.integers(-6, 6).map(lambda k: k / 4)
+        return self._draw(one) if size is None else self._array(size, lambda: self._draw(one))
+
+    def choice(self, options, size=None, p=None):  # noqa: ARG002  (shrinking matters here, not how often)
+        one = st.sampled_from(list(options))
+        return self._draw(one) if size is None else self._array(size, lambda: self._draw(one))
+
+    def permutation(self, items):
+        return np.array(self._draw(st.permutations(list(range(items)) if isinstance(items, int) else list(items))))
+
+
+@st.composite
+def drawn(draw, builder, *args, **options):
+    """Whatever ``builder(rng, ...)`` makes."""
+    return builder(Drawn(draw), *args, **options)
+
+
+def problems(n_robots=None, **options):
+    """Problems as :func:`random_problem` makes them."""
+    return drawn(random_problem, n_robots, **options)
+
+
+def graphs(n_robots):
+    """Graphs on ``0..n_robots-1``."""
+    return drawn(random_graph, n_robots)
+
+
+def monotone_tables(n):
+    """Values of normalised non-decreasing set functions of ``n`` elements, with ties."""
+    return drawn(monotone_table, n)
+
+
+def objectives(n_elements, kind=None):
+    """Objectives over ``n_elements``."""
+    return drawn(random_objective, n_elements, kind)
+
+
+@st.composite
+def problems_with_plans(draw, n_robots=None, **options):
+    """A problem and a plan for it."""
+    problem = draw(problems(n_robots, **options))
+    return problem, random_elements(Drawn(draw), problem)

@@ -72,7 +72,7 @@ def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None,
     Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof is by patterns and leaves some out.
     """
     alpha_cs = check_integer("alpha_cs", alpha_cs, low=0)
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     keep = 1 - value
     if kind == "k":
         bound = keep if all_bait else min(keep / (1 + value), keep / max(alpha_cs, 1))
@@ -90,7 +90,7 @@ def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
 
     Source: ratt.tex, Remark 1.
     """
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     return Guarantee(
         1 - value if kind == "k" else (1 - value) ** 2, _needs(kind, "the myopic plan"), "ratt.tex, Remark 1"
     )
@@ -105,7 +105,7 @@ def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
 
     Source: Tzoumas, Jadbabaie, Pappas 2018, Theorem 1, as ratt.tex quotes it after its Theorem 2.
     """
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     bound = (1 - value) / (1 + value) if kind == "k" else (1 - value) ** 3
     needs = (*_needs(kind, "RATT's plan"), "no link attacks (alpha_c = 0)")
     return Guarantee(bound, needs, "Tzoumas et al. 2018, Theorem 1")
@@ -136,7 +136,7 @@ def pattern_free_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
 
     Source: this library. The bound ``1-k`` is attained (N = 4, alpha_s = 0, alpha_c = 3, k = 0.3).
     """
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     bound = 1 - value if kind == "k" else (1 - value) ** 2
     return Guarantee(
         bound, _needs(kind, "each robot is bait or chosen greedily"), "pattern-free bound (proof in its docstring)"
@@ -161,7 +161,7 @@ def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = Non
     Source: this library.
     """
     g = check_integer("size", size, low=1)
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     keep = 1 - value
     if kind == "k":
         bound = (1 + (g - 1) * keep) / g
@@ -212,7 +212,7 @@ def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
     return found
 
 
-def _one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
+def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
     if (k is None) == (c is None):
         raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
     name, given = ("k", k) if k is not None else ("c", c)
