@@ -19,7 +19,7 @@ from ratt_opt.audit.engine.polynomial import ONE, ZERO, Polynomial, T, constant
 from ratt_opt.audit.engine.proof import Proof, ProofStep, check_proof
 from ratt_opt.audit.engine.rationals import solve_exactly
 from ratt_opt.errors import ProofError
-from ratt_opt.highs import LinearProgram, rows_of
+from ratt_opt.highs import LinearProgram, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -105,17 +105,19 @@ def _entries(expression: Linear, degree: int, power: int, curvature: Fraction | 
 
 
 def _claimed_multipliers(columns: Sequence[_Column], target: Entries) -> FloatArray | None:
-    rows: dict[tuple[Key, int], tuple[list[int], list[float]]] = {}
-    for j, column in enumerate(columns):
-        for name, value in column.entries.items():
-            places, values = rows.setdefault(name, ([], []))
-            places.append(j)
-            values.append(float(value))
+    rows = {name: i for i, name in enumerate(dict.fromkeys(name for column in columns for name in column.entries))}
     if any(name not in rows for name in target):
         return None
     right = np.array([float(target.get(name, 0)) for name in rows])
-    program = LinearProgram(np.ones(len(columns)), rows=rows_of(list(rows.values()), right, right))
-    claimed = program.solve(SECONDS)
+    matrix = Rows(
+        lower=right,
+        upper=right,
+        starts=np.cumsum([0, *(len(column.entries) for column in columns)]),
+        columns=np.array([rows[name] for column in columns for name in column.entries], dtype=np.int64),
+        values=np.array([float(value) for column in columns for value in column.entries.values()]),
+        by_columns=True,
+    )
+    claimed = LinearProgram(np.ones(len(columns)), rows=matrix).solve(SECONDS)
     return claimed.x if claimed.is_optimal else None
 
 
