@@ -19,6 +19,7 @@ from ratt_opt.audit.engine.decide import Verdict, decide
 from ratt_opt.audit.worst_ratio.families import attaining_instance, limit_instance, limit_ratio
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import replay
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -93,6 +94,8 @@ def _attained() -> Counted:
     """N = 4, three links cut: one robot is isolated."""
     k = Fraction(3, 10)
     found = worst_case_ratio(4, 0, 3, curvature=k, family="submodular")
+    if found.stop is Stop.INTERRUPTED:
+        raise KeyboardInterrupt
     fine = found.exact_upper == 1 - k
     detail = f"exact worst ratio {found.exact_upper} at k = {k}, replayed through the library"
     return Counted(

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
         WorstRecord,
     )
 
-__all__ = ["entry_record"]
+__all__ = ["entry_record", "real_record"]
 
 ENUMERATED = "exhaustive enumeration"
 BY_CONE = "linear programming over the set-function cone, re-checked exactly"
@@ -50,7 +50,7 @@ def entry_record(decided: DecidedEntry) -> EntryRecord:
     record["claims"] = [_claim(claim) for claim in decided.claims]
     if remains is not None:
         record["best_factors"] = _factors(remains.factors)
-        record["realistic"] = None if remains.real is None else _real(remains.real)
+        record["realistic"] = None if remains.real is None else real_record(remains.real)
         if remains.has_detours:
             record["follows_from"] = remains.follows_from
     record["seconds"] = decided.seconds
@@ -126,7 +126,8 @@ def _factors(found: Iterable[BestFactor]) -> list[FactorRecord]:
     ]
 
 
-def _real(found: RealSearch) -> RealRecord:
+def real_record(found: RealSearch) -> RealRecord:
+    """What trying an entry on EKF objectives found, complete: the worst instance can be replayed from it."""
     return {
         "objective": found.objective,
         "section_vi_instances": found.applied,

@@ -18,6 +18,7 @@ from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.solvers.baselines import greedy, myopic
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import ratt
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -104,11 +105,13 @@ def replay(witness: RatioWitness) -> Fraction:
     check_class(witness)
     problem = witness.problem()
     plan = PLANNERS[witness.planner](problem)
-    value = worst_case_attack(problem, plan.elements).upper
+    attack = worst_case_attack(problem, plan.elements)
+    if attack.stop is Stop.INTERRUPTED:
+        raise KeyboardInterrupt  # whoever asked keeps a bracket of its own; this one is not exact
     optimum = exhaustive_optimum(problem).lower
     if optimum <= 0:
         raise ProofError("witness: the optimum must be positive")
-    return Fraction(int(value), int(optimum))
+    return Fraction(int(attack.upper), int(optimum))
 
 
 def check_class(witness: RatioWitness) -> None:

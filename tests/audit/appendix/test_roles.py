@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ratt_opt.audit.appendix.roles import Team, optimum, worst_for
+from ratt_opt.audit.appendix.roles import Side, Team, optimum, worst_for
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.solvers.ratt import bait_and_greedy
@@ -66,7 +66,7 @@ def test_ratt_s_choices_satisfy_every_premise(seed: int) -> None:
 
 def test_worst_attack_premises_say_that_the_attack_leaves_the_least() -> None:
     team = Team(("b1",), ("g1",))
-    premises = worst_for(team, team.robots, ("g1",), plan="chosen")
+    premises = worst_for(team, team.robots, ("g1",), side=Side.RATT)
     assert [p.expression for p in premises] == [team.f(["g1"]) - team.f(["b1"])]
-    premises = worst_for(team, team.robots, ("g1",), plan="compared")
+    premises = worst_for(team, team.robots, ("g1",), side=Side.OPTIMUM)
     assert [p.expression for p in premises] == [team.f(["o(g1)"]) - team.f(["o(b1)"])]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ratt_opt.audit.engine.polynomial import ONE, Polynomial, T, constant
 
 coefficients = st.lists(st.fractions(min_value=-3, max_value=3, max_denominator=7), max_size=5)
-polynomials = coefficients.map(lambda values: Polynomial(tuple(values)))
+polynomials = coefficients.map(Polynomial)
 points = st.fractions(min_value=0, max_value=1, max_denominator=11)
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from ratt_opt.audit.appendix.entry import Reference
 from ratt_opt.audit.ledger import all_entries, run_audit
 from ratt_opt.audit.report.findings import findings
 from ratt_opt.audit.report.html_page import html_report
@@ -83,10 +84,11 @@ def test_both_reports_carry_the_summary_escaped() -> None:
 
 def test_every_entry_named_as_survivor_or_stand_in_exists() -> None:
     entries = list(all_entries())
-    names = {f"{e.label}/{e.kind}" for e in entries} | {f"{e.label}/{e.kind}/{e.reading}" for e in entries}
+    names = {name for entry in entries for name in entry.names}
     for entry in entries:
         for name in (entry.survives_by, entry.serves_by):
-            assert not name or name in names, f"{entry.label} names {name}"
+            assert name is None or name in names, f"{entry.label} names {name}"
+            assert name is None or Reference.parse(str(name)) == name
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from fractions import Fraction
 
@@ -9,8 +10,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, Problem, ProofError, Stop, TableFunction, exhaustive_optimum, ratt, worst_case_attack
-from ratt_opt.audit.worst_ratio.program import Program, Row, solve_square
-from ratt_opt.audit.worst_ratio.ratio import pattern_free_bound, worst_case_ratio
+from ratt_opt.audit.enumeration.tightness import tightness_entries
+from ratt_opt.audit.worst_ratio import witness
+from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio, worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import replay
 
 
@@ -69,7 +71,7 @@ def test_every_small_case_closes(planner, family):
                     n_robots, alpha_s, alpha_c, curvature="2/5", family=family, planner=planner, use_theorem=False
                 )
                 assert result.stop is Stop.CLOSED
-                assert result.exact_lower >= pattern_free_bound(Fraction(2, 5), family)
+                assert result.exact_lower >= pattern_free_ratio(Fraction(2, 5), family)
                 assert replay(result.witness) == result.exact_upper
 
 
@@ -131,29 +133,6 @@ def test_a_supermodular_table_is_not_submodular():
         replay(replace(witness, values=squared))
 
 
-def test_wrong_multipliers_prove_nothing():
-    program = Program(2)
-    program.add([Row({0: Fraction(1), 1: Fraction(-1)}), Row({1: Fraction(1)}, Fraction(1))])
-    claimed = program.solve(10.0)
-    assert program.proved_bound(claimed) == 1
-    claimed.y[:] = [5.0, 5.0]
-    assert program.proved_bound(claimed) == 1, "the basis still gives the right ones"
-    wrong = replace(claimed, basic_columns=(1,), tight_rows=(1,))
-    assert program._check_multipliers(program._basic_multipliers(wrong)) != 1
-
-
-def test_square_systems_are_solved_exactly():
-    rng = np.random.default_rng(3)
-    size = 12
-    matrix = rng.integers(-2, 3, (size, size)) + 5 * np.eye(size, dtype=np.int64)
-    solution = [Fraction(int(a), int(b)) for a, b in rng.integers(1, 9, (size, 2))]
-    entries = [(i, j, Fraction(int(matrix[i, j]))) for i in range(size) for j in range(size)]
-    right = [sum((Fraction(int(matrix[i, j])) * solution[j] for j in range(size)), Fraction(0)) for i in range(size)]
-    assert solve_square(entries, right, size) == solution
-    assert solve_square([(0, 0, Fraction(1)), (1, 0, Fraction(1))], [Fraction(1), Fraction(2)], 2) == [0, 0]
-    assert solve_square([(0, 0, Fraction(1))], [Fraction(1)], 2) == [0, 0]
-
-
 @pytest.mark.slow
 def test_five_robots_close_where_rounded_multipliers_prove_nothing():
     result = worst_case_ratio(5, 0, 7, curvature=0.5, family="submodular")
@@ -180,3 +159,23 @@ def test_bad_input(arguments, fault):
     call = {"n_robots": 3, "alpha_s": 0, "alpha_c": 0, "curvature": 0.3, "family": "submodular", **arguments}
     with pytest.raises(InputError, match=fault):
         worst_case_ratio(call.pop("n_robots"), call.pop("alpha_s"), call.pop("alpha_c"), **call)
+
+
+def test_an_interrupt_within_the_replay_stops_the_search_and_keeps_the_bracket(monkeypatch):
+    """The attacker keeps its own bracket when interrupted: it must not be taken for a worst case."""
+    interrupted = replace(
+        worst_case_attack(Problem(TableFunction([0, 1]), [0], None, 0, 0), [0]), stop=Stop.INTERRUPTED
+    )
+    monkeypatch.setattr(witness, "worst_case_attack", lambda *_: interrupted)
+    result = worst_case_ratio(3, 1, 0, curvature=0.5, family="submodular")
+    assert result.stop is Stop.INTERRUPTED
+    assert result.exact_lower <= Fraction(5, 8) <= result.exact_upper
+    with pytest.raises(KeyboardInterrupt):
+        next(entry for entry in tightness_entries() if entry.label.endswith("_n4")).enumerate_cases()
+
+
+def test_results_are_values():
+    result = worst_case_ratio(3, 1, 0, curvature=0.5, family="submodular")
+    assert pickle.loads(pickle.dumps(result)) == result
+    assert result != replace(result, witness=replace(result.witness, values=result.witness.values * 2))
+    assert len(repr(result)) < 500

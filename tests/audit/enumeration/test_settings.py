@@ -6,21 +6,14 @@ import pytest
 
 from ratt_opt.audit.appendix.dominance import SETTINGS
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.group_claims import arrangement_entries
-from ratt_opt.audit.enumeration.setting import (
-    Budgets,
-    arrangements,
-    caa_split,
-    counted,
-    cut_size,
-    is_pattern1,
-    is_pattern2,
-)
-from ratt_opt.audit.enumeration.size_claims import count_entries
-from ratt_opt.audit.enumeration.smallest_teams import first_occurrence, occurrence_entries
+from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries
+from ratt_opt.audit.enumeration.arrangements import arrangements, caa_groups, is_pattern1, is_pattern2, splits
+from ratt_opt.audit.enumeration.setting import Setting, counted
+from ratt_opt.audit.enumeration.size_claims import size_entries
+from ratt_opt.audit.enumeration.smallest_teams import first_occurrence, smallest_team_entries
 
-SIZES = {entry.label: entry for entry in count_entries()}
-OCCURS = {entry.label: entry for entry in occurrence_entries()}
+SIZES = {entry.label: entry for entry in size_entries()}
+OCCURS = {entry.label: entry for entry in smallest_team_entries()}
 
 
 def test_a_printed_size_that_fails_has_a_repair_that_holds() -> None:
@@ -29,7 +22,7 @@ def test_a_printed_size_that_fails_has_a_repair_that_holds() -> None:
     assert refuted == {"nd_p1d3v1_sizes", "nd_p1d3v1_4_counts", "sub_p2d1v1_sizes", "bound_defined"}
     for label in refuted - {"bound_defined"}:
         assert verdicts[f"{label}_repaired"] is Verdict.PROVED
-        assert SIZES[label].serves_by == f"{label}_repaired/claim"
+        assert str(SIZES[label].serves_by) == f"{label}_repaired/claim"
 
 
 @pytest.mark.parametrize(
@@ -58,18 +51,19 @@ def test_what_never_occurs_is_refuted() -> None:
 
 
 def test_an_enumeration_of_nothing_proves_nothing() -> None:
-    assert counted([], "none", 0, "items").verdict is Verdict.UNDECIDED
+    assert counted([], "none", "items").verdict is Verdict.UNDECIDED
 
 
 def test_the_example_of_the_figures_by_hand() -> None:
     """N = 10, alpha_s = 2, alpha_c = 29: n_max = 5, so 7 baits; CAA's groups (5, 5) cut 25 links."""
-    budgets = Budgets(10, 2, 29)
-    assert (budgets.n_max, budgets.alpha_cs, budgets.alpha) == (5, 5, 7)
-    assert caa_split(10, 5) == (5, 5)
-    assert cut_size((5, 5)) == 25
-    assert set(arrangements(budgets)) == {((5, 0), (2, 3)), ((4, 1), (3, 2))}
-    assert is_pattern1(((5, 0), (2, 3)), budgets)
-    assert is_pattern2(((4, 1), (3, 2)), budgets)
+    setting = Setting(10, 2, 29)
+    assert (setting.n_max, setting.alpha_cs, setting.alpha, setting.n_greedy) == (5, 5, 7, 3)
+    assert caa_groups(10, 29) == (5, 5)
+    assert (5, 5) in splits(10, 25, 5)
+    assert splits(10, 24, 5) == []
+    assert set(arrangements(setting)) == {((5, 0), (2, 3)), ((4, 1), (3, 2))}
+    assert is_pattern1(((5, 0), (2, 3)), setting)
+    assert is_pattern2(((4, 1), (3, 2)), setting)
 
 
 def test_patterns_do_not_cover_all_arrangements() -> None:

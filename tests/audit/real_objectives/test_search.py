@@ -11,18 +11,19 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, MaxEigenvalueObjective, TraceObjective, exhaustive_optimum, random_scenario, ratt
-from ratt_opt.audit.appendix.entry import Entry
+from ratt_opt.audit.appendix.entry import ClaimEntry
 from ratt_opt.audit.appendix.roles import Team
 from ratt_opt.audit.ledger import all_entries
 from ratt_opt.audit.real_objectives.cast import Cast, Stage, is_castable
 from ratt_opt.audit.real_objectives.exact_criteria import ExactCriterion
-from ratt_opt.audit.real_objectives.search import Finding, exact_violation, realistic_search
+from ratt_opt.audit.real_objectives.search import Origin, Trial, exact_violation, search_real_objectives
+from ratt_opt.audit.report.records import real_record
 from ratt_opt.scenario.model import Scenario
 
-ENTRIES = [entry for entry in all_entries() if isinstance(entry, Entry)]
+ENTRIES = [entry for entry in all_entries() if isinstance(entry, ClaimEntry)]
 
 
-def find(label: str, kind: str, reading: str = "") -> Entry:
+def find(label: str, kind: str, reading: str = "") -> ClaimEntry:
     return next(e for e in ENTRIES if e.label == label and e.kind == kind and e.reading.startswith(reading))
 
 
@@ -63,34 +64,35 @@ def test_a_cast_is_ratt_s_plan_and_the_optimum(seed: int) -> None:
 
 
 def test_proved_claims_hold_and_refuted_ones_fail_on_real_objectives() -> None:
-    proved = realistic_search(find("nd_p1d1v1_7", "step").claims, refuted=False)
+    proved = search_real_objectives(find("nd_p1d1v1_7", "step").claims, refuted=False)
     assert proved is not None
-    assert proved["section_vi_violations"] == 0
-    refuted = realistic_search(find("nd_p1d1v1_8", "step", "A* hurts RATT").claims, refuted=False)
+    assert proved.broken == 0
+    assert not proved.violated_exactly
+    refuted = search_real_objectives(find("nd_p1d1v1_8", "step", "A* hurts RATT").claims, refuted=False)
     assert refuted is not None
-    worst = refuted["worst"]
-    assert isinstance(worst, dict)
-    assert worst["violated_exactly"]
-    assert 0 < worst["relative_violation"] < 1
+    assert refuted.worst is not None
+    assert refuted.violated_exactly
+    assert 0 < refuted.worst.violation < 1
 
 
 def test_the_worst_instance_replays_from_its_record_alone() -> None:
     entry = find("nd_p1d1v1_8", "step", "A* hurts RATT")
-    result = realistic_search(entry.claims, refuted=False)
+    result = search_real_objectives(entry.claims, refuted=False)
     assert result is not None
-    record = json.loads(json.dumps(result))["worst"]
+    assert result.worst is not None
+    record = json.loads(json.dumps(real_record(result)))["worst"]
     sized = next(s for s in entry.claims if s.size == record["claim"])
-    finding = Finding(
+    trial = Trial(
         violation=record["relative_violation"],
         sized=sized,
         scenario=Scenario.model_validate_json(json.dumps(record["scenario"])),
-        origin=record["origin"],
+        origin=result.worst.origin,
         players=tuple(record["elements"].values()),
     )
-    exact = exact_violation(finding)
+    exact = exact_violation(trial)
     assert exact > 0
     assert sized.team is not None
-    swapped = replace(finding, players=finding.players[::-1])
+    swapped = replace(trial, players=trial.players[::-1])
     assert exact_violation(swapped) is None, "elements in the wrong roles meet no premise"
 
 
@@ -108,9 +110,15 @@ def test_claims_without_roles_or_with_other_numbers_are_not_cast() -> None:
     assert not is_castable(lemma.claim, lemma.team)
     summary = find("nd_p1_d1", "step").claims[0]
     assert not is_castable(summary.claim, summary.team)
-    assert realistic_search([lemma, summary], refuted=True) is None
+    assert search_real_objectives([lemma, summary], refuted=True) is None
 
 
 def test_the_search_is_reproducible() -> None:
     claims = find("nd_p1d2v1_4", "step as equality").claims[:2]
-    assert realistic_search(claims, refuted=True) == realistic_search(claims, refuted=True)
+    assert search_real_objectives(claims, refuted=True) == search_real_objectives(claims, refuted=True)
+
+
+def test_an_origin_says_how_to_build_the_scenario_again() -> None:
+    assert str(Origin(3, 7)) == "random_scenario(3, 3, alpha_s=0, alpha_c=0, seed=7)"
+    assert str(Origin(3, 7, 2)) == f"{Origin(3, 7)}, then moved at random (step 2 of default_rng(0))"
+    assert str(Origin(3, 0, 2, has_start=False)).startswith("random_scenario seed 0, then moved")

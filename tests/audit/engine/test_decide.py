@@ -11,9 +11,10 @@ import pytest
 from ratt_opt.audit.appendix.roles import Team
 from ratt_opt.audit.engine.claim import Claim, FunctionClass, Ground, Inequality, Linear
 from ratt_opt.audit.engine.cone import Elementary, elementary, elementary_keys
+from ratt_opt.audit.engine.counterexample import check_class, check_witness
 from ratt_opt.audit.engine.decide import Decision, Verdict, decide
 from ratt_opt.audit.engine.polynomial import ONE, T, constant
-from ratt_opt.audit.engine.proof import ProofStep, check_class, check_proof, check_witness
+from ratt_opt.audit.engine.proof import ProofStep, check_proof
 from ratt_opt.audit.engine.prover import find_proof
 from ratt_opt.audit.engine.refuter import find_witness
 from ratt_opt.errors import ProofError
@@ -27,7 +28,7 @@ def f(*names: str) -> Linear:
 
 
 def claim(kind: FunctionClass, conclusion: Linear, *premises: Inequality) -> Claim:
-    return Claim(kind=kind, ground=ABC, premises=premises, conclusion=conclusion)
+    return Claim(function_class=kind, ground=ABC, premises=premises, conclusion=conclusion)
 
 
 SUBADDITIVE = f("a") + f("b") + f("c") - f("a", "b", "c")
@@ -80,7 +81,7 @@ def greedy_claim(factor: Fraction) -> Claim:
     team = Team((), ("g1", "g2"))
     conclusion = team.chosen(team.greedy) - team.compared(team.greedy) * constant(factor)
     kind = FunctionClass.SUBMODULAR
-    return Claim(kind=kind, ground=team.ground, premises=team.premises, conclusion=conclusion)
+    return team.claim(kind, conclusion)
 
 
 def test_greedy_keeps_half_and_no_more_for_every_submodular_function() -> None:
@@ -158,7 +159,7 @@ def test_the_checker_rejects_inequalities_that_are_not_the_class_s(key: Elementa
 
 def test_the_checker_rejects_infeasible_sets_in_a_proof_that_claims_feasible_ones() -> None:
     ground = Ground(("a", "b"), (0, 0))
-    question = Claim(kind=ANY, ground=ground, conclusion=Linear.of(3) - Linear.of(1))
+    question = Claim(function_class=ANY, ground=ground, conclusion=Linear.of(3) - Linear.of(1))
     proof = find_proof(question, feasible=False)
     assert proof is not None
     with pytest.raises(ProofError, match="two elements of one robot"):
