@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import KEPT, ONE_PLUS_K, Factor, one_group
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.factor import KEPT, ONE_PLUS_K, Factor
-from ratt_opt.audit.appendix.groups import one_group
 from ratt_opt.audit.appendix.roles import Side, attacks_on, team_of, worst_for
 from ratt_opt.audit.engine.claim import Claim, FunctionClass, Ground, Linear
 from ratt_opt.audit.engine.polynomial import ONE, T
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
 __all__ = ["lemmas"]
 
@@ -35,76 +34,50 @@ class _Values:
     others: Linear
 
 
+_lemma = partial(ClaimEntry, kind=EntryKind.LEMMA, chain="lemmas")
+_of_the_class = partial(_lemma, hypotheses="the class alone")
+
+
 def lemmas() -> Iterator[ClaimEntry]:
     """Yield the cited lemmas and the remarks on the classes, in the order in which the proof meets them."""
-    yield from _of_the_class()
+    yield from _about_the_class()
     for label, kind, factor, text in (
         ("sviridenko2017_theorem8_1", ND, KEPT, "greedy keeps 1-c of any plan"),
         ("conforti1984_theorem2_3", SUB, Factor(ONE, ONE_PLUS_K), "greedy keeps 1/(1+k) of any plan (the formula)"),
         ("conforti1984_in_words", SUB, KEPT, "greedy keeps 1-k of any plan (the words)"),
     ):
-        claims = one_group(kind, partial(_whatever_size, factor), all_bait=False, largest=LARGEST_GREEDY)
-        yield _lemma(label, text, claims, "all robots greedy, in greedy order")
+        claims = tuple(one_group(kind, [factor] * LARGEST_GREEDY, all_bait=False))
+        yield _lemma(label=label, statement=text, claims=claims, hypotheses="all robots greedy, in greedy order")
     for side, reading in ((Side.RATT, "A* hurts RATT's plan most"), (Side.OPTIMUM, "A* hurts the optimum most")):
         yield _lemma(
-            "tzoumas2018_lemma9",
-            "f(u* on W) >= f(u* on V1\\A*) for the |V1|-|A*| greedy robots W (Lemma 9 as used)",
-            _lemma9(side),
-            "bait and greedy roles",
+            label="tzoumas2018_lemma9",
+            statement="f(u* on W) >= f(u* on V1\\A*) for the |V1|-|A*| greedy robots W (Lemma 9 as used)",
+            claims=tuple(_lemma9(side)),
+            hypotheses="bait and greedy roles",
             reading=reading,
             survives_by=LEMMA9_IN_USE,
             serves_by=LEMMA9_IN_USE,
         )
-    yield _lemma("curvature_is_total_curvature", "for submodular f, c <= k", _marginals(), "the class alone")
+    text = "for submodular f, c <= k"
+    yield _of_the_class(label="curvature_is_total_curvature", statement=text, claims=tuple(_marginals()))
 
 
-def _whatever_size(factor: Factor, _size: int) -> Factor:
-    return factor
-
-
-def _lemma(
-    label: str,
-    statement: str,
-    claims: Iterable[SizedClaim],
-    hypotheses: str,
-    *,
-    reading: str = "",
-    survives_by: Reference | None = None,
-    serves_by: Reference | None = None,
-) -> ClaimEntry:
-    return ClaimEntry(
-        label=label,
-        kind=EntryKind.LEMMA,
-        chain="lemmas",
-        statement=statement,
-        hypotheses=hypotheses,
-        claims=tuple(claims),
-        reading=reading,
-        survives_by=survives_by,
-        serves_by=serves_by,
-    )
-
-
-def _of_the_class() -> Iterator[ClaimEntry]:
+def _about_the_class() -> Iterator[ClaimEntry]:
+    parts = "f(X) + f(Y) >= {}f(X and Y) for disjoint X, Y"
+    weak = f"{parts.format('(1-c) ')}: what is left of the subadditivity used"
     rows: tuple[tuple[str, FunctionClass, str, Callable[[_Values], Linear]], ...] = (
         ("tzoumas2018_lemma4", ND, "f(S) >= (1-c) sum of f(s)", lambda f: f.whole - f.alone * T),
         ("tzoumas2018_corollary1", ND, "sum of f(s) >= (1-c) f(S)", lambda f: f.alone - f.whole * T),
         ("tzoumas2018_lemma2", SUB, "f(S) >= (1-k) sum of f(s)", lambda f: f.whole - f.alone * T),
         ("submodular_subadditive", SUB, "sum of f(s) >= f(S)", lambda f: f.alone - f.whole),
-        (
-            WEAK_SUBADDITIVITY.label,
-            ND,
-            "f(X) + f(Y) >= (1-c) f(X and Y) for disjoint X, Y: what is left of the subadditivity used",
-            lambda f: f.first + f.others - f.whole * T,
-        ),
+        (WEAK_SUBADDITIVITY.label, ND, weak, lambda f: f.first + f.others - f.whole * T),
     )
     for label, kind, text, conclusion in rows:
-        yield _lemma(label, text, _sizes(kind, conclusion), "the class alone")
-    yield _lemma(
-        "subadditivity_as_used",
-        "f(X) + f(Y) >= f(X and Y) for disjoint X, Y and a non-decreasing f",
-        _sizes(ND, lambda f: f.first + f.others - f.whole),
-        "the class alone",
+        yield _of_the_class(label=label, statement=text, claims=tuple(_sizes(kind, conclusion)))
+    yield _of_the_class(
+        label="subadditivity_as_used",
+        statement=f"{parts.format('')} and a non-decreasing f",
+        claims=tuple(_sizes(ND, lambda f: f.first + f.others - f.whole)),
         survives_by=Reference("nd_p1d2v1_9", EntryKind.CUMULATIVE),
         serves_by=WEAK_SUBADDITIVITY,
     )

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import T2, T3
 from ratt_opt.audit.appendix.chain import Case, Chain, Line
-from ratt_opt.audit.appendix.factor import T2, T3
 from ratt_opt.audit.appendix.roles import Team, attacks_on, optimum, team_of, whose_worst
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.polynomial import T
@@ -65,10 +65,7 @@ def _case_d1(team: Team, attacked: Robots) -> Case:
         Line(">=", team.chosen(greedy) * T2, "(1-c)^2 f(u on V1g)"),
         Line(">=", team.compared(greedy) * T3, "(1-c)^3 f(u* on V1g)"),
         Line(
-            ">=",
-            team.compared(left) * T3,
-            "(1-c)^3 f(u* on V1\\A*)",
-            readings=whose_worst(team, team.robots, attacked),
+            ">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=whose_worst(team, team.robots, attacked)
         ),
     )
     return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines)
@@ -113,11 +110,7 @@ def _none_attacked() -> Iterator[Case]:
             Line("=", (team.singles(b) + team.singles(g)) * T, "(1-c) [sum over baits + sum over greedy robots]"),
             Line("=", swapped * T, "(1-c) [sum of f(u*_i) over baits + sum over greedy]"),
             Line(">=", (team.compared(b) + team.chosen(g)) * T2, "(1-c)^2 [f(u* on V1b) + f(u on V1g)]"),
-            Line(
-                ">=",
-                team.compared(b) * T2 + team.compared(g) * T3,
-                "(1-c)^2 f(u* on V1b) + (1-c)^3 f(u* on V1g)",
-            ),
+            Line(">=", team.compared(b) * T2 + team.compared(g) * T3, "(1-c)^2 f(u* on V1b) + (1-c)^3 f(u* on V1g)"),
             Line(">=", both * T3, "(1-c)^3 [f(u* on V1b) + f(u* on V1g)]"),
             Line(">=", cubed, "(1-c)^3 f(u* on V1): subadditivity of a non-decreasing f"),
             Line("=", cubed, "the same (A* empty)"),
@@ -150,10 +143,7 @@ def _case_d3(team: Team, attacked: Robots) -> Case:
         Line(">=", (a + b) * T3, "(1-c)^3 [f(u* on V1b1) + f(u* on V1g)]"),
         Line(">=", whole * T3, "(1-c)^3 f(u* on V1b1 and V1g): subadditivity of a non-decreasing f"),
         Line(
-            ">=",
-            team.compared(left) * T3,
-            "(1-c)^3 f(u* on V1\\A*)",
-            readings=whose_worst(team, team.robots, attacked),
+            ">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=whose_worst(team, team.robots, attacked)
         ),
     )
     return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines)

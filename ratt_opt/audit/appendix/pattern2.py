@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import T2, T3
 from ratt_opt.audit.appendix.chain import Case, Chain, Line
-from ratt_opt.audit.appendix.factor import T2, T3
 from ratt_opt.audit.appendix.pattern1 import ROLES
 from ratt_opt.audit.appendix.roles import Team, optimum, own_best, team_of, whose_worst
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality

@@ -8,8 +8,8 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import ONE_PLUS_K
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.factor import ONE_PLUS_K
 from ratt_opt.audit.appendix.pattern2 import beside_v2
 from ratt_opt.audit.appendix.roles import Side, attacks_on, team_of, worst_for
 from ratt_opt.audit.appendix.submodular import GROUP

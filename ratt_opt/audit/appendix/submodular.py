@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import ONE_PLUS_K
 from ratt_opt.audit.appendix.chain import Case, Chain, Line
-from ratt_opt.audit.appendix.factor import ONE_PLUS_K
 from ratt_opt.audit.appendix.pattern2 import beside_v2, few_baits_chain, x1_text
 from ratt_opt.audit.appendix.roles import Team, attacks_on, optimum, team_of, whose_worst
 from ratt_opt.audit.engine.claim import FunctionClass

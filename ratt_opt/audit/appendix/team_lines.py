@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.factor import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor
 from ratt_opt.audit.appendix.roles import Team
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
 from ratt_opt.audit.engine.polynomial import T, constant
@@ -136,10 +136,7 @@ def _overall(label: str, bound: _Bound, groupings: Sequence[_Grouping]) -> Itera
     same = team.claim(kind, part, (Inequality("the bound of the part", part),))
     step = (SizedClaim(size="each part", robots=len(team.robots), claim=same),)
     again = tuple(claim for grouping in groupings for claim in _claims(kind, grouping, PLAN, is_step=False))
-    for form, claims, origin in (
-        (STEP, step, "Distributions 1 to 3"),
-        (CUMULATIVE, again, "RATT's choices alone"),
-    ):
+    for form, claims, origin in ((STEP, step, "Distributions 1 to 3"), (CUMULATIVE, again, "RATT's choices alone")):
         yield ClaimEntry(
             label=label,
             kind=form,

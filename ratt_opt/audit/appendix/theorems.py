@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group, one_group
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.factor import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor
-from ratt_opt.audit.appendix.groups import every_group, one_group
 from ratt_opt.audit.appendix.team_lines import OPT, TEAM
 from ratt_opt.audit.engine.claim import Claim, FunctionClass, Ground, Inequality
 from ratt_opt.audit.engine.polynomial import ONE, T, constant
@@ -29,34 +30,44 @@ LARGEST_TEAM = 5
 """Robots in play in a group of any pattern: with six the sets of a claim are 4,096."""
 
 
+SURVIVING = "f(u on S) >= {} f(u* on S)"
+_theorem = partial(ClaimEntry, kind=EntryKind.THEOREM, chain="theorems")
+
+
 def closing_lines() -> Iterator[ClaimEntry]:
     """Yield nd1, nd2, nd, sub2 and sub: the cumulative claims, and the steps that are linear."""
     every_nd = tuple(every_group(ND, CUBED, largest=LARGEST_TEAM))
     every_sub = tuple(every_group(SUB, KEPT_OVER_ONE_PLUS_K, largest=LARGEST_TEAM))
+    nd, sub = SURVIVING.format("(1-c)^3"), SURVIVING.format("(1-k)/(1+k)")
     yield from _all_bait("nd2", "f(u) >= (1-c)^2 f(u*) in every group", ND, SQUARED)
-    text = "f(u on S) >= (1-c)^3 f(u* on S), which gives min[(1-c)^3, (1-c)^2/alpha_cs] for the team"
     for label in ("nd1", "nd"):
-        yield _entry(label, CUMULATIVE, text, every_nd, GROUPS)
-    given = "the bounds of Patterns 1 and 2 and of the patterns left out"
+        text = f"{nd}, which gives min[(1-c)^3, (1-c)^2/alpha_cs] for the team"
+        yield _line(label, CUMULATIVE, text, every_nd, GROUPS)
     parts = {"Pattern 1": CUBED, "Pattern 2": CUBED, "any other pattern": CUBED}
-    yield _entry("nd1", STEP, "all patterns together", _joined(ND, parts), given, reading="with the omitted patterns")
-    text = "in every other pattern too, f(u on S) >= (1-c)^3 f(u* on S): 'the same approximation bound or a better one'"
-    yield _entry("nd_other_patterns", CLAIM, text, every_nd, GROUPS)
+    given = "the bounds of Patterns 1 and 2 and of the patterns left out"
+    joined = _line("nd1", STEP, "all patterns together", _joined(ND, parts), given)
+    yield replace(joined, reading="with the omitted patterns")
+    text = f"in every other pattern too, {nd}: 'the same approximation bound or a better one'"
+    yield _line("nd_other_patterns", EntryKind.CLAIM, text, every_nd, GROUPS)
     yield from _all_bait("sub2", "f(u) >= (1-k) f(u*) in every group", SUB, KEPT)
-    text = "in every other pattern and distribution too, f(u on S) >= (1-k)/(1+k) f(u* on S)"
-    yield _entry("sub_other_patterns", CLAIM, text, every_sub, GROUPS)
-    text = "f(u on S) >= (1-k)/(1+k) f(u* on S), which gives min[(1-k)/(1+k), (1-k)/alpha_cs] for the team"
-    yield _entry("sub", CUMULATIVE, text, every_sub, GROUPS)
+    text = f"in every other pattern and distribution too, {sub}"
+    yield _line("sub_other_patterns", EntryKind.CLAIM, text, every_sub, GROUPS)
+    text = f"{sub}, which gives min[(1-k)/(1+k), (1-k)/alpha_cs] for the team"
+    yield _line("sub", CUMULATIVE, text, every_sub, GROUPS)
     given = "the bounds of N > alpha and N <= alpha"
     for label, kind, more, fewer in (("nd", ND, CUBED, SQUARED), ("sub", SUB, KEPT_OVER_ONE_PLUS_K, KEPT)):
-        parts = {"N > alpha": more, "N <= alpha": fewer}
-        yield _entry(label, STEP, "both cases together", _joined(kind, parts), given)
+        claims = _joined(kind, {"N > alpha": more, "N <= alpha": fewer})
+        yield _line(label, STEP, "both cases together", claims, given)
+
+
+def _line(label: str, kind: EntryKind, text: str, claims: Iterable[SizedClaim], given: str) -> ClaimEntry:
+    return ClaimEntry(label=label, kind=kind, chain=label, statement=text, hypotheses=given, claims=tuple(claims))
 
 
 def _all_bait(label: str, text: str, function_class: FunctionClass, factor: Factor) -> Iterator[ClaimEntry]:
-    claims = tuple(one_group(function_class, lambda _: factor, all_bait=True, largest=LARGEST_GROUP))
+    claims = tuple(one_group(function_class, [factor] * LARGEST_GROUP, all_bait=True))
     for kind in (STEP, CUMULATIVE):
-        yield _entry(label, kind, text, claims, "every robot is bait (N <= alpha)")
+        yield _line(label, kind, text, claims, "every robot is bait (N <= alpha)")
 
 
 def _joined(function_class: FunctionClass, parts: dict[str, Factor]) -> Iterator[SizedClaim]:
@@ -71,34 +82,28 @@ def _joined(function_class: FunctionClass, parts: dict[str, Factor]) -> Iterator
 
 def theorems() -> Iterator[ClaimEntry]:
     """Yield Theorem 1, the pattern-free theorem, and the better bounds of groups of baits."""
-    first = "Theorem 1: at least (1-c)^3 >= min[(1-c)^3, (1-c)^2/alpha_cs]"
-    second = "Theorem 1: at least (1-k)/(1+k) >= min[(1-k)/(1+k), (1-k)/alpha_cs]"
-    for label, kind, factor, text in (
-        (THEOREM1.label, ND, CUBED, first),
-        (THEOREM1_SUB.label, SUB, KEPT_OVER_ONE_PLUS_K, second),
-        (PATTERN_FREE_ND.label, ND, SQUARED, "pattern-free: at least (1-c)^2 of the optimum"),
-        (PATTERN_FREE_SUB.label, SUB, KEPT, "pattern-free: at least 1-k of the optimum"),
+    for name, kind, factor, text in (
+        (THEOREM1, ND, CUBED, "Theorem 1: at least (1-c)^3 >= min[(1-c)^3, (1-c)^2/alpha_cs]"),
+        (
+            THEOREM1_SUB,
+            SUB,
+            KEPT_OVER_ONE_PLUS_K,
+            "Theorem 1: at least (1-k)/(1+k) >= min[(1-k)/(1+k), (1-k)/alpha_cs]",
+        ),
+        (PATTERN_FREE_ND, ND, SQUARED, "pattern-free: at least (1-c)^2 of the optimum"),
+        (PATTERN_FREE_SUB, SUB, KEPT, "pattern-free: at least 1-k of the optimum"),
     ):
         statement = f"{text}: f(u on S) >= factor f(o on S) for every S and every plan o"
-        yield _entry(
-            label,
-            EntryKind.THEOREM,
-            statement,
-            every_group(kind, factor, largest=LARGEST_TEAM),
-            GROUPS,
-            chain="theorems",
-        )
-    for label, kind, better, text in (
-        ("all_bait_sub", SUB, _better_sub, "an all-bait group of g robots keeps (1+(g-1)(1-k))/g of the optimum"),
-        (
-            "all_bait_nd",
-            ND,
-            _better_nd,
-            "an all-bait group of g robots keeps (1+(g-1)(1-c))/(1+(g-1)/(1-c)) of the optimum",
-        ),
+        claims = tuple(every_group(kind, factor, largest=LARGEST_TEAM))
+        yield _theorem(label=name.label, statement=statement, claims=claims, hypotheses=GROUPS)
+    sizes = range(1, LARGEST_GROUP + 1)
+    for label, kind, better, share in (
+        ("all_bait_sub", SUB, map(_better_sub, sizes), "(1+(g-1)(1-k))/g"),
+        ("all_bait_nd", ND, map(_better_nd, sizes), "(1+(g-1)(1-c))/(1+(g-1)/(1-c))"),
     ):
-        claims = one_group(kind, better, all_bait=True, largest=LARGEST_GROUP)
-        yield _entry(label, EntryKind.THEOREM, text, claims, "all surviving robots are bait", chain="theorems")
+        text = f"an all-bait group of g robots keeps {share} of the optimum"
+        kept = one_group(kind, [*better], all_bait=True)
+        yield _theorem(label=label, statement=text, claims=tuple(kept), hypotheses="all surviving robots are bait")
 
 
 def _better_sub(size: int) -> Factor:
@@ -107,24 +112,3 @@ def _better_sub(size: int) -> Factor:
 
 def _better_nd(size: int) -> Factor:
     return Factor((ONE + constant(size - 1) * T) * T, T + constant(size - 1))
-
-
-def _entry(
-    label: str,
-    kind: EntryKind,
-    statement: str,
-    claims: Iterable[SizedClaim],
-    hypotheses: str,
-    *,
-    chain: str = "",
-    reading: str = "",
-) -> ClaimEntry:
-    return ClaimEntry(
-        label=label,
-        kind=kind,
-        chain=chain or label,
-        statement=statement,
-        hypotheses=hypotheses,
-        claims=tuple(claims),
-        reading=reading,
-    )

@@ -11,19 +11,12 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind, EnumeratedEntry, Reference
 from ratt_opt.audit.appendix.theorems import THEOREM1
-from ratt_opt.audit.enumeration.arrangements import (
-    arrangements,
-    caa_groups,
-    is_pattern1,
-    is_pattern2,
-    splits,
-    text_of,
-)
+from ratt_opt.audit.enumeration.arrangements import arrangements, caa_groups, is_pattern1, is_pattern2, splits, text_of
 from ratt_opt.audit.enumeration.setting import LARGEST, Setting, counted, every_link_budget, every_setting
 from ratt_opt.graph.caa import caa
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from ratt_opt.audit.appendix.entry import Counted
     from ratt_opt.audit.enumeration.arrangements import Arrangement
@@ -38,53 +31,40 @@ LARGEST_FOR_VALUES = 5
 """Robots whose values 1 to 3 are packed in groups in every way: with six it takes 20 times as long."""
 
 
+CAA_IS_EXACT = Reference("caa_largest_group", CLAIM)
+_claim = partial(EnumeratedEntry, kind=CLAIM, chain="patterns", hypotheses="RATT's and CAA's definitions")
+
+
 def arrangement_entries() -> Iterator[EnumeratedEntry]:
     """Yield the claims about groups, patterns and distributions."""
+    text = "CAA's n_max is the smallest possible largest group"
+    yield _claim(label=CAA_IS_EXACT.label, statement=text, enumerate_cases=_caa_is_exact)
+    of_caa = partial(_claim, survives_by=THEOREM1, serves_by=CAA_IS_EXACT)
+    text = "a worst link attack leaves groups of the sizes CAA computes"
+    yield of_caa(label="caa_determines_groups", statement=text, enumerate_cases=_caa_sizes_are_worst)
+    text = "CAA's q_n and r_n give the number of groups left"
+    yield of_caa(label="caa_counts_groups", statement=text, enumerate_cases=_caa_counts_groups)
+    for pattern in (1, 2):
+        text, run = f"the example of Pattern {pattern} is consistent", partial(_figure, pattern - 1)
+        yield _claim(label=f"fig:p{pattern}_3d", statement=text, enumerate_cases=run)
     cover = "every arrangement is Pattern 1 or Pattern 2"
-    spread = "Distributions 1 to 3 of Pattern 2 cover every sensing attack (with at least one of alpha_s^1 in V1)"
-    exact = Reference("caa_largest_group", CLAIM)
-    yield _entry(exact.label, "CAA's n_max is the smallest possible largest group", _caa_is_exact)
-    for label, statement, run in (
-        ("caa_determines_groups", "a worst link attack leaves groups of the sizes CAA computes", _caa_sizes_are_worst),
-        ("caa_counts_groups", "CAA's q_n and r_n give the number of groups left", _caa_counts_groups),
-    ):
-        yield _entry(label, statement, run, survives_by=THEOREM1, serves_by=exact)
-    yield _entry("fig:p1_3d", "the example of Pattern 1 is consistent", partial(_figure, 0))
-    yield _entry("fig:p2_3d", "the example of Pattern 2 is consistent", partial(_figure, 1))
-    yield _entry("patterns_cover", cover, _patterns_cover, survives_by=ALL_PATTERNS, serves_by=OTHERS)
-    yield _entry(
-        "nd1",
-        f"the bound holds for all arrangements, as {cover}",
-        _patterns_cover,
+    of_patterns = partial(
+        EnumeratedEntry,
+        chain="patterns",
+        hypotheses="RATT's and CAA's definitions",
+        enumerate_cases=_patterns_cover,
         survives_by=ALL_PATTERNS,
         serves_by=OTHERS,
-        kind=EntryKind.STEP,
-        reading="from Patterns 1 and 2 alone",
     )
-    survives = Reference("nd_p2", EntryKind.CUMULATIVE)
-    yield _entry("pattern2_distributions_cover", spread, _distributions, survives_by=survives, serves_by=OTHERS)
-
-
-def _entry(
-    label: str,
-    statement: str,
-    run: Callable[[], Counted],
-    *,
-    survives_by: Reference | None = None,
-    serves_by: Reference | None = None,
-    kind: EntryKind = CLAIM,
-    reading: str = "",
-) -> EnumeratedEntry:
-    return EnumeratedEntry(
-        label=label,
-        kind=kind,
-        chain="patterns",
-        statement=statement,
-        hypotheses="RATT's and CAA's definitions",
-        enumerate_cases=run,
-        reading=reading,
-        survives_by=survives_by,
-        serves_by=serves_by,
+    yield of_patterns(label="patterns_cover", kind=CLAIM, statement=cover)
+    text, reading = f"the bound holds for all arrangements, as {cover}", "from Patterns 1 and 2 alone"
+    yield of_patterns(label="nd1", kind=EntryKind.STEP, statement=text, reading=reading)
+    yield _claim(
+        label="pattern2_distributions_cover",
+        statement="Distributions 1 to 3 of Pattern 2 cover every sensing attack (with at least one of alpha_s^1 in V1)",
+        enumerate_cases=_distributions,
+        survives_by=Reference("nd_p2", EntryKind.CUMULATIVE),
+        serves_by=OTHERS,
     )
 
 

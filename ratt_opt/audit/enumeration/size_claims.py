@@ -26,66 +26,50 @@ MANY_BAITS = Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE)
 LARGEST_FOR_BOUND = 5
 
 
+_claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="sizes", hypotheses="RATT's and CAA's definitions")
+
+
 def size_entries() -> Iterator[EnumeratedEntry]:
     """Yield the claims about sizes; a claim that fails as printed is followed by its repair."""
-    yield _claim("pattern1_sizes", "|V1| = n_max when V1 has alpha_s baits and all greedy robots", _pattern1_size)
-    yield _claim("pattern2_sizes", "|V1| = n_max gives |V1b| = alpha_s + |V2g| and |V2| <= alpha_cs", _pattern2_sizes)
-    yield _claim("nd_p1d1v1_4_counts", "as many baits survive as greedy robots are blinded", _blinded_balance)
+    for label, statement, check in (
+        ("pattern1_sizes", "|V1| = n_max when V1 has alpha_s baits and all greedy robots", _pattern1_size),
+        ("pattern2_sizes", "|V1| = n_max gives |V1b| = alpha_s + |V2g| and |V2| <= alpha_cs", _pattern2_sizes),
+        ("nd_p1d1v1_4_counts", "as many baits survive as greedy robots are blinded", _blinded_balance),
+    ):
+        yield _claim(label=label, statement=statement, enumerate_cases=partial(_all_settings, check))
     yield from _repaired(
+        PART_ATTACKED,
         ("nd_p1d3v1_sizes", "|V1b1| = alpha - alpha_s^1", _safe_baits),
         ("|V1b1| = alpha_s - alpha_s^1 (repaired)", _safe_baits_repaired),
-        PART_ATTACKED,
     )
     yield from _repaired(
+        PART_ATTACKED,
         ("nd_p1d3v1_4_counts", "|V1b1\\A*| = number of blinded greedy robots (printed)", _wrong_balance),
         ("|V1b2\\A*| = number of blinded greedy robots (repaired)", _right_balance),
-        PART_ATTACKED,
     )
     yield from _repaired(
+        MANY_BAITS,
         ("sub_p2d1v1_sizes", "|V1b1| = alpha - alpha_s^1 in Pattern 2'", _safe_baits_submodular),
         ("|V1b1| = |V2g| in Pattern 2' (repaired)", _safe_baits_submodular_repaired),
-        MANY_BAITS,
     )
-    defined = "Theorem 1's bound is defined for every budget (alpha_cs > 0)"
-    yield _entry("bound_defined", defined, _no_division_by_zero, PATTERN_FREE_ND, PATTERN_FREE_ND)
+    yield _claim(
+        label="bound_defined",
+        statement="Theorem 1's bound is defined for every budget (alpha_cs > 0)",
+        enumerate_cases=_no_division_by_zero,
+        survives_by=PATTERN_FREE_ND,
+        serves_by=PATTERN_FREE_ND,
+    )
 
 
 def _repaired(
-    printed: tuple[str, str, Check], repair: tuple[str, Check], survives_by: Reference
+    survives_by: Reference, printed: tuple[str, str, Check], repair: tuple[str, Check]
 ) -> Iterator[EnumeratedEntry]:
     """The claim as printed, with its label, and its repair, which serves in its place."""
-    label = f"{printed[0]}_repaired"
-    yield _claim(*printed, survives_by, Reference(label, EntryKind.CLAIM))
-    yield _claim(label, *repair)
-
-
-def _claim(
-    label: str,
-    statement: str,
-    check: Check,
-    survives_by: Reference | None = None,
-    serves_by: Reference | None = None,
-) -> EnumeratedEntry:
-    return _entry(label, statement, partial(_all_settings, check), survives_by, serves_by)
-
-
-def _entry(
-    label: str,
-    statement: str,
-    run: Callable[[], Counted],
-    survives_by: Reference | None,
-    serves_by: Reference | None,
-) -> EnumeratedEntry:
-    return EnumeratedEntry(
-        label=label,
-        kind=EntryKind.CLAIM,
-        chain="sizes",
-        statement=statement,
-        hypotheses="RATT's and CAA's definitions",
-        enumerate_cases=run,
-        survives_by=survives_by,
-        serves_by=serves_by,
-    )
+    (label, statement, check), (repaired, check_repaired) = printed, repair
+    name = Reference(f"{label}_repaired", EntryKind.CLAIM)
+    run = partial(_all_settings, check)
+    yield _claim(label=label, statement=statement, enumerate_cases=run, survives_by=survives_by, serves_by=name)
+    yield _claim(label=name.label, statement=repaired, enumerate_cases=partial(_all_settings, check_repaired))
 
 
 def _all_settings(check: Check) -> Counted:

@@ -39,33 +39,25 @@ class Situation:
         return f"{self.setting.text()}; groups {groups}; V1 is group {self.v1 + 1}, V2 group {self.v2 + 1}"
 
 
+_claim = partial(
+    EnumeratedEntry,
+    kind=EntryKind.CLAIM,
+    chain="smallest teams",
+    hypotheses="N > alpha, alpha_s >= 1, CAA's own groups",
+)
+
+
 def smallest_team_entries() -> Iterator[EnumeratedEntry]:
     """Yield one entry a pattern and distribution, and one for each dominance claim."""
     where = {1: "all blinded robots in V1", 2: "all of them outside V1 (Pattern 2: in V2)", 3: "in V1 and elsewhere"}
-    for pattern in (1, 2):
-        for distribution, text in where.items():
-            yield _entry(
-                f"nd_p{pattern}d{distribution}_occurs",
-                f"Pattern {pattern}, Distribution {distribution} occurs: {text}",
-                partial(_is_distribution, pattern, distribution),
-            )
+    for pattern, distribution in product((1, 2), where):
+        text = f"Pattern {pattern}, Distribution {distribution} occurs: {where[distribution]}"
+        run = partial(first_occurrence, partial(_is_distribution, pattern, distribution))
+        yield _claim(label=f"nd_p{pattern}d{distribution}_occurs", statement=text, enumerate_cases=run)
     for distribution in (2, 3):
-        yield _entry(
-            f"nd_p2d{distribution}v2_dominance_occurs",
-            f"Pattern 2, Distribution {distribution}: two or more robots of V2 survive, all of them greedy",
-            partial(_is_dominance, distribution),
-        )
-
-
-def _entry(label: str, statement: str, occurs: Callable[[Situation], bool]) -> EnumeratedEntry:
-    return EnumeratedEntry(
-        label=label,
-        kind=EntryKind.CLAIM,
-        chain="smallest teams",
-        statement=statement,
-        hypotheses="N > alpha, alpha_s >= 1, CAA's own groups",
-        enumerate_cases=partial(first_occurrence, occurs),
-    )
+        text = f"Pattern 2, Distribution {distribution}: two or more robots of V2 survive, all of them greedy"
+        run = partial(first_occurrence, partial(_is_dominance, distribution))
+        yield _claim(label=f"nd_p2d{distribution}v2_dominance_occurs", statement=text, enumerate_cases=run)
 
 
 def first_occurrence(occurs: Callable[[Situation], bool]) -> Counted:

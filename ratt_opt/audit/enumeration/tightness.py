@@ -11,9 +11,8 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.appendix.bounds import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
-from ratt_opt.audit.appendix.factor import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor
-from ratt_opt.audit.appendix.groups import every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
 from ratt_opt.audit.worst_ratio.families import attaining_instance, limit_instance, limit_ratio
@@ -22,7 +21,7 @@ from ratt_opt.audit.worst_ratio.witness import replay
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
 __all__ = ["tightness_entries"]
 
@@ -33,40 +32,29 @@ ATTAINED = tuple((size, Fraction(*k)) for size, k in ((2, (1, 4)), (2, (1, 2)), 
 """Sizes m and curvatures k."""
 
 
+SUB_TIGHT, ND_TIGHT = (Reference(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
+_claim = partial(
+    EnumeratedEntry,
+    kind=EntryKind.CLAIM,
+    chain="tightness",
+    hypotheses="all set functions of the class, complete graph",
+)
+
+
 def tightness_entries() -> Iterator[EnumeratedEntry]:
     """Yield whether each bound is attained or approached."""
-    total, submodular = FunctionClass.TOTAL_CURVATURE, FunctionClass.CURVATURE
-    sub, nd = (Reference(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
-    yield _entry(
-        "theorem1_nd_tight",
-        "some instance with 0 < c < 1 attains Theorem 1's bound min[(1-c)^3, (1-c)^2/alpha_cs]",
-        partial(_exceeded, total, SQUARED, CUBED),
-        nd,
-    )
-    yield _entry(
-        "theorem1_sub_tight",
-        "some instance with 0 < k < 1 attains Theorem 1's bound min[(1-k)/(1+k), (1-k)/alpha_cs]",
-        partial(_exceeded, submodular, KEPT, KEPT_OVER_ONE_PLUS_K),
-        sub,
-    )
+    text = "some instance with 0 < c < 1 attains Theorem 1's bound min[(1-c)^3, (1-c)^2/alpha_cs]"
+    run = partial(_exceeded, FunctionClass.TOTAL_CURVATURE, SQUARED, CUBED)
+    yield _claim(label="theorem1_nd_tight", statement=text, enumerate_cases=run, serves_by=ND_TIGHT)
+    text = "some instance with 0 < k < 1 attains Theorem 1's bound min[(1-k)/(1+k), (1-k)/alpha_cs]"
+    run = partial(_exceeded, FunctionClass.CURVATURE, KEPT, KEPT_OVER_ONE_PLUS_K)
+    yield _claim(label="theorem1_sub_tight", statement=text, enumerate_cases=run, serves_by=SUB_TIGHT)
     text = "for every k < 1 RATT's worst ratio is 1-k exactly once N is large enough: N = 3m with m >= 1/(1-k)"
-    yield _entry(sub.label, text, _attained_by_family)
-    yield _entry(f"{sub.label}_n4", "RATT's worst ratio can be 1-k exactly with four robots", _attained)
-    yield _entry(nd.label, "RATT's worst ratio comes as close to (1-c)^2 as wanted, as N grows", _approached)
-
-
-def _entry(
-    label: str, statement: str, run: Callable[[], Counted], serves_by: Reference | None = None
-) -> EnumeratedEntry:
-    return EnumeratedEntry(
-        label=label,
-        kind=EntryKind.CLAIM,
-        chain="tightness",
-        statement=statement,
-        hypotheses="all set functions of the class, complete graph",
-        enumerate_cases=run,
-        serves_by=serves_by,
-    )
+    yield _claim(label=SUB_TIGHT.label, statement=text, enumerate_cases=_attained_by_family)
+    text = "RATT's worst ratio can be 1-k exactly with four robots"
+    yield _claim(label=f"{SUB_TIGHT.label}_n4", statement=text, enumerate_cases=_attained)
+    text = "RATT's worst ratio comes as close to (1-c)^2 as wanted, as N grows"
+    yield _claim(label=ND_TIGHT.label, statement=text, enumerate_cases=_approached)
 
 
 def _exceeded(function_class: FunctionClass, proved: Factor, printed: Factor) -> Counted:
