@@ -15,7 +15,7 @@ __all__ = ["LARGEST_SQUARE", "fraction", "rational", "solve_exactly", "solve_squ
 LARGEST_SYSTEM = 400
 """Most unknowns of a system that is reduced: a proof or counterexample that needs more is looked for elsewhere."""
 LARGEST_SQUARE = 1_500
-"""Most unknowns of a square system that is solved: this many take a few seconds, and twice as many a minute."""
+"""Most unknowns of a square system that is solved (a few seconds)."""
 
 
 def rational(value: Fraction | int) -> flint.fmpq:

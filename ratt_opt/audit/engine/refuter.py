@@ -32,7 +32,7 @@ DENOMINATORS = (1, 2, 4, 12, 120, 5040, 10**6)
 ACTIVE = 1e-8
 """Rows this close to zero are taken for active at the solver's vertex, ten times within its feasibility tolerance."""
 LARGEST_GROUND = 10
-"""Elements up to which counterexamples are looked for: one more doubles the unknowns (1,024 take about a second)."""
+"""Elements up to which counterexamples are looked for: one more doubles the unknowns (10: 0.9 s; 11: 4 s)."""
 
 
 @dataclass(frozen=True, slots=True)

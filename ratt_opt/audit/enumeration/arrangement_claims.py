@@ -28,7 +28,7 @@ OTHERS = Reference("nd_other_patterns", CLAIM)
 ALL_PATTERNS = Reference("nd1", EntryKind.CUMULATIVE)
 LARGEST_FOR_CAA = 12
 LARGEST_FOR_VALUES = 5
-"""Robots whose values 1 to 3 are packed in groups in every way: with six it takes 20 times as long."""
+"""Robots whose values 1 to 3 are packed in groups in every way: 0.3 s; six take 4.6 s."""
 
 
 CAA_IS_EXACT = Reference("caa_largest_group", CLAIM)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST", "SHOWN_CASES", "Setting", "counted", "every_link_budget", "every_setting"]
 
 LARGEST = 8
-"""Largest team enumerated: no claim that fails first fails above 6, and each robot more takes about twice as long."""
+"""Largest team enumerated: claims that fail do so by N = 4, what occurs does by 7; a robot more takes twice as long."""
 SHOWN_CASES = 3
 """Cases that an entry of the ledger prints."""
 

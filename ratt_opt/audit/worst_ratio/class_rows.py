@@ -26,7 +26,7 @@ __all__ = ["ClassRows", "NonDecreasing", "Submodular"]
 
 ROUNDING = 1e-9
 MOST_ROWS = 3000
-"""Violated class rows added at once, the worst first."""
+"""Violated class rows added at once, the worst first: only submodular functions of seven robots have more in all."""
 MOST_COMPLETE = 1 << 12
 """Columns up to which all rows of diminishing returns fit in a program from the start (67,584 rows for 4,096)."""
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["RatioSearch"]
 
 REACHED = 1 - 1e-9
-"""A group reaches value 1 within the solver's rounding; one taken for more than it is gives an instance that fails."""
+"""A group reaches value 1 within the solver's rounding; an instance's ratio is exact, so nothing rests on this."""
 
 
 @dataclass(frozen=True, slots=True, order=True)

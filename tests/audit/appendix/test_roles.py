@@ -11,18 +11,10 @@ from ratt_opt.audit.appendix.roles import Side, Team, optimum, worst_for
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.solvers.ratt import bait_and_greedy
+from tests.strategies import monotone_table
 
 N_ROBOTS = 3
 CONTROLS = 3
-
-
-def monotone_table(rng: np.random.Generator, n: int) -> np.ndarray:
-    """Each set is worth the most of its subsets one smaller, and a random bit more (ties are common)."""
-    values = np.zeros(1 << n)
-    for mask in range(1, 1 << n):
-        below = [values[mask ^ 1 << e] for e in range(n) if mask >> e & 1]
-        values[mask] = max(below) + rng.integers(0, 4)
-    return values
 
 
 def greedy_order(problem: Problem, plan: np.ndarray, bait: tuple[int, ...]) -> list[int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import networkx as nx
 import numpy as np
 import pytest
 
@@ -11,6 +10,7 @@ from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import ratt
+from tests.strategies import random_graph
 
 
 def coverage(rng: np.random.Generator, n: int) -> np.ndarray:
@@ -29,7 +29,7 @@ def test_ratt_keeps_one_minus_k_of_the_optimum(seed: int) -> None:
     table = coverage(rng, len(owners))
     full = len(table) - 1
     k = max(1 - (table[full] - table[full ^ 1 << e]) / table[1 << e] for e in range(len(owners)))
-    graph = nx.gnp_random_graph(n_robots, 0.8, seed=seed)
+    graph = random_graph(rng, n_robots)
     alpha_s = int(rng.integers(0, n_robots))
     alpha_c = int(rng.integers(0, graph.number_of_edges() + 1))
     problem = Problem(TableFunction(table), owners, graph, alpha_s, alpha_c)
