@@ -120,13 +120,7 @@ def worst_case_ratio(
 def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
     """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
 
-    Proof. Let ``u`` be the plan, ``o`` any plan, ``S`` any set of robots, ``G_i`` the greedy picks before robot ``i``.
-    Submodular: the greedy robots in ``S``, in greedy order, give
-    ``phi(u_Sg) >= sum marg(u_i | G_i) >= sum marg(o_i | G_i) >= (1-k) sum phi(o_i)``; each bait adds at least
-    ``(1-k) phi(u_b) >= (1-k) phi(o_b)``; so ``phi(u_S) >= (1-k) phi(o_S)``.
-    Non-decreasing: all marginals of ``x`` lie in ``[(1-c) m_x, m_x]``; greedy or bait, ``m_(u_i) >= (1-c) m_(o_i)``;
-    so ``phi(u_S) >= (1-c)^2 phi(o_S)``. As ``S`` is any set, it may be the best group of any outcome.
-
+    Proved in ``bounds.guarantees.pattern_free_bound``: its plan is any whose robots are bait or chosen greedily.
     Neither can be improved for all N: ``families.attaining_instance`` attains the first for every ``k < 1``,
     and the ratios of ``families.limit_instance`` tend to the second.
     """
