@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST_FORM", "ONE", "ZERO", "Polynomial", "T", "constant", "power_of", "signed_sum"]
 
 LARGEST_FORM = 8
-"""Degree up to which a form with non-negative coefficients is looked for; the ledger's multipliers need 5 at most."""
+"""Degree up to which a form with non-negative coefficients is looked for; the appendix's chains need 3 at most."""
 
 
 class Polynomial:
