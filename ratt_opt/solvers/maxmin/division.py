@@ -21,9 +21,10 @@ __all__ = ["NEGLIGIBLE", "Division"]
 
 FLAT = 1e-2
 """Mixtures that cost less than this share of the gap in every cut do not explain it; known outcomes that a rounded plan
-falls short in may."""
+falls short in may. 0 and 0.1 take as many nodes in teams of ten."""
 SHORT_OUTCOMES = 16
-"""Outcomes that a rounded plan falls short in most, looked at where mixtures explain nothing."""
+"""Outcomes that a rounded plan falls short in most, looked at where mixtures explain nothing. 4 and 64 take as many
+nodes in teams of ten."""
 NEGLIGIBLE = 1e-12
 """Multipliers below this are left out of a leaf."""
 CUT_OFF = 1e-9

@@ -38,9 +38,12 @@ if TYPE_CHECKING:
 
 __all__ = ["BranchAndBound"]
 
+# Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 STALL = 0.03
-"""A round that closes less than this share of the remaining gap counts as a stall; two stalls end the rounds."""
+"""A round that closes less than this share of the remaining gap is a stall. 0.01 takes 32 nodes, 0.1 takes 30."""
 STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
+"""Stalls that end the rounds: more rounds against more nodes. Elsewhere 1 and 4 take 30 nodes; at the root, whose
+cuts all nodes inherit, 2 take 32 and 40 take 34. Larger teams were not measured."""
 
 
 class BranchAndBound:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["ClosedGroup", "close_group"]
 
 STEPS = 6
-"""Frank-Wolfe steps towards the best mixture of a node."""
+"""Frank-Wolfe steps towards the best mixture of a node. 3 and 12 lead to as many search nodes in teams of ten."""
 LARGEST_PROOF = 300
 """Cuts after which the attempt is given up."""
 

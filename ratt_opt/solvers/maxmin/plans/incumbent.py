@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Incumbent"]
 
 LOCAL_SEARCH_ROUNDS = 50
-"""Rounds of climbing and attacking after which a plan is left as it is; a safeguard, as hardly any needs ten."""
+"""Rounds of climbing and attacking after which a plan is left as it is; in teams of ten 1 takes as many nodes."""
 FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time, spent at once on a first lower bound for a large team."""
 

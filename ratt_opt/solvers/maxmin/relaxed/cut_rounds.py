@@ -18,14 +18,17 @@ if TYPE_CHECKING:
 
 __all__ = ["CUTS_A_ROUND", "CutRounds"]
 
+# Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 CUTS_A_ROUND = 8
+"""Groups cut in one round: fewer rounds against larger programs; 4 take 32 nodes, 16 take 30, in the same time."""
 TARGETS_A_CUT = 4
+"""Targets of one group that get a tangent each (max-eigenvalue); 1 and 8 take 32 nodes, in the same time."""
 PATIENCE = 8
-"""Solves without a multiplier after which a cut leaves the program; it stays stored."""
+"""Solves without a multiplier after which a cut leaves the program; it stays stored. 2 take 34 nodes, 32 take 30."""
 VIOLATED = 1e-10
 """Share of the relaxed level by which a cut has to be lower to count as violated."""
 DEEP = 0.5
-"""Share of the depth of the deepest known cut that a stored one needs to be brought back instead."""
+"""Share of the depth of the deepest known cut that a stored one needs to be brought back; 0 and 0.9 take 30 nodes."""
 
 
 class CutRounds:
