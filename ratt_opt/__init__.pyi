@@ -12,6 +12,7 @@ from .attackers.survey import attack_survey as attack_survey
 from .audit.ledger import Ledger as Ledger, run_audit as run_audit
 from .audit.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
 from .audit.ratio_witness import RatioWitness as RatioWitness
+from .bounds.group_size import group_size_bound as group_size_bound
 from .bounds.guarantees import (
     Guarantee as Guarantee,
     all_bait_group_bound as all_bait_group_bound,
@@ -22,12 +23,11 @@ from .bounds.guarantees import (
     sensing_only_bound as sensing_only_bound,
     theorem1_bound as theorem1_bound,
 )
-from .bounds.group_size import group_size_bound as group_size_bound
 from .bounds.instance import instance_bound as instance_bound
 from .bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
 from .bounds.relaxation import RelaxationBound as RelaxationBound, relaxation_bound as relaxation_bound
-from .certificates.verified import Verified as Verified
-from .certificates.verify import verify_certificate as verify_certificate
+from .certificates.verifier.verified import Verified as Verified
+from .certificates.verifier.verify import verify_certificate as verify_certificate
 from .certificates.write import Certificate as Certificate, certify as certify, problem_document as problem_document
 from .curvatures.curvature import Curvature as Curvature, curvature as curvature, total_curvature as total_curvature
 from .curvatures.ratios import (
@@ -38,7 +38,8 @@ from .curvatures.ratios import (
 )
 from .errors import FileFormatError as FileFormatError, InputError as InputError, ProofError as ProofError
 from .graph.caa import CaaResult as CaaResult, caa as caa
-from .graph.largest_group import LargestGroup as LargestGroup, smallest_largest_group as smallest_largest_group
+from .graph.largest_group.result import LargestGroup as LargestGroup
+from .graph.largest_group.smallest import smallest_largest_group as smallest_largest_group
 from .graph.outcomes import (
     count_outcomes as count_outcomes,
     non_dominated_outcomes as non_dominated_outcomes,
@@ -54,8 +55,8 @@ from .scenario.files import (
     scenario_schema as scenario_schema,
 )
 from .scenario.generator import random_scenario as random_scenario
-from .scenario.model import Robot as Robot, Scenario as Scenario, Target as Target
 from .scenario.information_input import InformationInput as InformationInput
+from .scenario.model import Robot as Robot, Scenario as Scenario, Target as Target
 from .scenario.mrclam import from_mrclam as from_mrclam
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.sensor import Sensor as Sensor
@@ -83,14 +84,10 @@ from .setfunctions.reference import (
 from .setfunctions.sampling import NotFound as NotFound, Violation as Violation
 from .setfunctions.table import TableFunction as TableFunction
 from .setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES, Reference as Reference, reference as reference
-from .solvers.baselines import (
-    greedy as greedy,
-    myopic as myopic,
-    nonrobust_optimum as nonrobust_optimum,
-    random_plan as random_plan,
-)
+from .solvers.baselines import greedy as greedy, myopic as myopic, random_plan as random_plan
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.maxmin.solve import solve_maxmin as solve_maxmin
+from .solvers.nonrobust import nonrobust_optimum as nonrobust_optimum
 from .solvers.ratt import ratt as ratt
 from .solvers.result import MaxMinResult as MaxMinResult
 from .stopping import Stop as Stop
