@@ -128,6 +128,7 @@ class _TableContexts(Sequence[Context]):
     def __getitem__(self, x: int | slice) -> Context | Sequence[Context]:
         if isinstance(x, slice):
             return [self[k] for k in range(*x.indices(len(self)))]
+        x = range(len(self))[x]  # an IndexError past the end, which ends a loop over the contexts
         halves = self._f.values.reshape(-1, 2, 1 << x)
         where = int((self._sign * (halves[:, 1] - halves[:, 0])).argmin())
         low = where & ((1 << x) - 1)

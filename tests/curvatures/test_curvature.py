@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from itertools import product
 
 import numpy as np
@@ -225,6 +226,45 @@ def test_budgets_stop_the_search_and_keep_the_bracket(monkeypatch):
         assert free.lower <= found.upper + 1e-12
     again = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400)
     assert again == free
+
+
+def test_an_outer_budget_gives_its_seconds_and_hears_of_interrupts(monkeypatch):
+    f, owners = section_six()
+    monkeypatch.setattr(LIMIT, 1)
+    monkeypatch.setattr("ratt_opt.curvatures.ratios.LARGEST_ENUMERATION", 1)
+    for measure in (ro.total_curvature, ro.curvature, ro.submodularity_ratio, ro.generalised_curvature):
+        assert measure(f, owners, budget=Budget(0.0)).stop is Stop.TIME
+    outer = Budget()
+    free = ro.total_curvature(f, owners, time_limit=None, max_nodes=30, budget=outer)
+    assert free == ro.total_curvature(f, owners, time_limit=None, max_nodes=30)
+    assert (free.stop, outer.nodes, outer.stop()) == (Stop.NODES, 0, None)
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted)
+    assert ro.total_curvature(f, owners, budget=outer).stop is Stop.INTERRUPTED
+    assert outer.stop() is Stop.INTERRUPTED
+
+
+def test_results_are_values(monkeypatch):
+    f, owners = section_six("maxeig", 3)
+    for limit in (2**24, 1):
+        monkeypatch.setattr(LIMIT, limit)
+        found, again = (ro.total_curvature(f, owners, time_limit=None, max_nodes=50) for _ in range(2))
+        copied = pickle.loads(pickle.dumps(found))
+        assert found == again == copied
+        assert found.marginals == again.marginals == copied.marginals
+        assert found.marginals != ro.curvature(f, owners, time_limit=None, max_nodes=50).marginals
+        assert {type(found.lower), type(found.upper)} == {float}
+        assert {type(e) for e in (found.element, *found.smallest_context, *found.largest_context)} <= {int}
+        assert len(repr(found)) < 250
+        for ratio in (ro.submodularity_ratio(f, owners), ro.generalised_curvature(f, owners)):
+            assert {type(ratio.lower), type(ratio.upper)} == {float}
+            assert pickle.loads(pickle.dumps(ratio)) == ratio
+    monkeypatch.undo()
+    table = ro.total_curvature(ro.TableFunction(monotone_table(np.random.default_rng(1), 4)))
+    assert pickle.loads(pickle.dumps(table)).marginals == table.marginals
 
 
 def test_an_interrupt_returns_the_bracket(monkeypatch):

@@ -28,7 +28,6 @@ class MaxEigenvalueObjective(InformationObjective):
 
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
-    is_worst_axis: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 2
 
     @property
