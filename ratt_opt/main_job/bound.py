@@ -38,8 +38,10 @@ if TYPE_CHECKING:
 __all__ = ["bound"]
 
 ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
-"""Share of the time left that each attack, and each of the later searches, may take. The non-robust
-optimum is a baseline where it is proved in its share."""
+"""Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
+on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
+of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
+bracket, so shares trade strength only; the non-robust optimum is a baseline where it is proved in its share."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
