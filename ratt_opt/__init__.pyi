@@ -12,6 +12,7 @@ from .attackers.survey import attack_survey as attack_survey
 from .audit.ledger import Ledger as Ledger, run_audit as run_audit
 from .audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
 from .audit.worst_ratio.witness import RatioWitness as RatioWitness
+from .bounds.group_size import group_size_bound as group_size_bound
 from .bounds.guarantees import (
     Guarantee as Guarantee,
     all_bait_group_bound as all_bait_group_bound,
@@ -22,7 +23,6 @@ from .bounds.guarantees import (
     sensing_only_bound as sensing_only_bound,
     theorem1_bound as theorem1_bound,
 )
-from .bounds.group_size import group_size_bound as group_size_bound
 from .bounds.instance import instance_bound as instance_bound
 from .bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
 from .bounds.relaxation import RelaxationBound as RelaxationBound, relaxation_bound as relaxation_bound
@@ -55,8 +55,8 @@ from .scenario.files import (
     scenario_schema as scenario_schema,
 )
 from .scenario.generator import random_scenario as random_scenario
-from .scenario.model import Robot as Robot, Scenario as Scenario, Target as Target
 from .scenario.information_input import InformationInput as InformationInput
+from .scenario.model import Robot as Robot, Scenario as Scenario, Target as Target
 from .scenario.mrclam import from_mrclam as from_mrclam
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.sensor import Sensor as Sensor
@@ -84,11 +84,7 @@ from .setfunctions.reference import (
 from .setfunctions.sampling import NotFound as NotFound, Violation as Violation
 from .setfunctions.table import TableFunction as TableFunction
 from .setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES, Reference as Reference, reference as reference
-from .solvers.baselines import (
-    greedy as greedy,
-    myopic as myopic,
-    random_plan as random_plan,
-)
+from .solvers.baselines import greedy as greedy, myopic as myopic, random_plan as random_plan
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.maxmin.solve import solve_maxmin as solve_maxmin
 from .solvers.nonrobust import nonrobust_optimum as nonrobust_optimum
