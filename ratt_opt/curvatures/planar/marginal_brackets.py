@@ -42,10 +42,7 @@ MARGIN = 1e-9
 
 
 class PlanarBrackets(MarginalBrackets):
-    """Two searches an element, one for each marginal, begun when its ratio is the least certain.
-
-    ``against_own`` : the ratio that matters is to ``f({x})``, so the largest marginals are left as they are.
-    """
+    """Two searches an element, one for each marginal, begun when its ratio is the least certain."""
 
     def __init__(
         self,
@@ -57,8 +54,8 @@ class PlanarBrackets(MarginalBrackets):
         budget: Budget,
         against_own: bool,
     ) -> None:
-        super().__init__(single, gap, budget)
-        self._data, self._owners, self._against_own = data, owners, against_own
+        super().__init__(single, gap=gap, budget=budget, against_own=against_own)
+        self._data, self._owners = data, owners
         self._options: dict[int, Options] = {}
         self._highest: dict[int, float] = {}
         self._searches: dict[int, tuple[PlanarSearch, PlanarSearch]] = {}
