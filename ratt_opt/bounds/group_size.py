@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, one_curvature
-from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.survivor_sizes import forced_group_size
 
 if TYPE_CHECKING:
