@@ -29,11 +29,14 @@ if TYPE_CHECKING:
 __all__ = ["PlanarBrackets"]
 
 POOL = 16
-"""Averages of cuts kept for elements not searched yet, for each side."""
+"""Averages of cuts kept for elements not searched yet, for each side: 4, 16, 64 need 748, 732, 708 regions in the same
+time on four instances of 10 robots; each costs a pass over all options."""
 STUCK = 8
-"""Parts bounded on one side before pairs of owners are tried for a better context: they take long."""
+"""Parts bounded on one side before pairs of owners are tried for a better context: they take long.
+4 and 16 change the regions bounded by 2 %."""
 LONG_STUCK = 40
-"""The same for elements whose ratio is more than ``CONTENDER`` times the smallest one seen."""
+"""The same for elements whose ratio is more than ``CONTENDER`` times the smallest one seen; 20 to 80 make no difference
+with 10 robots."""
 CONTENDER = 1.1
 PATIENCE = 20
 """Parts bounded on one side before its number of parts counts against it."""
