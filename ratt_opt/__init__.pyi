@@ -10,8 +10,8 @@ from .attackers.heuristics.random_attack import random_attack as random_attack
 from .attackers.result import AttackResult as AttackResult
 from .attackers.survey import attack_survey as attack_survey
 from .audit.ledger import Ledger as Ledger, run_audit as run_audit
-from .audit.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
-from .audit.ratio_witness import RatioWitness as RatioWitness
+from .audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
+from .audit.worst_ratio.witness import RatioWitness as RatioWitness
 from .bounds.guarantees import (
     Guarantee as Guarantee,
     all_bait_group_bound as all_bait_group_bound,
