@@ -30,11 +30,13 @@ class MarginalBrackets(ABC):
     ----------
     single : (n,) values alone, which every marginal without context attains
     gap : the search stops once the smallest ratio seen is at most ``1 + gap`` times the smallest proved
+    against_own : the ratio that matters is to the value alone, so the largest marginals are left as that
     """
 
-    def __init__(self, single: FloatArray, gap: float, budget: Budget) -> None:
-        self._gap, self._budget = gap, budget
-        self.least, self.most = np.zeros(len(single)), single.copy()
+    def __init__(self, single: FloatArray, *, gap: float, budget: Budget, against_own: bool) -> None:
+        self._gap, self._budget, self._against_own = gap, budget, against_own
+        self.least = np.zeros(len(single))
+        self.most = single.copy() if against_own else np.full(len(single), np.inf)
         self.seen_least, self.seen_most = single.copy(), single.copy()
         self._done: BoolArray = np.zeros(len(single), dtype=np.bool_)
 

@@ -27,15 +27,19 @@ if TYPE_CHECKING:
 __all__ = ["PlanarSearch"]
 
 SLOPES = 4
-"""Most slopes tried for one region."""
+"""Most slopes tried for one region: with 2, a fifth more regions and time; 8 change nothing.
+
+This and what follows: measured on four instances of 10 robots and 15 targets, bracketed within 1.1 and 1.2."""
 SLOPE_SHARE = 0.1
-"""Another slope is tried where it could close more than this share of the gap."""
+"""Another slope is tried where it could close more than this share of the gap; 0.03 to 0.3 do as well within 5 %."""
 NARROWEST = 1e-3
 """Sectors narrower than this are not halved again."""
 LARGEST_LEAF = 2048
-"""Regions with at most this many contexts are enumerated, which takes no longer than a linear program."""
+"""Regions with at most this many contexts are enumerated, which takes no longer than a linear program; with 10 robots
+256 and 8192 change nothing, small teams end sooner."""
 HALVING_SHARE = 0.4
-"""A sector is halved where that could close this share of what its mixture leaves open."""
+"""A sector is halved where that could close this share of what its mixture leaves open; 0.2 and 0.8 need up to 3 % more
+regions."""
 
 
 class PlanarSearch:

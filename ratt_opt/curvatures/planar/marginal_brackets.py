@@ -29,11 +29,14 @@ if TYPE_CHECKING:
 __all__ = ["PlanarBrackets"]
 
 POOL = 16
-"""Averages of cuts kept for elements not searched yet, for each side."""
+"""Averages of cuts kept for elements not searched yet, for each side: 4, 16, 64 need 748, 732, 708 regions in the same
+time on four instances of 10 robots; each costs a pass over all options."""
 STUCK = 8
-"""Parts bounded on one side before pairs of owners are tried for a better context: they take long."""
+"""Parts bounded on one side before pairs of owners are tried for a better context: they take long.
+4 and 16 change the regions bounded by 2 %."""
 LONG_STUCK = 40
-"""The same for elements whose ratio is more than ``CONTENDER`` times the smallest one seen."""
+"""The same for elements whose ratio is more than ``CONTENDER`` times the smallest one seen; 20 to 80 make no difference
+with 10 robots."""
 CONTENDER = 1.1
 PATIENCE = 20
 """Parts bounded on one side before its number of parts counts against it."""
@@ -42,10 +45,7 @@ MARGIN = 1e-9
 
 
 class PlanarBrackets(MarginalBrackets):
-    """Two searches an element, one for each marginal, begun when its ratio is the least certain.
-
-    ``against_own`` : the ratio that matters is to ``f({x})``, so the largest marginals are left as they are.
-    """
+    """Two searches an element, one for each marginal, begun when its ratio is the least certain."""
 
     def __init__(
         self,
@@ -57,8 +57,8 @@ class PlanarBrackets(MarginalBrackets):
         budget: Budget,
         against_own: bool,
     ) -> None:
-        super().__init__(single, gap, budget)
-        self._data, self._owners, self._against_own = data, owners, against_own
+        super().__init__(single, gap=gap, budget=budget, against_own=against_own)
+        self._data, self._owners = data, owners
         self._options: dict[int, Options] = {}
         self._highest: dict[int, float] = {}
         self._searches: dict[int, tuple[PlanarSearch, PlanarSearch]] = {}

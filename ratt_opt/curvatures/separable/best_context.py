@@ -14,9 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["BestContext"]
 
-SWEEPS = 3
-"""MEASURED"""
-
 
 class BestContext:
     """``value`` is the marginal of ``x`` in ``context``, the smallest (or ``largest``) of those offered."""
@@ -30,10 +27,11 @@ class BestContext:
         self.offer(np.empty(0, dtype=np.int64))
 
     def descend(self, budget: Budget) -> None:
-        """Change one owner's choice at a time, from the best context so far."""
+        """Change one owner's choice at a time, from the best context so far, until no change is better."""
         others = self._others
         groups = [others.elements[others.owners == i] for i in range(len(others.first))]
-        for _ in range(SWEEPS):
+        before = np.inf
+        while self.value != before:
             before = self.value
             for own in groups:
                 if budget.is_over:
@@ -41,8 +39,6 @@ class BestContext:
                 rest = np.array([e for e in self.context if e not in own], dtype=np.int64)
                 self._keep(np.concatenate([np.tile(rest, (len(own), 1)), own[:, None]], axis=1))
                 self._keep(rest[None])
-            if self.value == before:
-                return
 
     def offer(self, context: IntArray) -> None:
         """Evaluate a context, if it is new."""

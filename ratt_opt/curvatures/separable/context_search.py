@@ -23,10 +23,12 @@ if TYPE_CHECKING:
 __all__ = ["ContextSearch"]
 
 FIRST_STEPS = 12
-"""Tangents tried at the root; what suffices for most elements."""
+"""Tangents tried at the root, which every element pays. 6, 12 and 24 leave 1.0137, 1.0124 and 1.0120 of
+``(1 - lower) / (1 - upper)`` in 1.9, 2.1 and 3.8 s (four trace instances of 10 robots, gap 0.02)."""
 MORE_STEPS = 36
-"""Tangents tried when the root is looked at again, before it is branched."""
+"""Tangents tried when the root is looked at again, before it is branched; 18 and 72 leave 1.0126 and 1.0123."""
 CHILD_STEPS = 8
+"""Tangents tried for a part: fewer are faster and weaker; 4 need 3 % more parts than 8 and 16, in the same time."""
 MARGIN = 1e-9
 """Relative safety margin for rounding on every bound: inverses of condition 1e6 lose less."""
 

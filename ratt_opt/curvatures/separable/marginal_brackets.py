@@ -34,28 +34,26 @@ LARGER = 1e-6
 class SeparableBrackets(MarginalBrackets):
     """One search an element, over contexts of at most one element of each other owner.
 
-    ``rests_on`` : what the bounds are. ``against_own`` : the ratio that matters is to ``f({x})``, so the largest
-    marginals are left as they are.
+    ``rests_on`` : what the bounds are.
     """
 
     def __init__(
         self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
     ) -> None:
         single = f.singletons()
-        super().__init__(single, gap, budget)
-        self._f, self._owners, self._single, self._against_own = f, owners, single, against_own
+        super().__init__(single, gap=gap, budget=budget, against_own=against_own)
+        self._f, self._owners, self._single = f, owners, single
         self._choices: dict[int, Choices] = {}
         self._searches: list[ContextSearch | FloorSearch] = []
         self._largest: dict[int, BestContext] = {}
         self._branches = f.states("marginal_minorant")
         self.rests_on = "separable minorants" if self._branches else "bounds for all contexts"
-        floor, ceiling = f.marginal_ends(owners, budget)
-        self.least = np.minimum(floor, single)
-        if not against_own:
-            self.most = np.maximum(ceiling, single)
 
     def _begin(self) -> Stop | None:
+        floor, ceiling = self._f.marginal_ends(self._owners, self._budget)
+        self.least = np.minimum(floor, self._single)
         if not self._against_own:
+            self.most = np.maximum(ceiling, self._single)
             self._raise_largest()
         for x in range(self._f.n):
             self._searches.append(self._search(x))

@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 __all__ = ["marginal_ends"]
 
 ROUNDS = 12
-"""Linear programs solved for the weights of ``tau``."""
+"""Linear programs solved for the weights of ``tau``: 3, 6, 12, 24 leave it 2.9, 0.5, 0.02 and 0 % above the last, in
+time that doubles each time (48 elements of 8 owners, 6 targets in three coordinates)."""
 CUTS = 5
-"""Worst targets that get a cut a round."""
+"""Worst targets that get a cut a round: with 2 instead of 5 ``tau`` is 1 % higher, in the same time."""
 MARGIN = 1e-9
 """Relative safety margin for rounding."""
 
