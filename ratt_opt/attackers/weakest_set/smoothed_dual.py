@@ -23,9 +23,11 @@ COLD, WARM = (0.5, 0.3, 0.15, 0.1, 0.05, 0.03, 0.015), (0.05, 0.02)
 """Temperatures, in the room left per target, from a first guess and from a related family's multipliers."""
 
 STEPS = 25
-"""L-BFGS steps at each temperature."""
+"""L-BFGS steps at each temperature: enough to follow it; the end is reached at the lowest ones."""
 
 MEMORY = 20
+"""Pairs that L-BFGS remembers: nearly all of its :data:`STEPS`, as a step costs far more than they do."""
+
 NEGLIGIBLE = 14.0
 """Points this many temperatures above the least have no weight worth computing."""
 
@@ -33,6 +35,8 @@ SCREENED = 200.0
 """Points this many temperatures above the least are left out until the next temperature."""
 
 BISECTIONS = 60
+"""Halvings of a level's interval: to below the rounding of its ends."""
+
 FLAT = 1e-6
 """Directions in which points spread by less, relative to all (squared), count as if they did by so much."""
 
