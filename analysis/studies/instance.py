@@ -98,7 +98,7 @@ class Instance:
         """Hash of everything the planners see: equal for equal scenarios, budgets and objectives."""
         problem = self.problem
         parts = [array.tobytes() for array in (problem.robot, self.objective.prior, self.objective.information)]
-        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {type(self.objective)}"
+        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {self.objective.name}"
         return hashlib.sha256(b"".join([*parts, threat.encode()])).hexdigest()[:16]
 
     def trace(self, plan: IntArray, attack: Attack) -> float:

@@ -53,6 +53,10 @@ class Guarantee(float):
         self.source = source
         return self
 
+    def __getnewargs__(self) -> tuple[float, tuple[str, ...], str]:  # type: ignore[override]
+        """What copies and pickles are made from."""
+        return float(self), self.hypotheses, self.source
+
 
 Curvatures = float | Bracket | None
 

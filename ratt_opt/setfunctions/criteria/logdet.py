@@ -1,4 +1,10 @@
-"""The log-det criterion (D): the volume of the error ellipsoids."""
+"""The log-det criterion (D): the volume of the error ellipsoids.
+
+**Its marginals.** ``logdet(L + X) - logdet L`` is convex in ``L``: its second derivative along ``D`` is
+``tr(P D P D) - tr(B D B D)`` with ``P = L^{-1}`` and ``B = (L + X)^{-1} <= P``, and ``tr(ADAD) >= tr(BDBD)`` whenever
+``A >= B >= 0``. So a tangent at any ``L0`` bounds it; its slope ``(L0 + X)^{-1} - P0`` is negative semidefinite, so
+more information only lowers it.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +13,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
-from ratt_opt.setfunctions.information import InformationObjective, Tangent
+from ratt_opt.setfunctions.criterion_parts import Tangent
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.minorants import SeparableMinorant
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.setfunctions.minorants import Choices
 
 __all__ = ["LogDetObjective"]
 
@@ -51,3 +60,12 @@ class LogDetObjective(InformationObjective):
         # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
         logdets = np.linalg.slogdet(y)[1] + self.dimension
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
+
+    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
+        """The tangent at the relaxed context: exact there."""
+        posterior = self.prior_information + others.mixed(share)
+        both = posterior + added
+        value = float((self.weights * (np.linalg.slogdet(both)[1] - np.linalg.slogdet(posterior)[1])).sum())
+        slope = self.weights[:, None, None] * (np.linalg.inv(posterior) - np.linalg.inv(both))
+        constant = value + float((slope * (posterior - self.prior_information)).sum())
+        return SeparableMinorant(constant, np.maximum(others.scores(slope), 0.0), np.zeros(len(others.first)))

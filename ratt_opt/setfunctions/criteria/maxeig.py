@@ -6,13 +6,17 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.setfunctions.criteria import maxeig_marginals
+from ratt_opt.setfunctions.criteria.planar_levels import LARGEST_DIMENSION, PlanarLevels
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
-from ratt_opt.setfunctions.information import InformationObjective, Tangent
+from ratt_opt.setfunctions.criterion_parts import Tangent
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import FloatArray
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
 
 __all__ = ["MaxEigenvalueObjective"]
 
@@ -82,3 +86,11 @@ class MaxEigenvalueObjective(InformationObjective):
         """Minus the criterion of each point's target: (K, ..., M, d, d) -> (K, ...)."""
         criterion = self.criterion(points)
         return -np.stack([row[..., target] for row, target in zip(criterion, targets, strict=True)])
+
+    def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:
+        """Bounds by how far the smallest eigenvalue of all targets can rise, see ``maxeig_marginals.py``."""
+        return maxeig_marginals.marginal_ends(self, owners, budget)
+
+    def planar_levels(self) -> PlanarLevels | None:
+        """The data as levels, for targets with at most two coordinates."""
+        return PlanarLevels.of(self) if self.dimension <= LARGEST_DIMENSION else None
