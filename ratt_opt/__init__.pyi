@@ -10,8 +10,8 @@ from .attackers.heuristics.random_attack import random_attack as random_attack
 from .attackers.result import AttackResult as AttackResult
 from .attackers.survey import attack_survey as attack_survey
 from .audit.ledger import Ledger as Ledger, run_audit as run_audit
-from .audit.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
-from .audit.ratio_witness import RatioWitness as RatioWitness
+from .audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
+from .audit.worst_ratio.witness import RatioWitness as RatioWitness
 from .bounds.guarantees import (
     Guarantee as Guarantee,
     all_bait_group_bound as all_bait_group_bound,
@@ -26,8 +26,8 @@ from .bounds.group_size import group_size_bound as group_size_bound
 from .bounds.instance import instance_bound as instance_bound
 from .bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
 from .bounds.relaxation import RelaxationBound as RelaxationBound, relaxation_bound as relaxation_bound
-from .certificates.verified import Verified as Verified
-from .certificates.verify import verify_certificate as verify_certificate
+from .certificates.verifier.verified import Verified as Verified
+from .certificates.verifier.verify import verify_certificate as verify_certificate
 from .certificates.write import Certificate as Certificate, certify as certify, problem_document as problem_document
 from .curvatures.curvature import Curvature as Curvature, curvature as curvature, total_curvature as total_curvature
 from .curvatures.ratios import (
@@ -87,11 +87,11 @@ from .setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES, Referenc
 from .solvers.baselines import (
     greedy as greedy,
     myopic as myopic,
-    nonrobust_optimum as nonrobust_optimum,
     random_plan as random_plan,
 )
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.maxmin.solve import solve_maxmin as solve_maxmin
+from .solvers.nonrobust import nonrobust_optimum as nonrobust_optimum
 from .solvers.ratt import ratt as ratt
 from .solvers.result import MaxMinResult as MaxMinResult
 from .stopping import Stop as Stop

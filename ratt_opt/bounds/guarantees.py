@@ -7,7 +7,8 @@ end is then used. The curvature must be taken over a domain that holds every set
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, Self, runtime_checkable
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
@@ -32,7 +33,7 @@ SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
 @runtime_checkable
-class Bracket(Protocol):
+class HasUpper(Protocol):
     """Anything with a proved upper end."""
 
     @property
@@ -40,25 +41,39 @@ class Bracket(Protocol):
         """Proved upper end."""
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Guarantee(float):
-    """A share of the optimum that is guaranteed, with what it needs and where it comes from."""
+    """A share of the optimum that is guaranteed, with what it needs and where it comes from.
 
+    A number wherever one is wanted: equal, as numbers are, to what has its ``value``.
+    """
+
+    value: float
     hypotheses: tuple[str, ...]
     source: str
 
-    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str) -> Self:
-        """Make the number carry its hypotheses."""
-        self = super().__new__(cls, value)
-        self.hypotheses = hypotheses
-        self.source = source
-        return self
+    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str) -> Self:  # noqa: ARG004  (see the fields)
+        """Make the number; the fields follow."""
+        return super().__new__(cls, value)
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", float(self.value))
+
+    # Copies are made by ``__new__``, which needs all fields.
     def __getnewargs__(self) -> tuple[float, tuple[str, ...], str]:  # type: ignore[override]
-        """What copies and pickles are made from."""
-        return float(self), self.hypotheses, self.source
+        return self.value, self.hypotheses, self.source
+
+    __str__ = float.__repr__
+
+    def __repr__(self) -> str:
+        return f"Guarantee({self.value!r}, {self.source!r})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        return {"value": self.value, "hypotheses": list(self.hypotheses), "source": self.source}
 
 
-Curvatures = float | Bracket | None
+Curvatures = float | HasUpper | None
 
 
 def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, all_bait: bool = False) -> Guarantee:
@@ -220,7 +235,7 @@ def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
     if (k is None) == (c is None):
         raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
     name, given = ("k", k) if k is not None else ("c", c)
-    value = float(given.upper if isinstance(given, Bracket) else given)  # type: ignore[arg-type]
+    value = float(given.upper if isinstance(given, HasUpper) else given)  # type: ignore[arg-type]
     if not 0 <= value <= 1:
         raise InputError(name, "must be in [0, 1]", value)
     return name, value

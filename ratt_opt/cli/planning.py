@@ -68,10 +68,10 @@ def _bound(
         report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, certificate=path, progress=tell)
         tell("report and figure")
         files = write_report(report, out, source)
-    if isinstance(report.certificate, str):
+    if report.certificate.certificate is None:
         proof.unlink(missing_ok=True)  # an earlier run's: it is not about this report
     else:
-        files.append(report.certificate.path)
+        files.append(report.certificate.certificate.path)
     if as_json:
         print_json(report.to_dict())
         return

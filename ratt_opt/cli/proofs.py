@@ -22,7 +22,7 @@ def verify(
     as_json: JsonFlag = False,
 ) -> None:
     """Check a certificate without trusting what wrote it; exit 0 and say what it proves, or 1 and the first fault."""
-    from ratt_opt.certificates.verify import verify_certificate
+    from ratt_opt.certificates.verifier.verify import verify_certificate
 
     expected = None
     if problem is not None:

@@ -11,7 +11,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import certify, why_not_certifiable
+from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
@@ -20,9 +20,10 @@ from ratt_opt.main_job.steps import Steps
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_search, random_plan
+from ratt_opt.solvers.baselines import greedy, myopic, random_plan
 from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
-from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks
+from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers.ratt import ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
-    from ratt_opt.certificates.write import Certificate
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.solvers.result import MaxMinResult
 
@@ -87,22 +87,22 @@ def bound(
     problem = _problem_of(scenario_or_problem, objective)
     budget, steps = Budget(time_limit), Steps(progress)
     with steps("RATT and the baselines"):
-        alpha_cs = equivalent_sensing_attacks(problem)
-        plan = bait_and_greedy(problem, problem.alpha_s + alpha_cs)
+        plan = ratt(problem)
+        assert plan.alpha_cs is not None, "RATT's plan says it"
         robust = assess(problem, "ratt", plan, _share(budget, ATTACK_SHARE))
         baselines = tuple(_baselines(problem, budget))
     with steps("the best possible plan"):
         limit = _share(budget, OPTIMUM_SHARE)
-        optimum = solve_maxmin(problem, gap=gap, time_limit=limit, progress=steps.search_line)
+        optimum = solve_maxmin(problem, gap=gap, time_limit=limit, progress=steps.search_line, alpha_cs=plan.alpha_cs)
         best = _assess_optimum(problem, optimum, _share(budget, ATTACK_SHARE))
     with steps("curvature and guarantees"):
         k, c = _curvatures(problem, _share(budget, CURVATURE_SHARE))
-        guarantees = _guarantees(problem, robust, alpha_cs, _share(budget, CURVATURE_SHARE), k=k, c=c)
+        guarantees = _guarantees(problem, plan, _share(budget, CURVATURE_SHARE), k=k, c=c)
     with steps("certificate"):
-        proof = _certificate(problem, optimum, certificate)
+        proof = certify_if_possible(problem, optimum, certificate)
     return BoundReport(
         problem=problem,
-        alpha_cs=alpha_cs,
+        alpha_cs=plan.alpha_cs,
         ratt=robust,
         baselines=baselines,
         optimum=optimum,
@@ -110,7 +110,7 @@ def bound(
         curvature=k,
         total_curvature=c,
         guarantees=guarantees,
-        inapplicable=inapplicable_guarantees(problem, alpha_cs),
+        inapplicable=inapplicable_guarantees(problem, plan.alpha_cs),
         certificate=proof,
         seconds=steps.seconds,
     )
@@ -186,21 +186,14 @@ def _curvatures(problem: Problem, time_limit: float | None) -> tuple[Curvature |
 
 def _guarantees(
     problem: Problem,
-    robust: PlanAssessment,
-    alpha_cs: int,
+    plan: Plan,
     time_limit: float | None,
     *,
     k: Curvature | None,
     c: Curvature | None,
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
-    found = all_guarantees(problem, alpha_cs, k=k, c=c)
+    found = all_guarantees(problem, plan.alpha_cs or 0, k=k, c=c)
     if k or c:
-        found["this instance"] = instance_bound(problem, robust.elements, k=k, c=c, time_limit=time_limit)
+        found["this instance"] = instance_bound(problem, plan.elements, k=k, c=c, time_limit=time_limit)
     return dict(sorted(found.items(), key=lambda item: -item[1]))
-
-
-def _certificate(problem: Problem, optimum: MaxMinResult, path: str | Path | None) -> Certificate | str:
-    if path is None:
-        return "not asked for"
-    return why_not_certifiable(problem, optimum) or certify(problem, optimum, path)

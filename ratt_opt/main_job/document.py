@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.breaking_budgets import BreakingBudget
     from ratt_opt.attackers.criticality import Criticality
     from ratt_opt.attackers.result import AttackResult
-    from ratt_opt.certificates.write import Certificate
+    from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job.result import BoundReport, PlanAssessment
 
@@ -127,10 +127,11 @@ def _worst_case(result: AttackResult) -> dict[str, Any]:
     }
 
 
-def _certificate(proof: Certificate | str) -> dict[str, Any]:
+def _certificate(given: Certification) -> dict[str, Any]:
     """The verifier's verdict, or why there is none."""
-    if isinstance(proof, str):
-        return {"file": None, "verified": False, "reason": proof}
+    proof = given.certificate
+    if proof is None:
+        return {"file": None, "verified": False, "reason": given.why_not}
     found = proof.verified
     return {
         "file": proof.path.name,

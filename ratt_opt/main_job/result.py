@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.result import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
-    from ratt_opt.certificates.write import Certificate
+    from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
@@ -83,7 +83,7 @@ class BoundReport:
     total_curvature: Curvature | None
     guarantees: Mapping[str, Guarantee]
     inapplicable: Mapping[str, str]
-    certificate: Certificate | str
+    certificate: Certification
     seconds: Mapping[str, float]
 
     @property

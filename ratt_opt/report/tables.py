@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.breaking_budgets import BreakingBudget
     from ratt_opt.attackers.criticality import Criticality
     from ratt_opt.attackers.result import AttackResult
-    from ratt_opt.certificates.write import Certificate
+    from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job.result import BoundReport
     from ratt_opt.problem import Attack
@@ -151,10 +151,10 @@ def _bracket(report: BoundReport) -> Table:
     return table
 
 
-def _verdict(proof: Certificate | str) -> str:
-    if isinstance(proof, str):
-        return f"none: {proof}"
-    found = proof.verified
+def _verdict(given: Certification) -> str:
+    if given.certificate is None:
+        return f"none: {given.why_not}"
+    found = given.certificate.verified
     bracket = _bracket_text(found.lower, found.upper)
     if found.lower_proved:
         return f"verified, both ends proved in {found.arithmetic}: {bracket}"

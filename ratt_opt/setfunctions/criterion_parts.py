@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import SetFunction
 from ratt_opt.setfunctions.minorants import SeparableMinorant
+from ratt_opt.setfunctions.proof_parts import ProofParts, lacking
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,9 +37,11 @@ class Tangent:
 
 
 OPTIONAL_PARTS = (
-    "cut_values",
     "combine",
     "compiled_code",
+    "conic_value",
+    "cut_values",
+    "fenchel_point",
     "is_submodular",
     "is_worst_axis",
     "marginal_ends",
@@ -50,14 +51,16 @@ OPTIONAL_PARTS = (
     "planar_gradient",
     "planar_levels",
     "prior_criterion",
+    "prior_eigenvalue",
     "tangent",
     "tangent_targets",
     "unit",
+    "verifier_averages",
 )
 """Parts that hold for a criterion's own formula only: a subclass with another formula does not inherit them."""
 
 
-class CriterionParts(SetFunction):
+class CriterionParts(ProofParts):
     """The parts of a criterion of posterior information ``L`` (M, d, d): its value, and what theory knows of it.
 
     A subclass defines :meth:`criterion` (or :meth:`value`) and :meth:`gradient`; the rest has generic stand-ins.
@@ -91,17 +94,14 @@ class CriterionParts(SetFunction):
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
         """Weighted criterion per target, lower is better: (..., M, d, d) -> (..., M)."""
-        raise self._without("criterion", "weighted criterion per target")
+        raise lacking(self, "criterion(posterior_information)", "weighted criterion per target")
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
         """A supergradient of the value with respect to ``Lambda``: (..., M, d, d), positive semidefinite.
 
         For every ``L'``: ``value(L') <= value(L) + sum_j <gradient_j, L'_j - L_j>`` (concavity).
         """
-        raise self._without("gradient", "supergradient of its value")
-
-    def _without(self, part: str, what: str, of: str = "posterior_information") -> InputError:
-        return InputError("objective", f"must define {part}({of}), the {what}", type(self).__name__)
+        raise lacking(self, "gradient(posterior_information)", "supergradient of its value")
 
     def combine(self, per_target: FloatArray) -> FloatArray:
         """The criterion of the team from that of each target: (..., M) -> (...); a sum."""
@@ -123,7 +123,7 @@ class CriterionParts(SetFunction):
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
         """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
-        raise self._without("planar_gradient", "derivative of one target's value", "a, b, c")
+        raise lacking(self, "planar_gradient(a, b, c)", "derivative of one target's value")
 
     def tangent_targets(self, point: FloatArray, level: float, most: int) -> list[int | None]:  # noqa: ARG002
         """Targets to take tangents for at ``point`` (M, d, d), at most ``most``; ``None`` is all of them together.

@@ -86,6 +86,17 @@ class InformationObjective(CriterionParts):
         restricted.information = readonly(self.information[elements])
         return restricted
 
+    def with_information(self, information: ArrayLike) -> Self:
+        """The same criterion of other elements: (E, M, d, d), checked.
+
+        Raises
+        ------
+        InputError : as for a criterion made anew.
+        """
+        other = copy(self)
+        other.information = readonly(check_information(information, self.n_targets, self.dimension))
+        return other
+
     def posterior_information(self, subset: IntArray) -> FloatArray:
         """(M, d, d) ``Lambda(S)`` of the given distinct elements, added in ascending order."""
         stacked = np.concatenate([self.prior_information[None], self.information[np.sort(subset)]])

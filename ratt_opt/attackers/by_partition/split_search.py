@@ -87,7 +87,7 @@ class SplitSearch:
     def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
         """No ``size`` robots of the groups ``rows`` are worth less."""
         family = self.team.family(np.arange(self.n_robots), size)
-        if self.team.objective.is_worst_axis:
+        if self.team.objective.states("planar_levels"):
             return np.full(len(rows), weakest_axis(family).bound)
         minorant = affine_minorant(family, 2, -np.inf, self.survivors.minorants.get(size + 1))
         self.survivors.minorants[size] = minorant

@@ -43,7 +43,7 @@ def bound_family(family: SetFamily, goal: float, parent: Minorant | None) -> Fam
     goal : no better bound is needed
     parent : a minorant of a larger family
     """
-    if family.team.objective.is_worst_axis:
+    if family.team.objective.states("planar_levels"):
         axis = weakest_axis(family)
         return FamilyBound(axis.bound, axis.chosen)
     n_free = len(family.information)

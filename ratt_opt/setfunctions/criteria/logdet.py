@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.setfunctions.criteria.packed import packed_inverse
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
 from ratt_opt.setfunctions.criterion_parts import Tangent
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.minorants import SeparableMinorant
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.minorants import Choices
 
@@ -60,6 +63,16 @@ class LogDetObjective(InformationObjective):
         # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
         logdets = np.linalg.slogdet(y)[1] + self.dimension
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``sum_j w_j [logdet(prior_j) + log_det(L_j)]`` in cvxpy."""
+        import cvxpy as cp
+
+        return self._baseline.sum() + sum(w * cp.log_det(L) for w, L in zip(self.weights, posterior, strict=True))
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
+        """``Y = L^{-1}`` of every target, packed."""
+        return packed_inverse(point)
 
     def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
         """The tangent at the relaxed context: exact there."""

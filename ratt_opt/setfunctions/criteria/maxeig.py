@@ -28,7 +28,6 @@ class MaxEigenvalueObjective(InformationObjective):
 
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
-    is_worst_axis: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 2
 
     @property
@@ -86,6 +85,29 @@ class MaxEigenvalueObjective(InformationObjective):
         """Minus the criterion of each point's target: (K, ..., M, d, d) -> (K, ...)."""
         criterion = self.criterion(points)
         return -np.stack([row[..., target] for row, target in zip(criterion, targets, strict=True)])
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``max_j w_j lambda_max(prior_j) - max_j w_j / lambda_min(L_j)`` in cvxpy."""
+        import cvxpy as cp
+
+        each = [w * cp.inv_pos(cp.lambda_min(L)) for w, L in zip(self.weights, posterior, strict=True)]
+        return self._baseline.max() - cp.max(cp.hstack(each))
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:
+        """The target, ``t = lambda_max(L^{-1})`` and its direction ``v``."""
+        assert target is not None
+        eigenvalues, vectors = np.linalg.eigh(point[target])
+        return [target, float(1 / eigenvalues[0]), vectors[:, 0].tolist()]
+
+    @property
+    def prior_eigenvalue(self) -> float:
+        """``max_j w_j lambda_max(prior_j)``."""
+        return float((self.weights * np.linalg.eigvalsh(self.prior)[:, -1]).max())
+
+    @property
+    def verifier_averages(self) -> bool:
+        """Eigenvalues are roots of polynomials, which it bounds for planar targets only."""
+        return self.dimension == 2
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:
         """Bounds by how far the smallest eigenvalue of all targets can rise, see ``maxeig_marginals.py``."""

@@ -24,12 +24,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.setfunctions.criteria.packed import packed_inverse
 from ratt_opt.setfunctions.criteria.two_by_two import gradient_of_trace_of_inverse, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import Tangent
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.minorants import SeparableMinorant
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.setfunctions.minorants import Choices
@@ -83,6 +86,17 @@ class TraceObjective(InformationObjective):
         traces = np.trace(y, axis1=-2, axis2=-1)
         slope = self.weights[:, None, None] * (y @ y)
         return Tangent(slope, float((self._baseline - 2 * self.weights * traces).sum()))
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``sum_j w_j [tr(prior_j) - tr_inv(L_j)]`` in cvxpy."""
+        import cvxpy as cp
+
+        traces = sum(w * cp.tr_inv(L) for w, L in zip(self.weights, posterior, strict=True))
+        return self._baseline.sum() - traces
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
+        """``Y = L^{-1}`` of every target, packed."""
+        return packed_inverse(point)
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points."""
