@@ -14,7 +14,7 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
-from ratt_opt.graph.threshold import LARGEST_COMPILED, GroupSplit, fewest_blinded, largest_survivors
+from ratt_opt.graph.threshold import LARGEST_COMPILED, UNREACHABLE, GroupSplit, fewest_blinded, largest_survivors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CompiledThresholdTest"]
 
-FAR = 10_000
+FAR = int(UNREACHABLE)
 
 
 @numba.njit(cache=True)

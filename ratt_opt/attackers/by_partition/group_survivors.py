@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 __all__ = ["GroupSurvivors"]
 
 PLAIN_NODES = 30_000
-"""Compiled nodes before a question is handed to the branch and bound, which bounds it afresh."""
+"""Compiled nodes before a question is handed to the branch and bound, which bounds it afresh: easy questions are
+answered without a bound of their own, hard ones soon get one."""
 
 
 @dataclass(slots=True)

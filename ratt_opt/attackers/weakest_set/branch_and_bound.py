@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["WeakestSetSearch"]
 
 AT_ONCE = 34
-"""Teams of so many robots are first enumerated whole, without a minorant."""
+"""Teams of so many robots are first enumerated whole, without a minorant: that settles them sooner than bounds do."""
+
 WHOLE_ENUMERATION = 4_000_000_000
 SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 10_000_000, 40_000_000
 """Criteria of single targets looked at (some nanoseconds each) for the whole team, and for one branch-and-bound node

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 __all__ = ["FamilyBound", "bound_family"]
 
 HEAVY_ROBOTS = ((50, 4), (10**9, 5))
-"""(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above."""
+"""(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above.
+
+Each doubles the polytopes and sharpens the bound: with two instead of four, 1.7 times the nodes at 40 robots.
+"""
 
 
 @dataclass(frozen=True, slots=True)
