@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["PlanValues"]
 
 LARGEST_CHUNK = 4096
+"""Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
 
 
 class PlanValues(SetFunction):

@@ -1,0 +1,86 @@
+"""The main job as one call: every claim of its report against the definitions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+from tests.oracles import brute_force_optimum, brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_problem
+
+
+@pytest.mark.parametrize("kind", [*OBJECTIVES, "table"])
+@pytest.mark.parametrize("seed", range(8))
+def test_every_claim_holds_by_definition(kind, seed):
+    problem = random_problem(np.random.default_rng([seed, 11]), kind=kind, controls=2)
+    report = ro.bound(problem)
+    best = brute_force_optimum(problem)
+    slack = 1e-9 * max(1.0, best)
+    assert report.optimum.lower - slack <= best <= report.upper + slack
+    for plan in report.plans:
+        worst = brute_force_worst_case(problem, plan.elements)
+        assert plan.worst_case.lower - slack <= worst <= plan.worst_case.upper + slack
+        assert report.share(plan) <= (worst / best if best > 0 else 1) + 1e-9
+        chosen = [problem.choices[i][k] for i, k in enumerate(plan.controls)]
+        assert list(plan.elements) == chosen
+    achieved = brute_force_worst_case(problem, report.ratt.elements) / best if best > 0 else 1.0
+    for name, guarantee in report.guarantees.items():
+        assert 0 <= float(guarantee) <= achieved + 1e-9, name
+    assert report.recommended.worst_case.lower == max(plan.worst_case.lower for plan in report.plans)
+
+
+def test_progress_is_told_step_by_step():
+    lines: list[str] = []
+    report = ro.bound(ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0), progress=lines.append)
+    assert [line for line in lines if not line.startswith("  ")] == list(report.seconds)
+
+
+def test_a_time_limit_leaves_an_honest_bracket():
+    scenario = ro.random_scenario(20, 20, alpha_s=10, alpha_c=63, seed=0)
+    report = ro.bound(scenario, time_limit=1e-3)
+    assert report.optimum.stop is ro.Stop.TIME
+    assert report.optimum.lower <= report.ratt.worst_case.upper <= report.upper
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"gap": -1.0}, "gap"),
+        ({"gap": float("nan")}, "gap"),
+        ({"time_limit": -1.0}, "time_limit"),
+        ({"objective": "determinant"}, "objective"),
+    ],
+)
+def test_bad_arguments_are_refused(arguments, text):
+    with pytest.raises(InputError, match=text):
+        ro.bound(ro.random_scenario(2, 1, alpha_s=0, alpha_c=0, seed=0), **arguments)
+    with pytest.raises(InputError, match="scenario_or_problem"):
+        ro.bound("scenario.json")
+
+
+def test_a_function_with_too_many_feasible_sets_goes_without_curvature():
+    problem = ro.Problem(ro.Modular(np.arange(1.0, 26.0)), np.arange(25), None, 2, 0)
+    report = ro.bound(problem, time_limit=5)
+    assert report.curvature is None
+    assert report.total_curvature is None
+    assert not report.guarantees
+
+
+def test_an_interrupt_ends_every_step_and_keeps_the_bracket():
+    """Ctrl-C during the search for the optimum: what is proved so far is reported, and no later step starts anew."""
+    lines = []
+
+    def impatient(line):
+        lines.append(line)
+        if line.startswith("  "):
+            raise KeyboardInterrupt
+
+    scenario = ro.random_scenario(8, 6, alpha_s=2, alpha_c=11, seed=0)
+    report = ro.bound(scenario, time_limit=None, progress=impatient)
+    assert report.optimum.stop is ro.Stop.INTERRUPTED
+    assert report.total_curvature.stop is ro.Stop.INTERRUPTED
+    assert lines[-2:] == ["curvature and guarantees", "certificate"]
+    assert report.optimum.lower <= ro.solve_maxmin(report.problem, gap=1e-6).upper
+    assert ro.solve_maxmin(report.problem, gap=1e-6).lower <= report.upper * (1 + 1e-9)
