@@ -10,7 +10,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from ratt_opt.attackers.any_graph.compiled import gather, value_of
+from ratt_opt.attackers.by_prices.compiled import gather, value_of
 
 __all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "weak_subset"]
 

@@ -16,17 +16,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.any_graph.blinding import ABSENT, weak_subset
-from ratt_opt.attackers.any_graph.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
-from ratt_opt.attackers.any_graph.cover import FOUND, PAUSED, next_cover
-from ratt_opt.attackers.any_graph.prices import GroupPrices, KnownGroup, PriceVector
-from ratt_opt.attackers.any_graph.starts import Split
+from ratt_opt.attackers.by_prices.blinding import ABSENT, weak_subset
+from ratt_opt.attackers.by_prices.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
+from ratt_opt.attackers.by_prices.cover import FOUND, PAUSED, next_cover
+from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
+from ratt_opt.attackers.by_prices.starts import Split
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attackers.any_graph.team import Links, Team
+    from ratt_opt.attackers.by_prices.team import Links, Team
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
@@ -41,13 +41,13 @@ MARGIN = 1e-3
 TOLERANCE = 1e-7
 """Reduced costs below this count as negative; a team's sum stays well below MARGIN."""
 
-STEPS = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, -0.05, -0.01)
+STEPS = (-3.0, -0.3, -0.01)
 """Reduced costs asked for in turn: the groups that pay the prices worst are found first, and fast."""
 
 LOWERED = 0.01
 """By which all robots' prices fall once no group is below the last of STEPS; no reduced cost is negative then."""
 
-CHUNK, ROOM, NEW_GROUPS = 2_000, 100_000, 300
+CHUNK, ROOM, NEW_GROUPS = 2_000, 100_000, 100
 """Nodes between two looks at the clock; groups listed for covers; groups added to the program at a time."""
 
 SIZE_VALUES = 1_000_000
@@ -88,6 +88,7 @@ class Decision:
         self.team, self.links, self.threat = team, links, threat
         self.prices = GroupPrices(threat)
         self._n_robots = len(team.single)
+        self._rng, self._shuffled = np.random.default_rng(0), False
         for i in range(self._n_robots):
             alone = np.arange(self._n_robots) == i
             self.prices.add([KnownGroup(robots=alone, need=0, value=float(team.single[i]))])
@@ -96,7 +97,7 @@ class Decision:
 
     def learn(self, split: Split) -> None:
         """Add the groups of an attack to the program."""
-        from ratt_opt.attackers.any_graph.compiled import gather
+        from ratt_opt.attackers.by_prices.compiled import gather
 
         sums = np.empty_like(self.team.prior)
         for label in np.unique(split.group):
@@ -117,11 +118,14 @@ class Decision:
             budget.check()
             found = self.prices.solve(threshold)
             refuting = found.links > self.threat.alpha_c + MARGIN
-            if step == len(STEPS) and not refuting:
+            if refuting and step > 0:
+                step = len(STEPS)
+            elif step == len(STEPS):
                 return self._cover(found.lowered(LOWERED), threshold, size, budget, nodes)
             asked = found.scaled(self.threat.alpha_c + MARGIN) if refuting else found
             limit = STEPS[step] if step < len(STEPS) else -TOLERANCE
             listed = self._list(asked, (threshold, size, limit), budget, (nodes, NEW_GROUPS))
+            self._shuffled = listed.code == FULL
             if len(listed.cost):
                 if not self._teach(listed, threshold):
                     return Answer(verdict=Verdict.OPEN)
@@ -155,6 +159,8 @@ class Decision:
         n_robots, (threshold, size, limit), (nodes, room) = self._n_robots, asked, most
         at = Prices(prices.robot, prices.blinded, np.ones(n_robots), float(size), prices.blinded, SHARES)
         order = np.argsort(-prices.robot, kind="stable")
+        if self._shuffled:  # the groups listed last all began with the same robots
+            order = self._rng.permutation(n_robots)
         question = Question(threshold, self.threat.n_blinded, limit, order)
         stack = Stack.of(n_robots, len(self.links.robot), len(SHARES))
         shape = (room, n_robots)
@@ -171,6 +177,7 @@ class Decision:
     def _cover(self, prices: PriceVector, threshold: float, size: int, budget: Budget, nodes: int) -> Answer:
         """Try all partitions into groups of small reduced cost."""
         gap = self.threat.alpha_c - prices.links + TOLERANCE
+        self._shuffled = False
         listed = self._list(prices, (threshold, size, gap), budget, (nodes, ROOM))
         if listed.code != FINISHED:
             return Answer(verdict=Verdict.OPEN)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.any_graph.annealing import Cooling, State, anneal
+from ratt_opt.attackers.by_prices.annealing import Cooling, State, anneal
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.attackers.any_graph.team import Links, Team
+    from ratt_opt.attackers.by_prices.team import Links, Team
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["Split", "Starts"]
@@ -57,7 +57,7 @@ class Starts:
         self.best: Split | None = None
 
     def _value(self, sums: np.ndarray) -> float:
-        from ratt_opt.attackers.any_graph.compiled import value_of
+        from ratt_opt.attackers.by_prices.compiled import value_of
 
         return float(value_of(self._team, sums))
 

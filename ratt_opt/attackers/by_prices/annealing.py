@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from ratt_opt.attackers.any_graph.compiled import value_of
+from ratt_opt.attackers.by_prices.compiled import value_of
 
 __all__ = ["Cooling", "State", "anneal"]
 
