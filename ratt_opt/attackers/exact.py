@@ -35,7 +35,7 @@ THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
 
 BOUND_SHARE, PARTITION_SHARE = 0.3, 0.5
-"""Of what is left of the budget, for the weakest group of the forced size and for partitions, where prices come next."""
+"""Of what is left of the budget, for the weakest group of the forced size and for partitions; prices get the rest."""
 
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
@@ -61,9 +61,9 @@ def worst_case_attack(
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_links.py``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above leave them open: annealed attacks, and prices that no
-      weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of budget. Relies on a
-      non-decreasing objective, as above; targets of any dimension.
+    - Teams of more than 20 robots on any graph, where the lines above leave them open: annealed attacks, and prices
+      that no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of budget. Relies
+      on a non-decreasing objective, as above; targets of any dimension.
     - Objectives of one's own beyond 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 

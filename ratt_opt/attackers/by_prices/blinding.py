@@ -18,7 +18,7 @@ ABSENT, WEAK, UNDECIDED = 0, 1, 2
 
 
 @numba.njit(cache=True)
-def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: float, limit: int, found: Any) -> int:
+def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: float, limit: int, found: Any) -> int:  # noqa: PLR0917
     """Whether blinding so many robots can leave ``group`` (N,) less than the threshold: ABSENT, WEAK or UNDECIDED.
 
     ``seeing`` : (N,) robots that cannot be blinded; ``limit`` : values looked at before giving up;
@@ -70,7 +70,7 @@ def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: flo
 
 
 @numba.njit(cache=True)
-def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, sums: Any) -> bool:
+def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, sums: Any) -> bool:  # noqa: PLR0917
     """Exchange a blinded robot for a seeing one while that lowers the group's value; whether it falls below.
 
     ``blind`` (N,) and ``sums`` (M, T), the seeing robots' information, are changed in place.

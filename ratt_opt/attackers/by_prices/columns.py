@@ -1,12 +1,12 @@
 """Every group that may be part of an attack at given prices, by depth-first search in compiled code.
 
-For a threshold, a group ``g`` of the attacker's partition cuts ``cut(g) / 2`` links (each is shared with another group) and
-needs ``need(g)`` blinded robots to be worth less. At prices ``pi`` of robots and ``mu`` of a blinded robot its reduced
-cost is ``cut(g) / 2 + mu need(g) - pi(g)``. The search lists the connected groups whose reduced cost is at
-most a limit. Two bounds prune it, both by flows (``flow.py``):
+For a threshold, a group ``g`` of the attacker's partition cuts ``cut(g) / 2`` links (each is shared with another
+group) and needs ``need(g)`` blinded robots to be worth less. At prices ``pi`` of robots and ``mu`` of a blinded robot
+its reduced cost is ``cut(g) / 2 + mu need(g) - pi(g)``. The search lists the connected groups whose reduced cost is
+at most a limit. Two bounds prune it, both by flows (``flow.py``):
 
-- the group's value does not exceed the threshold only if a knapsack holds (``knapsack.py``): ``weight(seeing) <=
-  capacity``; with its multiplier, ``mu need(g)`` is at least ``sum of min(mu, multiplier weight) - multiplier capacity``;
+- robots worth less than the threshold keep a knapsack, ``weight(seeing) <= capacity``, such as a largest size; with
+  a multiplier ``mu need(g)`` is at least ``sum of min(mu, multiplier weight) - multiplier capacity``;
 - ``need`` does not fall when robots join, so what the robots already inside need is paid.
 
 The first is strong for large groups and the second for small ones. Any mixture of them is a bound too, and one in
@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from ratt_opt.attackers.by_prices.blinding import ABSENT, UNDECIDED, WEAK, exchange, weak_subset
+from ratt_opt.attackers.by_prices.blinding import UNDECIDED, WEAK, exchange, weak_subset
 from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.flow import ALWAYS, augment, open_flow
 
@@ -34,12 +34,16 @@ QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node, and for a group that is to be listed."""
 
 SMALL = 40
-"""Robots up to which what a group needs is decided at every node. Measured at 24 robots: with 12 instead, a refutation of
-17,000 nodes takes more than 220,000."""
+"""Robots up to which what a group needs is decided at every node. Measured at 24 robots: with 12 instead, a
+refutation of 17,000 nodes takes more than 220,000."""
 
 
 class Prices(NamedTuple):
-    """``robot`` : (N,) pi; ``blinded`` : mu; ``weight`` : (N,), ``capacity``, ``multiplier`` : of the knapsack."""
+    """Prices, and the knapsack that bounds what a group needs.
+
+    ``robot`` : (N,) pi; ``blinded`` : mu; ``weight`` : (N,), ``capacity``, ``multiplier`` : of the knapsack;
+    ``shares`` : (K,) of the knapsack's bound in each flow's, in [0, 1]
+    """
 
     robot: Any
     blinded: float
@@ -105,7 +109,7 @@ def _copy(stack: Any, source: int, target: int) -> None:
 
 
 @numba.njit(cache=True)
-def _least(team: Any, links: Any, prices: Any, question: Any, stack: Any, node: int, work: Any) -> float:
+def _least(links: Any, prices: Any, question: Any, stack: Any, node: int, work: Any) -> float:  # noqa: PLR0917
     """Reduced cost that no group of the node falls below: the better of both flows."""
     best = -np.inf
     for kind, share in enumerate(prices.shares):
@@ -120,7 +124,7 @@ def _least(team: Any, links: Any, prices: Any, question: Any, stack: Any, node: 
 
 
 @numba.njit(cache=True)
-def _settle(team: Any, links: Any, question: Any, stack: Any, node: int, values: int) -> None:
+def _settle(team: Any, links: Any, question: Any, stack: Any, node: int, values: int) -> None:  # noqa: PLR0917
     """Close the gap between the least and the found number of blinded robots as far as ``values`` reach."""
     group = stack.side[node] == 1
     found = np.zeros(len(group), dtype=np.bool_)
@@ -136,7 +140,7 @@ def _settle(team: Any, links: Any, question: Any, stack: Any, node: int, values:
 
 
 @numba.njit(cache=True)
-def _admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:
+def _admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
     """Put a robot inside and update what the group needs; false where no blinding suffices."""
     stack.side[node, robot] = 1
     stack.into[node, :, robot] = ALWAYS
@@ -157,7 +161,7 @@ def _admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: i
 
 
 @numba.njit(cache=True)
-def _blind_more(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:
+def _blind_more(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
     """Blind the new robot, or the strongest ones where it is protected, until the group is below the threshold."""
     group, blind = stack.side[node] == 1, stack.blind[node]
     while True:
@@ -176,7 +180,7 @@ def _blind_more(team: Any, links: Any, question: Any, stack: Any, node: int, rob
 
 
 @numba.njit(cache=True)
-def _blind_fewer(team: Any, links: Any, question: Any, stack: Any, node: int, sums: Any) -> None:
+def _blind_fewer(team: Any, links: Any, question: Any, stack: Any, node: int, sums: Any) -> None:  # noqa: PLR0917
     """Let blinded robots see again as long as exchanges make up for it."""
     group = stack.side[node] == 1
     while stack.need[node, 1] > stack.need[node, 0]:
@@ -192,7 +196,7 @@ def _blind_fewer(team: Any, links: Any, question: Any, stack: Any, node: int, su
 
 
 @numba.njit(cache=True)
-def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: Any, sums: Any) -> bool:
+def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: Any, sums: Any) -> bool:  # noqa: PLR0917
     """The node of all groups whose first robot in the order is the next one; false where it is pruned."""
     place = stack.position[0]
     n_robots = len(question.order)
@@ -210,7 +214,7 @@ def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: 
             stack.out[0, kind, question.order[k]] = ALWAYS
     if not _admit(team, links, question, stack, 0, question.order[place], sums):
         return False
-    return bool(_least(team, links, prices, question, stack, 0, work) <= question.limit)
+    return bool(_least(links, prices, question, stack, 0, work) <= question.limit)
 
 
 @numba.njit(cache=True)
@@ -238,7 +242,7 @@ def _cost(links: Any, prices: Any, side: Any, need: int) -> float:
             total -= prices.robot[i]
             for a in range(links.start[i], links.start[i + 1]):
                 total += 0.5 if side[links.robot[a]] != 1 else 0.0
-    return total
+    return float(total)
 
 
 @numba.njit(cache=True)
@@ -256,7 +260,7 @@ def _knapsack_need(links: Any, prices: Any, group: Any) -> int:
 
 
 @numba.njit(cache=True)
-def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed: Any, sums: Any) -> None:
+def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed: Any, sums: Any) -> None:  # noqa: PLR0917
     """Add the finished group of the node just closed where its reduced cost is within the limit."""
     node = stack.position[1]
     groups, blinds, needs, costs = listed
@@ -275,7 +279,7 @@ def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed:
 
 
 @numba.njit(cache=True)
-def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: Any, nodes: int, listed: Any) -> int:
+def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: Any, nodes: int, listed: Any) -> int:  # noqa: PLR0917
     """Continue for at most so many nodes: FINISHED, PAUSED, or FULL when ``listed`` has no room left.
 
     ``listed`` : groups (C, N), blinded robots (C, N), least and found needs (C, 2), reduced costs (C,)
@@ -305,10 +309,10 @@ def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: A
         position[2] += 2
         _copy(stack, node, node + 1)
         joins = _admit(team, links, question, stack, node + 1, robot, sums)
-        joins = joins and _least(team, links, prices, question, stack, node + 1, work) <= question.limit
+        joins = joins and _least(links, prices, question, stack, node + 1, work) <= question.limit
         stack.side[node, robot] = 2
         stack.out[node, :, robot] = ALWAYS
-        stays = _least(team, links, prices, question, stack, node, work) <= question.limit
+        stays = _least(links, prices, question, stack, node, work) <= question.limit
         if joins and not stays:
             _copy(stack, node + 1, node)
         position[1] += int(joins) + int(stays) - 1

@@ -71,7 +71,7 @@ def _criterion(code: int, weights: Any, matrices: Any) -> float:
 @numba.njit(cache=True)
 def value_of(team: Any, sums: Any) -> float:
     """Value of a group whose posterior information is ``sums`` (M, T), never below 0."""
-    return max(team.baseline - _criterion(team.code, team.weights, sums), 0.0)
+    return float(max(team.baseline - _criterion(team.code, team.weights, sums), 0.0))
 
 
 @numba.njit(cache=True)

@@ -17,7 +17,7 @@ FINISHED, PAUSED, FOUND = 0, 1, 2
 
 
 @numba.njit(cache=True)
-def next_cover(groups: Any, cost: Any, need: Any, budgets: Any, state: Any, nodes: int) -> int:
+def next_cover(groups: Any, cost: Any, need: Any, budgets: Any, state: Any, nodes: int) -> int:  # noqa: PLR0917
     """Continue to the next partition: FINISHED, PAUSED after so many nodes, or FOUND.
 
     Parameters
@@ -41,10 +41,10 @@ def next_cover(groups: Any, cost: Any, need: Any, budgets: Any, state: Any, node
         chosen = -1
         while k < first[lowest + 1]:
             nodes -= 1
-            if spent[d, 0] + cost[k] <= budgets[0] and spent[d, 1] + need[k] <= budgets[1]:
-                if not np.any(covered[d] & groups[k]):
-                    chosen = k
-                    break
+            affordable = spent[d, 0] + cost[k] <= budgets[0] and spent[d, 1] + need[k] <= budgets[1]
+            if affordable and not np.any(covered[d] & groups[k]):
+                chosen = k
+                break
             k += 1
         position[d] = k
         if chosen < 0:

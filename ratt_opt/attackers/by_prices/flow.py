@@ -1,8 +1,8 @@
 """A lower bound of what a group costs, by a flow that grows as robots are fixed, in compiled code.
 
-The least of ``sum of cost[i] over the group + half the links it cuts`` over groups that contain and avoid given robots is a
-minimum cut; any flow is a lower bound of it, so rounding and stopping early do no harm. Fixing a robot only adds
-capacity: a child's flow starts from its parent's. Imported only where compiled loops are used.
+The least of ``sum of cost[i] over the group + half the links it cuts``, over groups that contain and avoid given
+robots, is a minimum cut; any flow is a lower bound of it, so rounding and stopping early do no harm. Fixing a robot
+only adds capacity: a child's flow starts from its parent's. Imported only where compiled loops are used.
 
 Source: Picard and Ratliff, Minimum cuts and related problems, Networks 5 (1975).
 """
@@ -59,7 +59,7 @@ def _levels(links: Any, flow: Any, level: Any, queue: Any) -> bool:
 
 
 @numba.njit(cache=True)
-def _push(links: Any, flow: Any, source: int, level: Any, arc: Any, path: Any) -> float:
+def _push(links: Any, flow: Any, source: int, level: Any, arc: Any, path: Any) -> float:  # noqa: PLR0917
     """One path from a source robot to the sink along rising levels; what it carries, 0 where there is none left.
 
     ``arc`` : (N,) next arc to try from each robot; ``path`` : (N,) arcs of the path

@@ -27,7 +27,7 @@ FIRST_REACH = 0.1
 """How far below the attack in hand thresholds are asked first, relative to it; doubled where they stay open."""
 
 FIRST_EFFORT, HARDER = 50_000, 4
-"""Nodes of one enumeration before a threshold is left open for a lower one, and their growth when those are exhausted."""
+"""Nodes of one enumeration before a threshold is left open, and their growth when the lower ones are exhausted."""
 
 BISECTED = 2e-3
 """Relative width below which the attack in hand is tested instead of the middle."""

@@ -52,9 +52,7 @@ class PriceVector:
 
     def lowered(self, amount: float) -> PriceVector:
         """Every robot cheaper by an amount: every group's reduced cost rises by at least as much."""
-        return PriceVector(
-            robot=self.robot - amount, blinded=self.blinded, links=self.links - amount * len(self.robot)
-        )
+        return PriceVector(robot=self.robot - amount, blinded=self.blinded, links=self.links - amount * len(self.robot))
 
 
 class GroupPrices:
@@ -123,9 +121,7 @@ class GroupPrices:
     def _forget(self, robot: FloatArray, blinded: float) -> None:
         """Keep the groups whose reduced cost is among the least, and start afresh next time."""
         known = list(self._groups.items())
-        slack = [
-            self._links(group) + blinded * group.need - float(robot[group.robots].sum()) for _, group in known
-        ]
+        slack = [self._links(group) + blinded * group.need - float(robot[group.robots].sum()) for _, group in known]
         order = np.argsort(slack, kind="stable")[: MOST_ROWS // 2]
         self._groups = dict(known[k] for k in order)
         self._program = None
