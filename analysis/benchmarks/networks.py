@@ -103,7 +103,7 @@ def instances(robots: list[int], families: list[str], seeds: int, objective: str
                 for shares in SHARES:
                     rng = np.random.default_rng([n_robots, seed])
                     alpha_s, alpha_c = shares or rng.uniform(0, 2 / 3, 2).tolist()
-                    options = {"alpha_s": float(alpha_s), "alpha_c": float(alpha_c), "seed": seed}
+                    options: dict[str, Any] = {"alpha_s": float(alpha_s), "alpha_c": float(alpha_c), "seed": seed}
                     scenario = network_scenario(family, n_robots, TARGETS[n_robots], **options)
                     yield n_robots, family, seed, scenario.problem(objective)
 

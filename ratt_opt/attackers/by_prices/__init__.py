@@ -3,5 +3,5 @@
 Open ``price_search.py`` first: annealed attacks from above (``starts.py``, ``annealing.py``), refuted thresholds
 from below.
 ``decision.py`` decides a threshold: ``prices.py`` finds the prices, ``columns.py`` lists the groups that may pay them
-(pruned by ``flow.py``, ``blinding.py`` and the most robots a weak set has), ``cover.py`` puts listed groups together.
+(pruned by ``flow.py`` and by what a group needs blinded, ``needs.py``), ``cover.py`` puts listed groups together.
 """

@@ -22,20 +22,12 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from ratt_opt.attackers.by_prices.blinding import UNDECIDED, WEAK, exchange, weak_subset
-from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.flow import ALWAYS, augment, open_flow
+from ratt_opt.attackers.by_prices.needs import THOROUGH, admit, blind_fewer, knapsack_need, settle
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]
 
 FINISHED, PAUSED, FULL = 0, 1, 2
-
-QUICK, THOROUGH = 200, 3_000
-"""Values looked at to decide what a group needs: at every node, and for a group that is to be listed."""
-
-SMALL = 40
-"""Robots up to which what a group needs is decided at every node. Measured at 24 robots: with 12 instead, a
-refutation of 17,000 nodes takes more than 220,000."""
 
 
 class Prices(NamedTuple):
@@ -124,78 +116,6 @@ def _least(links: Any, prices: Any, question: Any, stack: Any, node: int, work: 
 
 
 @numba.njit(cache=True)
-def _settle(team: Any, links: Any, question: Any, stack: Any, node: int, values: int) -> None:  # noqa: PLR0917
-    """Close the gap between the least and the found number of blinded robots as far as ``values`` reach."""
-    group = stack.side[node] == 1
-    found = np.zeros(len(group), dtype=np.bool_)
-    while stack.need[node, 0] < stack.need[node, 1]:
-        answer = weak_subset(team, links.seeing, group, stack.need[node, 0], question.threshold, values, found)
-        if answer == UNDECIDED:
-            return
-        if answer == WEAK:
-            stack.blind[node] = found
-            stack.need[node, 1] = stack.need[node, 0]
-        else:
-            stack.need[node, 0] += 1
-
-
-@numba.njit(cache=True)
-def _admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
-    """Put a robot inside and update what the group needs; false where no blinding suffices."""
-    stack.side[node, robot] = 1
-    stack.into[node, :, robot] = ALWAYS
-    group, blind = stack.side[node] == 1, stack.blind[node]
-    if gather(team, group & ~blind, sums) < question.threshold:
-        return True
-    small = group.sum() <= SMALL
-    if small and stack.need[node, 1] > 0:
-        other = blind.copy()
-        if exchange(team, links.seeing, group, other, question.threshold, sums):
-            blind[:] = other
-            return True
-    if not _blind_more(team, links, question, stack, node, robot, sums):
-        return False
-    if small:
-        _settle(team, links, question, stack, node, QUICK)
-    return bool(stack.need[node, 0] <= question.budget)
-
-
-@numba.njit(cache=True)
-def _blind_more(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
-    """Blind the new robot, or the strongest ones where it is protected, until the group is below the threshold."""
-    group, blind = stack.side[node] == 1, stack.blind[node]
-    while True:
-        chosen = robot if not (blind[robot] or links.seeing[robot]) else -1
-        if chosen < 0:
-            for i in range(len(group)):
-                free = group[i] and not blind[i] and not links.seeing[i]
-                if free and (chosen < 0 or team.single[i] > team.single[chosen]):
-                    chosen = i
-        if chosen < 0:
-            return False
-        blind[chosen] = True
-        stack.need[node, 1] += 1
-        if gather(team, group & ~blind, sums) < question.threshold:
-            return True
-
-
-@numba.njit(cache=True)
-def _blind_fewer(team: Any, links: Any, question: Any, stack: Any, node: int, sums: Any) -> None:  # noqa: PLR0917
-    """Let blinded robots see again as long as exchanges make up for it."""
-    group = stack.side[node] == 1
-    while stack.need[node, 1] > stack.need[node, 0]:
-        other, weakest = stack.blind[node].copy(), -1
-        for i in range(len(group)):
-            if other[i] and (weakest < 0 or team.single[i] < team.single[weakest]):
-                weakest = i
-        other[weakest] = False
-        if not exchange(team, links.seeing, group, other, question.threshold, sums):
-            return
-        stack.blind[node] = other
-        stack.need[node, 1] -= 1
-
-
-@numba.njit(cache=True)
 def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: Any, sums: Any) -> bool:  # noqa: PLR0917
     """The node of all groups whose first robot in the order is the next one; false where it is pruned."""
     place = stack.position[0]
@@ -212,7 +132,7 @@ def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: 
         for k in range(place):
             stack.side[0, question.order[k]] = 2
             stack.out[0, kind, question.order[k]] = ALWAYS
-    if not _admit(team, links, question, stack, 0, question.order[place], sums):
+    if not admit(team, links, question, stack, 0, question.order[place], sums):
         return False
     return bool(_least(links, prices, question, stack, 0, work) <= question.limit)
 
@@ -246,30 +166,16 @@ def _cost(links: Any, prices: Any, side: Any, need: int) -> float:
 
 
 @numba.njit(cache=True)
-def _knapsack_need(links: Any, prices: Any, group: Any) -> int:
-    """Blinded robots that the knapsack alone asks for."""
-    weight, need = prices.weight * group, 0
-    total = weight.sum()
-    weight[links.seeing] = 0.0
-    while total > prices.capacity and need < len(group):
-        heaviest = np.argmax(weight)
-        total -= weight[heaviest]
-        weight[heaviest] = 0.0
-        need += 1
-    return need
-
-
-@numba.njit(cache=True)
 def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed: Any, sums: Any) -> None:  # noqa: PLR0917
     """Add the finished group of the node just closed where its reduced cost is within the limit."""
     node = stack.position[1]
     groups, blinds, needs, costs = listed
-    asked = _knapsack_need(links, prices, stack.side[node] == 1)
+    asked = knapsack_need(links, prices, stack.side[node] == 1)
     stack.need[node, 0] = max(stack.need[node, 0], min(asked, stack.need[node, 1]))
     if _cost(links, prices, stack.side[node], stack.need[node, 0]) > question.limit:
         return
-    _blind_fewer(team, links, question, stack, node, sums)
-    _settle(team, links, question, stack, node, THOROUGH)
+    blind_fewer(team, links, question, stack, node, sums)
+    settle(team, links, question, stack, node, THOROUGH)
     cost = _cost(links, prices, stack.side[node], stack.need[node, 0])
     if cost <= question.limit and stack.need[node, 0] <= question.budget:
         row = stack.position[3]
@@ -308,7 +214,7 @@ def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: A
             continue
         position[2] += 2
         _copy(stack, node, node + 1)
-        joins = _admit(team, links, question, stack, node + 1, robot, sums)
+        joins = admit(team, links, question, stack, node + 1, robot, sums)
         joins = joins and _least(links, prices, question, stack, node + 1, work) <= question.limit
         stack.side[node, robot] = 2
         stack.out[node, :, robot] = ALWAYS

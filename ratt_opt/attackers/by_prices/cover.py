@@ -17,14 +17,14 @@ FINISHED, PAUSED, FOUND = 0, 1, 2
 
 
 @numba.njit(cache=True)
-def next_cover(groups: Any, cost: Any, need: Any, budgets: Any, state: Any, nodes: int) -> int:  # noqa: PLR0917
+def next_cover(groups: Any, costs: Any, budgets: Any, state: Any, nodes: int) -> int:
     """Continue to the next partition: FINISHED, PAUSED after so many nodes, or FOUND.
 
     Parameters
     ----------
-    groups : (C, N) sorted by first robot; ``cost``, ``need`` : (C,) reduced costs >= 0 and blinded robots
-    budgets : (largest sum of costs, most blinded robots)
-    state : position (N + 1,) next group at each depth, -1 to begin; covered (N + 1, N); spent (N + 1, 2);
+    groups : (C, N) sorted by first robot
+    costs : (C, 3) reduced cost, blinded robots, half the links cut, each >= 0; budgets : (3,) most of each
+    state : position (N + 1,) next group at each depth, -1 to begin; covered (N + 1, N); spent (N + 1, 3);
         depth (1,); first (N + 1,) groups ``first[i]:first[i + 1]`` start with robot ``i``
     """
     position, covered, spent, depth, first = state
@@ -41,8 +41,7 @@ def next_cover(groups: Any, cost: Any, need: Any, budgets: Any, state: Any, node
         chosen = -1
         while k < first[lowest + 1]:
             nodes -= 1
-            affordable = spent[d, 0] + cost[k] <= budgets[0] and spent[d, 1] + need[k] <= budgets[1]
-            if affordable and not np.any(covered[d] & groups[k]):
+            if np.all(spent[d] + costs[k] <= budgets) and not np.any(covered[d] & groups[k]):
                 chosen = k
                 break
             k += 1
@@ -51,7 +50,7 @@ def next_cover(groups: Any, cost: Any, need: Any, budgets: Any, state: Any, node
             depth[0] = d - 1
             continue
         covered[d + 1] = covered[d] | groups[chosen]
-        spent[d + 1, 0], spent[d + 1, 1] = spent[d, 0] + cost[chosen], spent[d, 1] + need[chosen]
+        spent[d + 1] = spent[d] + costs[chosen]
         position[d + 1] = -1
         depth[0] = d + 1
         if nodes <= 0:

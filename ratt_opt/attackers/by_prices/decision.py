@@ -39,8 +39,9 @@ nodes of two."""
 MARGIN = 1e-3
 """Links that scaled prices claim beyond the budget; well above rounding, well below one link."""
 
-TOLERANCE = 1e-7
-"""Reduced costs below this count as negative; a team's sum stays well below MARGIN."""
+TOLERANCE = 1e-6
+"""Reduced costs below minus this count as negative: above what the linear program leaves of its rows, and a team's sum
+stays well below MARGIN."""
 
 STEPS = (-3.0, -0.3, -0.01)
 """Reduced costs asked for in turn: the groups that pay the prices worst are found first, and fast."""
@@ -200,15 +201,17 @@ class Decision:
         robots = np.ascontiguousarray(listed.robots[:, busy])
         lowest = robots.argmax(axis=1)
         order = np.argsort(lowest, kind="stable")
-        robots, cost = np.ascontiguousarray(robots[order]), np.maximum(listed.cost[order], 0.0)
+        robots = np.ascontiguousarray(robots[order])
+        links = np.array([self.prices.half_cut(row) for row in listed.robots[order]])
+        costs = np.stack([np.maximum(listed.cost[order], 0.0), listed.need[order, 0], links], axis=1)
         first = np.searchsorted(lowest[order], np.arange(n_robots + 1))
         position, depth = np.full(n_robots + 2, -1, dtype=np.int64), np.zeros(1, dtype=np.int64)
-        covered, spent = np.zeros((n_robots + 2, n_robots), dtype=np.bool_), np.zeros((n_robots + 2, 2))
+        covered, spent = np.zeros((n_robots + 2, n_robots), dtype=np.bool_), np.zeros((n_robots + 2, 3))
         state = (position, covered, spent, depth, first)
-        budgets = (gap, float(self.threat.n_blinded))
+        budgets = np.array([gap, self.threat.n_blinded, self.threat.alpha_c], dtype=np.float64)
         while True:
             budget.check()
-            code = next_cover(robots, cost, listed.need[order, 0], budgets, state, 1_000_000)
+            code = next_cover(robots, costs, budgets, state, 1_000_000)
             if code == FOUND:
                 yield order[position[: int(depth[0]) + 1]].tolist()
             elif code != PAUSED:

@@ -104,8 +104,9 @@ class GroupPrices:
         self._threshold = threshold
         self._append([group for group in self._groups.values() if group.value < threshold])
 
-    def _links(self, group: KnownGroup) -> float:
-        return 0.5 * float(self._adjacent[group.robots][:, ~group.robots].sum())
+    def half_cut(self, robots: BoolArray) -> float:
+        """Half the links that separate these robots (N,) from the others."""
+        return 0.5 * float(self._adjacent[robots][:, ~robots].sum())
 
     def _append(self, groups: list[KnownGroup]) -> None:
         if not groups:
@@ -115,13 +116,15 @@ class GroupPrices:
         for group in groups:
             members = np.flatnonzero(group.robots).tolist()
             entries.append(([*members, len(self._adjacent)], [1.0] * len(members) + [-float(group.need)]))
-            sides.append(self._links(group))
+            sides.append(self.half_cut(group.robots))
         self._program.add_rows(rows_of(entries, [-np.inf] * len(groups), sides))
 
     def _forget(self, robot: FloatArray, blinded: float) -> None:
         """Keep the groups whose reduced cost is among the least, and start afresh next time."""
         known = list(self._groups.items())
-        slack = [self._links(group) + blinded * group.need - float(robot[group.robots].sum()) for _, group in known]
+        slack = [
+            self.half_cut(group.robots) + blinded * group.need - float(robot[group.robots].sum()) for _, group in known
+        ]
         order = np.argsort(slack, kind="stable")[: MOST_ROWS // 2]
         self._groups = dict(known[k] for k in order)
         self._program = None
