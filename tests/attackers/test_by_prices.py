@@ -118,7 +118,7 @@ def test_the_enumeration_lists_every_group_that_pays(seed):
     sets = [s for k in range(8) for s in combinations(range(7), k)]
     largest = max(len(s) for s in sets if problem.objective(plan[list(s)]) < threshold)
     prices = Prices(robot, blinded, np.ones(7), float(largest), blinded, np.array([1.0, 0.5, 0.0]))
-    question = Question(threshold, problem.threat.n_blinded, 0.5, rng.permutation(7))
+    question = Question(threshold, problem.threat.n_blinded, 0.5, rng.permutation(7), 10**6, 10**6)
     stack = Stack.of(7, len(links.robot), 3)
     listed = (np.zeros((200, 7), np.bool_), np.zeros((200, 7), np.bool_), np.zeros((200, 2), np.int64), np.zeros(200))
     assert enumerate_groups(team, links, prices, question, stack, 10**6, listed) == FINISHED

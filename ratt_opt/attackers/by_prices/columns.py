@@ -23,7 +23,7 @@ import numba
 import numpy as np
 
 from ratt_opt.attackers.by_prices.flow import ALWAYS, augment, open_flow
-from ratt_opt.attackers.by_prices.needs import THOROUGH, admit, blind_fewer, knapsack_need, settle
+from ratt_opt.attackers.by_prices.needs import admit, blind_fewer, knapsack_need, settle
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]
 
@@ -48,13 +48,16 @@ class Prices(NamedTuple):
 class Question(NamedTuple):
     """Groups worth less than ``threshold`` with at most ``budget`` blinded, of reduced cost at most ``limit``.
 
-    ``order`` : (N,) robots in the order in which groups are listed by their first
+    ``order`` : (N,) robots in the order in which groups are listed by their first; ``quick``, ``thorough`` : values
+    looked at to decide what a group needs, at every node and before it is listed
     """
 
     threshold: float
     budget: int
     limit: float
     order: Any
+    quick: int
+    thorough: int
 
 
 class Stack(NamedTuple):
@@ -118,23 +121,23 @@ def _least(links: Any, prices: Any, question: Any, stack: Any, node: int, work: 
 @numba.njit(cache=True)
 def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: Any, sums: Any) -> bool:  # noqa: PLR0917
     """The node of all groups whose first robot in the order is the next one; false where it is pruned."""
-    place = stack.position[0]
+    place, node = stack.position[0], stack.position[1]
     n_robots = len(question.order)
-    stack.side[0], stack.blind[0], stack.need[0] = 0, False, 0
+    stack.side[node], stack.blind[node], stack.need[node] = 0, False, 0
     cost = np.empty(n_robots)
     for kind, share in enumerate(prices.shares):
         for i in range(n_robots):
             held = prices.multiplier * prices.weight[i]
             held = held if links.seeing[i] else min(held, prices.blinded)
             cost[i] = share * held - prices.robot[i]
-        flow = (stack.into[0, kind], stack.out[0, kind], stack.along[0, kind])
-        stack.bound[0, kind] = open_flow(links, cost, flow)
+        flow = (stack.into[node, kind], stack.out[node, kind], stack.along[node, kind])
+        stack.bound[node, kind] = open_flow(links, cost, flow)
         for k in range(place):
-            stack.side[0, question.order[k]] = 2
-            stack.out[0, kind, question.order[k]] = ALWAYS
-    if not admit(team, links, question, stack, 0, question.order[place], sums):
+            stack.side[node, question.order[k]] = 2
+            stack.out[node, kind, question.order[k]] = ALWAYS
+    if not admit(team, links, question, stack, node, question.order[place], sums):
         return False
-    return bool(_least(links, prices, question, stack, 0, work) <= question.limit)
+    return bool(_least(links, prices, question, stack, node, work) <= question.limit)
 
 
 @numba.njit(cache=True)
@@ -175,7 +178,7 @@ def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed:
     if _cost(links, prices, stack.side[node], stack.need[node, 0]) > question.limit:
         return
     blind_fewer(team, links, question, stack, node, sums)
-    settle(team, links, question, stack, node, THOROUGH)
+    settle(team, links, question, stack, node, question.thorough)
     cost = _cost(links, prices, stack.side[node], stack.need[node, 0])
     if cost <= question.limit and stack.need[node, 0] <= question.budget:
         row = stack.position[3]

@@ -52,6 +52,9 @@ LOWERED = 0.01
 CHUNK, ROOM, NEW_GROUPS = 2_000, 100_000, 100
 """Nodes between two looks at the clock; groups listed for covers; groups added to the program at a time."""
 
+QUICK, THOROUGH = 200, 3_000
+"""Values looked at to decide what a group needs: at every node (some 20 microseconds), and before it is listed."""
+
 SIZE_VALUES = 1_000_000
 """Values looked at to prove that no weak set has a certain size."""
 
@@ -163,7 +166,7 @@ class Decision:
         order = np.argsort(-prices.robot, kind="stable")
         if self._shuffled:  # the groups listed last all began with the same robots
             order = self._rng.permutation(n_robots)
-        question = Question(threshold, self.threat.n_blinded, limit, order)
+        question = Question(threshold, self.threat.n_blinded, limit, order, QUICK, THOROUGH)
         stack = Stack.of(n_robots, len(self.links.robot), len(SHARES))
         shape = (room, n_robots)
         listed = (np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros((room, 2), np.int64), np.zeros(room))

@@ -14,10 +14,7 @@ from ratt_opt.attackers.by_prices.blinding import UNDECIDED, WEAK, exchange, wea
 from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.flow import ALWAYS
 
-__all__ = ["THOROUGH", "admit", "blind_fewer", "knapsack_need", "settle"]
-
-QUICK, THOROUGH = 200, 3_000
-"""Values looked at to decide what a group needs: at every node, and for a group that is to be listed."""
+__all__ = ["admit", "blind_fewer", "knapsack_need", "settle"]
 
 SMALL = 40
 """Robots up to which what a group needs is decided at every node. Measured at 24 robots: with 12 instead, a
@@ -57,7 +54,7 @@ def admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: in
     if not _blind_more(team, links, question, stack, node, robot, sums):
         return False
     if small:
-        settle(team, links, question, stack, node, QUICK)
+        settle(team, links, question, stack, node, question.quick)
     return bool(stack.need[node, 0] <= question.budget)
 
 
