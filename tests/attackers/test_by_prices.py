@@ -10,8 +10,10 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.bracket import AttackBracket
+from ratt_opt.attackers.by_prices import cover
 from ratt_opt.attackers.by_prices.blinding import ABSENT, WEAK, weak_subset
 from ratt_opt.attackers.by_prices.columns import FINISHED, Prices, Question, Stack, enumerate_groups
+from ratt_opt.attackers.by_prices.cover import next_cover
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.team import Links, Team
 from ratt_opt.attackers.plan_values import PlanValues
@@ -97,10 +99,11 @@ def test_weak_subsets_against_all_of_them(seed):
     free = [i for i in members if not links.seeing[i]]
     for blinded in range(len(free) + 1):
         values = [problem.objective([plan[i] for i in members if i not in out]) for out in combinations(free, blinded)]
-        for threshold in (min(values) * 0.999 - 1e-9, min(values) * 1.001 + 1e-9):
+        least = min(values)
+        for threshold in (least * 0.999, least * 1.001) if least > 1e-6 else (1e-3,):
             found = np.zeros(8, dtype=np.bool_)
             answer = weak_subset(team, links.seeing, group, blinded, threshold, 10**6, found)
-            assert answer == (WEAK if min(values) < threshold else ABSENT)
+            assert answer == (WEAK if least < threshold else ABSENT)
             if answer == WEAK:
                 left = [plan[i] for i in members if not found[i]]
                 assert found.sum() == blinded
@@ -148,3 +151,27 @@ def paying_groups(problem, plan, question, prices):
         if need is not None and len(crossing) / 2 + blinded * need - robot[list(group)].sum() <= limit:
             answer[group] = need
     return answer
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_covers_against_all_choices_of_groups(seed):
+    rng = np.random.default_rng(seed)
+    masks = rng.choice(np.arange(1, 32), size=12, replace=False)
+    groups = np.array([[bool(mask >> i & 1) for i in range(5)] for mask in masks])
+    groups = groups[np.argsort(groups.argmax(axis=1), kind="stable")]
+    costs, budgets = rng.integers(0, 4, (12, 3)).astype(float), rng.integers(2, 7, 3).astype(float)
+    expected = {
+        chosen
+        for k in range(1, 6)
+        for chosen in combinations(range(12), k)
+        if (groups[list(chosen)].sum(axis=0) == 1).all() and (costs[list(chosen)].sum(axis=0) <= budgets).all()
+    }
+    first = np.searchsorted(groups.argmax(axis=1), np.arange(6))
+    position, depth = np.full(7, -1), np.zeros(1, dtype=np.int64)
+    state = (position, np.zeros((7, 5), dtype=np.bool_), np.zeros((7, 3)), depth, first)
+    found = []
+    while (code := next_cover(groups, costs, budgets, state, int(rng.integers(1, 20)))) != cover.FINISHED:
+        if code == cover.FOUND:
+            found.append(tuple(sorted(position[: depth[0] + 1].tolist())))
+    assert len(found) == len(set(found))
+    assert set(found) == expected
