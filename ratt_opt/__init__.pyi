@@ -61,7 +61,7 @@ from .scenario.mrclam import from_mrclam as from_mrclam
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.sensor import Sensor as Sensor
 from .scenario.simulation import Tracking as Tracking, simulate_tracking as simulate_tracking
-from .setfunctions.base import SetFunction as SetFunction
+from .setfunctions.base import SetFunction as SetFunction, TableFunction as TableFunction
 from .setfunctions.criteria.logdet import LogDetObjective as LogDetObjective
 from .setfunctions.criteria.maxeig import MaxEigenvalueObjective as MaxEigenvalueObjective
 from .setfunctions.criteria.trace import TraceObjective as TraceObjective
@@ -82,7 +82,6 @@ from .setfunctions.reference import (
     PartitionMatroidRank as PartitionMatroidRank,
 )
 from .setfunctions.sampling import NotFound as NotFound, Violation as Violation
-from .setfunctions.table import TableFunction as TableFunction
 from .setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES, Reference as Reference, reference as reference
 from .solvers.baselines import greedy as greedy, myopic as myopic, random_plan as random_plan
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum

@@ -14,19 +14,21 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.budget import Budget
-from ratt_opt.curvatures.brackets import bracket_marginals
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.curvatures.marginals import Marginals, MeasuredMarginals, check_monotone, enumerate_marginals
+from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
+from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.setfunctions.base import TableFunction, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.properties import Violation, find_submodularity_violation
-from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt._validation import IntArray
+    from ratt_opt.curvatures.least_certain import MarginalBrackets
     from ratt_opt.setfunctions.base import SetFunction
 
 __all__ = ["Curvature", "curvature", "curvature_over", "total_curvature"]
@@ -79,7 +81,7 @@ def total_curvature(
     """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
 
     Exact where the domain can be enumerated (up to 2**24 sets), else for information criteria a certified bracket,
-    tightened by branch and bound: see :mod:`ratt_opt.curvatures.brackets`. An interrupt returns the bracket.
+    tightened by branch and bound. An interrupt returns the bracket.
 
     Parameters
     ----------
@@ -155,9 +157,28 @@ def _measured(domain: Domain, gap: float, budget: Budget, *, against_own: bool) 
         marginals = enumerate_marginals(domain)
         return MeasuredMarginals(marginals=marginals, how="every context enumerated", stop=Stop.EXHAUSTED, nodes=0)
     if isinstance(f, InformationObjective):
-        return bracket_marginals(f, domain.owners, gap=gap, budget=budget, against_own=against_own)
+        return _bracketed(f, domain.owners, gap=gap, budget=budget, against_own=against_own)
     need = f"{domain.count:.3g} contexts, {domain.count * 8 / 2**30:.3g} GiB"
     raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
+
+
+def _bracketed(
+    f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
+) -> MeasuredMarginals:
+    """Bracket the marginals of every element over sets with at most one element per owner.
+
+    ``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal.
+    """
+    levels = f.planar_levels()
+    brackets: MarginalBrackets
+    if levels is not None:
+        brackets = PlanarBrackets(levels, owners, f.singletons(), gap=gap, budget=budget, against_own=against_own)
+        how = "smallest levels and attained contexts"
+    else:
+        brackets = SeparableBrackets(f, owners, gap=gap, budget=budget, against_own=against_own)
+        how = f"{brackets.rests_on} and attained contexts"
+    stop = brackets.run()
+    return MeasuredMarginals(marginals=brackets.marginals(), how=how, stop=stop, nodes=budget.nodes)
 
 
 def _submodularity(domain: Domain) -> str:

@@ -9,9 +9,8 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_subset
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import check_table_size, finite_values
+from ratt_opt.setfunctions.base import TableFunction, check_table_size, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.setfunctions.table import TableFunction
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.setfunctions.base import TableFunction
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

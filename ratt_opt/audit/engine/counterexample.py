@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.errors import ProofError
-from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.setfunctions.base import TableFunction
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

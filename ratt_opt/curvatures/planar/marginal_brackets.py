@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.curvatures.planar.level_inequalities import Average
-    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
+    from ratt_opt.setfunctions.criteria.maxeig import PlanarLevels
     from ratt_opt.stopping import Stop
 
 __all__ = ["PlanarBrackets"]

@@ -1,6 +1,6 @@
 """What the contexts of one element consist of, and the levels and marginals they lead to.
 
-Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.criteria.planar_levels.PlanarLevels`.
+Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.criteria.maxeig.PlanarLevels`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
+    from ratt_opt.setfunctions.criteria.maxeig import PlanarLevels
 
 __all__ = ["Options", "along", "levels", "marginals"]
 

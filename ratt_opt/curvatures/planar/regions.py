@@ -1,6 +1,6 @@
 """Regions of the contexts of one element, and what is proved about its max-eigenvalue marginal in each.
 
-With levels as in ``criteria/planar_levels.py``, ``P`` the smallest level of a context and ``Q`` the smallest once
+With levels as in ``criteria/maxeig.py``, ``P`` the smallest level of a context and ``Q`` the smallest once
 ``x`` is added, the marginal is ``1/P - 1/Q``. A region is: the target ``j`` that is the worst one (after ``x`` is added
 for the smallest marginal, before for the largest), the sector its weakest direction lies in, and the options each
 other owner has left. With ``d`` the least (most) that ``x`` adds to ``j`` along a direction of the sector:

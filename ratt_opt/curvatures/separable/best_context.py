@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
+    from ratt_opt.setfunctions.criterion_parts import Choices
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.setfunctions.minorants import Choices
 
-__all__ = ["BestContext"]
+__all__ = ["BestContext", "FloorSearch"]
 
 
 class BestContext:
@@ -55,3 +55,28 @@ class BestContext:
         k = int((self._sign * marginals).argmin())
         if self._sign * marginals[k] < self._sign * self.value:
             self.value, self.context = float(marginals[k]), tuple(contexts[k].tolist())
+
+
+class FloorSearch:
+    """Claim: ``floor <= smallest marginal of x over contexts <= attained.value``, where no more than that is known.
+
+    Parameters
+    ----------
+    single : (n,) values alone; the descent starts from the most valuable element of every other owner
+    """
+
+    exhausted = True
+    nodes = 1
+
+    def __init__(
+        self, attained: BestContext, others: Choices, single: FloatArray, floor: float, budget: Budget
+    ) -> None:
+        own = np.split(others.elements, others.first[1:])
+        best = [int(part[single[part].argmax()]) for part in own if len(part)]
+        self.attained = attained
+        self.attained.offer(np.array(best, dtype=np.int64))
+        self.attained.descend(budget)
+        self.lower = min(floor, self.attained.value)
+
+    def refine(self) -> None:
+        """Nothing is left to refine."""

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.curvatures.separable.best_context import BestContext
+    from ratt_opt.setfunctions.criterion_parts import Choices, SeparableMinorant
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.setfunctions.minorants import Choices, SeparableMinorant
 
 __all__ = ["ContextSearch"]
 

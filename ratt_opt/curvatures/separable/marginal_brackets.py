@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.least_certain import MarginalBrackets
-from ratt_opt.curvatures.separable.best_context import BestContext
+from ratt_opt.curvatures.separable.best_context import BestContext, FloorSearch
 from ratt_opt.curvatures.separable.context_search import ContextSearch
-from ratt_opt.curvatures.separable.floor_search import FloorSearch
-from ratt_opt.setfunctions.minorants import Choices
+from ratt_opt.setfunctions.criterion_parts import Choices
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray

@@ -1,13 +1,19 @@
-"""The max-eigenvalue criterion (E): the worst axis of the worst target."""
+"""The max-eigenvalue criterion (E): the worst axis of the worst target.
+
+**Targets with one or two coordinates.** A symmetric matrix ``[[m + e, o], [o, m - e]]`` has the quadratic form
+``m + e cos(a) + o sin(a)`` along the unit vector at angle ``a / 2``, hence the smallest eigenvalue ``m - hypot(e, o)``,
+at ``a = atan2(-o, -e)``. Divided by the target's weight, ``lambda_min(L_j) / w_j`` is called the *level* of target
+``j``: the criterion is one over the smallest level.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ratt_opt.setfunctions.criteria import maxeig_marginals
-from ratt_opt.setfunctions.criteria.planar_levels import LARGEST_DIMENSION, PlanarLevels
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
 from ratt_opt.setfunctions.criterion_parts import Tangent
 from ratt_opt.setfunctions.information import InformationObjective
@@ -18,7 +24,36 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
 
-__all__ = ["MaxEigenvalueObjective"]
+__all__ = ["MaxEigenvalueObjective", "PlanarLevels"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarLevels:
+    """``parts`` (n, 3, M) of each element and ``prior`` (3, M): mean, even and odd part about each target.
+
+    Both are divided by ``scale``, a power of two, so that squares neither overflow nor vanish.
+    """
+
+    parts: FloatArray
+    prior: FloatArray
+    scale: float
+
+    @classmethod
+    def of(cls, f: InformationObjective) -> PlanarLevels:
+        """Return the parts of a criterion whose targets have at most two coordinates."""
+        weights = f.weights[:, None, None]
+        prior = _parts(f.prior_information / weights)
+        scale = float(2.0 ** np.round(np.log2(prior[0].max())))
+        return cls(_parts(f.information / weights) / scale, prior / scale, scale)
+
+
+def _parts(matrices: FloatArray) -> FloatArray:
+    """(..., M, d, d) -> (..., 3, M)."""
+    if matrices.shape[-1] == 1:
+        mean = matrices[..., 0, 0]
+        return np.stack([mean, np.zeros_like(mean), np.zeros_like(mean)], axis=-2)
+    first, last = matrices[..., 0, 0], matrices[..., 1, 1]
+    return np.stack([(first + last) / 2, (first - last) / 2, matrices[..., 0, 1]], axis=-2)
 
 
 class MaxEigenvalueObjective(InformationObjective):
@@ -115,4 +150,4 @@ class MaxEigenvalueObjective(InformationObjective):
 
     def planar_levels(self) -> PlanarLevels | None:
         """The data as levels, for targets with at most two coordinates."""
-        return PlanarLevels.of(self) if self.dimension <= LARGEST_DIMENSION else None
+        return PlanarLevels.of(self) if self.dimension <= 2 else None
