@@ -68,8 +68,6 @@ class Domain:
 def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) -> Domain:
     """Return the domain that the arguments of a curvature describe.
 
-    Raises
-    ------
     InputError : owners of the wrong shape, or a plan that repeats or exceeds the elements.
     """
     error, everything = _rounding(f), np.arange(f.n)
@@ -129,10 +127,7 @@ def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
     if isinstance(f, InformationObjective):
         return f.restricted_to(chosen)
     check_table_size(len(chosen))
-    masks = np.arange(2 ** len(chosen))
-    membership = np.zeros((len(masks), f.n), dtype=np.bool_)
-    membership[:, chosen] = masks[:, None] >> np.arange(len(chosen)) & 1
-    return TableFunction(f.evaluate(membership))
+    return TableFunction(values_over(f, list(chosen[:, None])).ravel(order="F"))  # the first element is the lowest bit
 
 
 def _rounding(f: SetFunction) -> float:

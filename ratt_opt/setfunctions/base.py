@@ -60,16 +60,7 @@ class SetFunction(ABC):
 
     @abstractmethod
     def evaluate(self, membership: BoolArray) -> FloatArray:
-        """Values of many subsets at once.
-
-        Parameters
-        ----------
-        membership : (K, n) True where the element belongs to the subset
-
-        Returns
-        -------
-        (K,) values
-        """
+        """(K,) values of many subsets; ``membership`` (K, n) is True where the element belongs to the subset."""
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(n={self.n})"
@@ -83,10 +74,8 @@ class SetFunction(ABC):
                 object.__setattr__(self, name, value)
 
     def __call__(self, subset: Iterable[int]) -> float:
-        """Value of the subset with the given element indices (in any order, each once).
+        """Value of the subset with the given element indices, in any order.
 
-        Raises
-        ------
         InputError : an index is outside ``[0, n)`` or given twice.
         """
         membership = np.zeros((1, self.n), dtype=np.bool_)
@@ -94,16 +83,9 @@ class SetFunction(ABC):
         return float(self.evaluate(membership)[0])
 
     def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
-        """Values ``f(base + {e})`` for each candidate ``e``.
+        """(C,) values ``f(base + {e})`` for each candidate ``e``.
 
-        Parameters
-        ----------
-        base : (B,) distinct element indices (not checked)
-        candidates : (C,) element indices outside ``base`` (not checked)
-
-        Returns
-        -------
-        (C,) values
+        ``base`` : (B,) distinct element indices; ``candidates`` : (C,) others, outside ``base``. Neither is checked.
         """
         membership = np.zeros((len(candidates), self.n), dtype=np.bool_)
         membership[:, base] = True
@@ -117,8 +99,6 @@ class SetFunction(ABC):
     def table(self) -> FloatArray:
         """(2**n,) values of all subsets; the subset of index ``mask`` holds the elements whose bit is set.
 
-        Raises
-        ------
         InputError : the table cannot fit in memory (the text says how much it would need).
         """
         check_table_size(self.n)

@@ -89,12 +89,7 @@ class InformationObjective(CriterionParts):
         return restricted
 
     def with_information(self, information: ArrayLike) -> Self:
-        """The same criterion of other elements: (E, M, d, d), checked.
-
-        Raises
-        ------
-        InputError : as for a criterion made anew.
-        """
+        """The same criterion of other elements: (E, M, d, d), checked."""
         other = copy(self)
         other.information = readonly(_check_information(information, self.n_targets, self.dimension))
         return other
@@ -106,16 +101,14 @@ class InformationObjective(CriterionParts):
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
-        flat = self.information.reshape(self.n, -1)
-        shape = (len(membership), *self.prior.shape)
         if len(membership) == 1:
             return self.value(self.posterior_information(np.flatnonzero(membership[0]))[None])
         # Elements are added one by one so that every batch size rounds alike.
+        flat = self.information.reshape(self.n, -1)
         total = np.broadcast_to(self.prior_information.reshape(1, -1), (len(membership), flat.shape[1])).copy()
         for e in np.flatnonzero(membership.any(axis=0)):
-            rows = membership[:, e]
-            total[rows] += flat[e]
-        return self.value(total.reshape(shape))
+            total[membership[:, e]] += flat[e]
+        return self.value(total.reshape(len(membership), *self.prior.shape))
 
     def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
         """(C,) values ``f(base + {e})`` for each candidate ``e`` outside ``base``."""

@@ -18,14 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-__all__ = [
-    "ConcaveOfModular",
-    "Coverage",
-    "Cut",
-    "FacilityLocation",
-    "Modular",
-    "PartitionMatroidRank",
-]
+__all__ = ["ConcaveOfModular", "Coverage", "Cut", "FacilityLocation", "Modular", "PartitionMatroidRank"]
 
 
 def _nonnegative(argument: str, value: ArrayLike, ndim: int) -> FloatArray:

@@ -50,12 +50,8 @@ class Reference:
 
 
 def reference(family: str, n: int, rng: np.random.Generator) -> Reference:
-    """Draw one member of a family, named by a key of :data:`REFERENCE_FAMILIES`.
+    """Draw one member of a family, named by a key of :data:`REFERENCE_FAMILIES`, of ``n`` elements.
 
-    ``n`` : size of the ground set, at least 2; ``rng`` : where every draw comes from
-
-    Raises
-    ------
     InputError : an unknown family, or ``n < 2``.
     """
     if family not in REFERENCE_FAMILIES:

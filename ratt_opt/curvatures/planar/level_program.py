@@ -22,13 +22,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.planar.options import along, levels
+from ratt_opt.curvatures.planar.contexts import along, levels
 from ratt_opt.highs import LinearProgram, Rows
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.curvatures.planar.options import Options
+    from ratt_opt.curvatures.planar.contexts import Options
 
 __all__ = ["Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
 
@@ -88,10 +88,8 @@ class MixtureProgram:
 
     It grows by cuts and is solved for one slope after another, each time from the last basis.
 
-    Parameters
-    ----------
-    owners : (n,) of each option, 0 to R - 1, ascending
-    own : (n,) scores of the target's own level; edges : (2, n) scores and (2,) constants of the sector's edges
+    ``owners`` : (n,) of each option, 0 to R - 1, ascending; ``own`` : (n,) scores of the target's own level;
+    ``edges`` : (2, n) scores and (2,) constants of the sector's edges.
     """
 
     def __init__(self, owners: IntArray, own: FloatArray, edges: tuple[FloatArray, FloatArray]) -> None:
@@ -151,10 +149,8 @@ class MixtureProgram:
 class LevelProgram:
     """Bounds ``t - slope own`` over the contexts of allowed options, for one slope after another.
 
-    Parameters
-    ----------
-    base, own_base : (3, M) parts of what every context is added to; without a sector ``own`` is 0
-    allowed : (K,), some option of every owner; start : (3, M) average of cuts that bounded something similar
+    ``base``, ``own_base`` : (3, M) parts of what every context is added to; without a sector ``own`` is 0.
+    ``allowed`` : (K,), some option of every owner; ``start`` : (3, M) average of cuts that bounded something similar.
     """
 
     def __init__(
