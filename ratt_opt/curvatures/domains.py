@@ -94,7 +94,7 @@ def values_over(f: SetFunction, groups: list[IntArray]) -> FloatArray:
     for start in range(0, size, BLOCK):
         index = np.arange(start, min(start + BLOCK, size))
         membership = np.zeros((len(index), f.n), dtype=np.bool_)
-        for group, picks in zip(groups, np.unravel_index(index, shape), strict=True):
+        for group, picks in zip(groups, np.unravel_index(index, shape) if groups else (), strict=True):
             rows = np.flatnonzero(picks)
             membership[rows, group[picks[rows] - 1]] = True
         values[index] = f.evaluate(membership)

@@ -233,9 +233,8 @@ def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatA
 
 
 def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> tuple[float, Context, Context]:
-    nothing: tuple[float, Context, Context] = (1.0, (), ())
     tried = (_smallest_ratio(values, groups) for values, groups in _samples(domain, seed, budget))
-    return min(tried, default=nothing)
+    return min(tried, default=(1.0, (), ()))
 
 
 def _searched_kept(

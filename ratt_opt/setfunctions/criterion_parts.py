@@ -156,8 +156,7 @@ class CriterionParts(ProofParts):
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
         """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
-        rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
-        return self.criterion(rows)
+        return self.criterion(np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2))
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
         """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""

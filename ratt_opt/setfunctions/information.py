@@ -53,15 +53,13 @@ class InformationObjective(CriterionParts):
     """Added information is positive semidefinite, up to the rounding that the input rule admits."""
 
     def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
-        checked = _check_prior(prior)
-        targets, dimension, _ = checked.shape
-        self.prior: FloatArray = readonly(checked)
-        self.information: FloatArray = readonly(_check_information(information, targets, dimension))
-        self.weights: FloatArray = readonly(_check_weights(weights, targets))
-        self.prior_information: FloatArray = readonly(symmetric_inverse(checked))
+        self.prior: FloatArray = readonly(_check_prior(prior))
+        self.information: FloatArray = readonly(_check_information(information, self.n_targets, self.dimension))
+        self.weights: FloatArray = readonly(_check_weights(weights, self.n_targets))
+        self.prior_information: FloatArray = readonly(symmetric_inverse(self.prior))
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
         states_value_alone = self.states("value") and not self.states("criterion")
-        baseline = np.zeros(targets) if states_value_alone else self.criterion(self.prior_information)
+        baseline = np.zeros(self.n_targets) if states_value_alone else self.criterion(self.prior_information)
         self._baseline: FloatArray = readonly(baseline)
 
     def __repr__(self) -> str:
@@ -104,7 +102,7 @@ class InformationObjective(CriterionParts):
         if len(membership) == 1:
             return self.value(self.posterior_information(np.flatnonzero(membership[0]))[None])
         # Elements are added one by one so that every batch size rounds alike.
-        flat = self.information.reshape(self.n, -1)
+        flat = self.information.reshape(self.n, self.prior.size)
         total = np.broadcast_to(self.prior_information.reshape(1, -1), (len(membership), flat.shape[1])).copy()
         for e in np.flatnonzero(membership.any(axis=0)):
             total[membership[:, e]] += flat[e]
@@ -153,8 +151,7 @@ def _check_symmetric(argument: str, matrices: FloatArray) -> FloatArray:
     """Return the symmetric part of matrices that are symmetric up to rounding."""
     transposed = np.swapaxes(matrices, -1, -2)
     defect = np.abs(matrices - transposed).max(axis=(-1, -2))
-    scale = np.abs(matrices).max(axis=(-1, -2))
-    bad = np.argwhere(defect > SYMMETRY_TOLERANCE * scale)
+    bad = np.argwhere(defect > SYMMETRY_TOLERANCE * np.abs(matrices).max(axis=(-1, -2)))
     if len(bad):
         where = tuple(bad[0].tolist())
         raise InputError(f"{argument}[{', '.join(map(str, where))}]", "must be symmetric", matrices[where].tolist())

@@ -1,7 +1,4 @@
-"""Set functions of textbook families: their properties and curvatures are known from theory.
-
-A family is a class with its data as attributes; :mod:`ratt_opt.setfunctions.zoo` states what is known of each.
-"""
+"""Set functions of textbook families, a class each; ``zoo.py`` states the properties that theory knows of them."""
 
 from __future__ import annotations
 

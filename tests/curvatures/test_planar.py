@@ -13,7 +13,7 @@ from ratt_opt.budget import Budget
 from ratt_opt.curvatures.planar import context_search
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
-from ratt_opt.curvatures.planar.level_inequalities import (
+from ratt_opt.curvatures.planar.inequalities import (
     ceilings,
     least_enough,
     least_marginal,

@@ -1,7 +1,4 @@
-"""Compiled loops over contexts and over cuts of the level program; imported where a search needs them.
-
-The plain versions are in the tests.
-"""
+"""Compiled loops over contexts and cuts, imported where a search needs them; the plain versions are in the tests."""
 
 from __future__ import annotations
 
@@ -10,7 +7,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from ratt_opt.curvatures.planar.level_inequalities import MARGIN
+from ratt_opt.curvatures.planar.inequalities import MARGIN
 
 __all__ = ["ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
 

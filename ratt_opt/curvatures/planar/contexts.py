@@ -87,10 +87,9 @@ class PlanarDescent:
     def offer(self, picks: IntArray) -> None:
         """Descend from a context, one owner at a time, if it is new."""
         key = tuple(picks.tolist())
-        if key in self._starts:
-            return
-        self._starts.add(key)
-        self._run(picks)
+        if key not in self._starts:
+            self._starts.add(key)
+            self._run(picks)
 
     def enumerate(self, allowed: BoolArray) -> None:
         """Try every context of the allowed options."""

@@ -100,17 +100,13 @@ class MixtureProgram:
         matrix[count:, :free] = edges[0]
         matrix[count:, free + 1 :] = np.eye(EDGES)
         rows, columns = np.nonzero(matrix)
+        lower, upper = (np.concatenate([np.ones(count), edge]) for edge in (-edges[1], np.full(EDGES, inf)))
+        starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=len(matrix)))])
         self._program = LinearProgram(
             np.concatenate([np.zeros(free), [-1.0], np.full(EDGES, EDGE_COST)]),
             np.concatenate([np.zeros(free), [-inf], np.zeros(EDGES)]),
             np.concatenate([np.ones(free), np.full(1 + EDGES, inf)]),
-            rows=Rows(
-                lower=np.concatenate([np.ones(count), -edges[1]]),
-                upper=np.concatenate([np.ones(count), np.full(EDGES, inf)]),
-                starts=np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=len(matrix)))]),
-                columns=columns,
-                values=matrix[rows, columns],
-            ),
+            rows=Rows(lower, upper, starts, columns, matrix[rows, columns]),
             solver="simplex",
             presolve="off",
         )

@@ -16,7 +16,7 @@ from ratt_opt.curvatures.marginals import MarginalBrackets
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
-from ratt_opt.curvatures.planar.regions import Side
+from ratt_opt.curvatures.planar.regions import MARGIN, Side
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -37,8 +37,6 @@ CONTENDER, LONG_STUCK = 1.1, 40
 """The same where the ratio is more than so many times the smallest one seen; 20 to 80 are alike with 10 robots."""
 PATIENCE = 20
 """Parts bounded on one side before its number of parts counts against it."""
-MARGIN = 1e-9
-"""Relative safety margin for rounding."""
 
 
 class PlanarBrackets(MarginalBrackets):

@@ -45,7 +45,12 @@ class SeparableBrackets(MarginalBrackets):
         self.least = np.minimum(floor, self._single)
         if not self._against_own:
             self.most = np.maximum(ceiling, self._single)
-            self._raise_largest()
+            # Attained ends of the largest marginals, where the value alone is not known to be it.
+            for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
+                self._largest[x] = BestContext(self._f, x, self._beside(x), largest=True)
+                self._largest[x].descend(self._budget)
+                self.seen_most[x] = self._largest[x].value
+                self.most[x] = max(self.most[x], self.seen_most[x])
         for x in range(self._f.n):
             others, attained = self._beside(x), BestContext(self._f, x, self._beside(x))
             if self._branches:
@@ -58,15 +63,6 @@ class SeparableBrackets(MarginalBrackets):
             if stop := self._budget.stop():
                 return stop
         return None
-
-    def _raise_largest(self) -> None:
-        """Attained ends of the largest marginals, where the value alone is not known to be it."""
-        for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
-            attained = BestContext(self._f, x, self._beside(x), largest=True)
-            attained.descend(self._budget)
-            self._largest[x] = attained
-            self.seen_most[x] = attained.value
-            self.most[x] = max(self.most[x], attained.value)
 
     def _beside(self, x: int) -> Choices:
         owner = int(self._owners[x])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
+from ratt_opt.setfunctions.criteria.two_by_two import determinant, logdet_gradient
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
@@ -48,7 +48,7 @@ class LogDetObjective(InformationObjective):
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
         """``Lambda^{-1}`` by its entries, the off-diagonal one twice: (..., 3)."""
-        return np.stack(gradient_of_log_determinant(a, b, c), axis=-1)
+        return np.stack(logdet_gradient(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1}``: (..., M, d, d)."""

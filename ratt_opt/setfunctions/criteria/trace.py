@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.criteria.two_by_two import gradient_of_trace_of_inverse, trace_of_inverse
+from ratt_opt.setfunctions.criteria.two_by_two import trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
@@ -72,7 +72,7 @@ class TraceObjective(InformationObjective):
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
         """``Lambda^{-2}`` by its entries, the off-diagonal one twice: (..., 3)."""
-        return np.stack(gradient_of_trace_of_inverse(a, b, c), axis=-1)
+        return np.stack(trace_gradient(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-2}``: (..., M, d, d)."""

@@ -26,11 +26,8 @@ def least_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, hi
     ``P - ceiling = sqrt(slope) P``. So it is smallest there, where the two lines meet, or at ``highest``.
     """
     with np.errstate(all="ignore"):
-        places = [
-            np.full_like(ceiling, highest),
-            (ceiling + slope * added) / (1 - slope),
-            ceiling / (1 - np.sqrt(slope)),
-        ]
+        end = np.full_like(ceiling, highest)
+        places = [end, (ceiling + slope * added) / (1 - slope), ceiling / (1 - np.sqrt(slope))]
         values = []
         for p in places:
             value = 1 / p - 1 / np.maximum(p + added, (p - ceiling) / slope)
