@@ -184,6 +184,12 @@ def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = Non
 
 
 def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
+    """Which of the two is given, and its conservative end.
+
+    Raises
+    ------
+    InputError : neither or both, or one outside [0, 1].
+    """
     if (k is None) == (c is None):
         raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
     name, given = ("k", k) if k is not None else ("c", c)
