@@ -181,13 +181,7 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
 
 
 def _guarantees(
-    problem: Problem,
-    robust: PlanAssessment,
-    alpha_cs: int,
-    budget: Budget,
-    *,
-    k: Curvature | None,
-    c: Curvature | None,
+    problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
     found = all_guarantees(problem, alpha_cs, k=k, c=c)

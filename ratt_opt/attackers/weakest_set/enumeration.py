@@ -39,12 +39,7 @@ class Enumeration:
     """
 
     def __init__(
-        self,
-        team: PlanarTeam,
-        robots: IntArray,
-        chosen: frozenset[int],
-        size: int,
-        affine: AffineBound | None = None,
+        self, team: PlanarTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound | None = None
     ) -> None:
         self._team, self._robots, self._chosen, self._size = team, robots, chosen, size
         affine = affine or AffineBound(-np.inf, np.zeros(len(robots)))

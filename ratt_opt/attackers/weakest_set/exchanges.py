@@ -40,11 +40,7 @@ BARRED, INSIDE, OUTSIDE = 0, 1, 2
 
 
 def exchanged(
-    team: PlanarTeam,
-    start: Iterable[int],
-    *,
-    among: Iterable[int] | None = None,
-    fixed: Iterable[int] = (),
+    team: PlanarTeam, start: Iterable[int], *, among: Iterable[int] | None = None, fixed: Iterable[int] = ()
 ) -> frozenset[int]:
     """Make the best exchange again and again while that lowers the value; ties to the lowest robots.
 
