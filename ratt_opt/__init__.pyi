@@ -24,8 +24,11 @@ from .bounds.guarantees import (
     theorem1_bound as theorem1_bound,
 )
 from .bounds.instance import instance_bound as instance_bound
-from .bounds.lazy_relaxation import relaxation_bounds as relaxation_bounds
-from .bounds.relaxation import RelaxationBound as RelaxationBound, relaxation_bound as relaxation_bound
+from .bounds.relaxation import (
+    RelaxationBound as RelaxationBound,
+    relaxation_bound as relaxation_bound,
+    relaxation_bounds as relaxation_bounds,
+)
 from .certificates.verifier.verified import Verified as Verified
 from .certificates.verifier.verify import verify_certificate as verify_certificate
 from .certificates.write import Certificate as Certificate, certify as certify, problem_document as problem_document
@@ -84,10 +87,9 @@ from .setfunctions.reference import (
 from .setfunctions.sampling import NotFound as NotFound, Violation as Violation
 from .setfunctions.table import TableFunction as TableFunction
 from .setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES, Reference as Reference, reference as reference
-from .solvers.baselines import greedy as greedy, myopic as myopic, random_plan as random_plan
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.maxmin.solve import solve_maxmin as solve_maxmin
 from .solvers.nonrobust import nonrobust_optimum as nonrobust_optimum
-from .solvers.ratt import ratt as ratt
+from .solvers.ratt import greedy as greedy, myopic as myopic, random_plan as random_plan, ratt as ratt
 from .solvers.result import MaxMinResult as MaxMinResult
 from .stopping import Stop as Stop

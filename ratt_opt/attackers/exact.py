@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.unprotected_links import unprotected_bound
+from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackTask
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
@@ -53,7 +52,7 @@ def worst_case_attack(
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
-      protected links too (``unprotected_links.py``). Relies on a non-decreasing objective, as above.
+      protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 

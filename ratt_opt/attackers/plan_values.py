@@ -23,14 +23,9 @@ LARGEST_CHUNK = 4096
 class PlanValues(SetFunction):
     """``phi`` of the elements that a set of robots has in one plan; counts what it was asked.
 
-    Parameters
-    ----------
-    problem : N robots, E elements
-    elements : (N,) element chosen for each robot
+    ``problem`` : N robots, E elements; ``elements`` : (N,) element chosen for each robot
 
-    Raises
-    ------
-    InputError : an element is not its robot's, or ``elements`` has the wrong shape.
+    Raises ``InputError`` : an element is not its robot's, or ``elements`` has the wrong shape.
     """
 
     __slots__ = ("evaluations", "objective", "plan")

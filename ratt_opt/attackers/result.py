@@ -16,9 +16,8 @@ __all__ = ["AttackResult"]
 class AttackResult:
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
-    ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is
-    ``EXHAUSTED`` or ``CLOSED``; it is 0 (the value of no measurement) for a heuristic.
-    Results are equal when all their fields are.
+    ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is ``EXHAUSTED`` or ``CLOSED``; it
+    is 0 (the value of no measurement) for a heuristic. Results are equal when all their fields are.
     """
 
     attack: Attack

@@ -10,12 +10,44 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.attackers.bracket import AttackBracket
     from ratt_opt.attackers.plan_values import PlanValues
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
-__all__ = ["AttackTask"]
+__all__ = ["AttackBracket", "AttackTask"]
+
+CLOSED_WIDTH = 1e-10
+"""Relative width that counts as closed: attacks that are worse for the team by less are not looked for. Values computed
+in different orders differ by some 1e-13; a narrower width would ask for proofs within rounding."""
+
+
+@dataclass(slots=True)
+class AttackBracket:
+    """``lower <= worst-case value <= upper`` at any moment; ``attack`` attains ``upper``."""
+
+    attack: Attack
+    upper: float
+    lower: float
+
+    @property
+    def goal(self) -> float:
+        """Only a value below this counts as a worse attack; a lower bound that reaches it closes the bracket."""
+        return self.upper - CLOSED_WIDTH * abs(self.upper)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the bounds meet but for rounding."""
+        return self.lower >= self.goal
+
+    def offer(self, attack: Attack, value: float) -> bool:
+        """Keep an attack of strictly smaller value; return whether it is one."""
+        if better := value < self.upper:
+            self.attack, self.upper = attack, float(value)
+        return better
+
+    def raise_lower(self, bound: float) -> None:
+        """Keep a larger lower bound."""
+        self.lower = max(self.lower, float(bound))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The concave relaxation over a set of attacks, as a conic program."""
+"""The concave relaxation over a set of attacks, as a conic program, and over all attacks, which enter one by one."""
 
 from __future__ import annotations
 
@@ -8,20 +8,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._values import ByValue
-from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
-from ratt_opt.bounds.relaxed_plans import uniform_selection
+from ratt_opt.bounds.cuts import GroupCut, combined_bound, mixed_information, tangent_cut, uniform_selection
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
+from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.problem import Problem
 
-__all__ = ["RelaxationBound", "relaxation_bound"]
+__all__ = ["RelaxationBound", "relaxation_bound", "relaxation_bounds"]
 
 TARGETS_A_GROUP = 6
+"""Targets of a group whose tangents enter (max-eigenvalue): more can only strengthen the bound. Not measured."""
 AVERAGING_STEPS = 12
+"""Conditional-gradient steps on a smaller group: more can only strengthen its bound. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -66,7 +70,7 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
         return RelaxationBound(upper=nothing, claimed=nothing, selection=selection, status="an attack leaves nobody")
     claimed, selection, status = _solve(problem, largest)
     cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection)]
-    upper = max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)])
+    upper = float(max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)]))
     return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
 
 
@@ -161,3 +165,53 @@ def _group_bound(problem: Problem, group: tuple[int, ...]) -> float:
         vertex[[choice[combined[choice].argmax()] for choice in problem.choices]] = 1.0
         selection += 2 / (step + 2) * (vertex - selection) if step else 0.5 * (vertex - selection)
     return upper
+
+
+MOST_OUTCOMES = 20_000
+"""Every outcome is evaluated in every round."""
+
+
+def relaxation_bounds(
+    problem: Problem, *, tolerance: float = 1e-7, budget: Budget | None = None
+) -> Iterator[RelaxationBound]:
+    """Yield bounds on the optimum as the attack that hurts the relaxed plan most enters, round by round.
+
+    Ends once no attack leaves the relaxed plan less than the program claims, up to ``tolerance`` relative to
+    the claim: the last item then is the bound of the relaxation over all attacks. Every item is a valid bound.
+    A spent ``budget`` (an outer search's) ends them early.
+
+    Raises
+    ------
+    InputError : the objective is no information criterion, or the team is too large to list its outcomes.
+    """
+    objective = problem.information_objective
+    whole, outcomes = Budget.inside(budget), []
+    for outcome in non_dominated_outcomes(problem.threat):
+        outcomes.append(outcome)
+        if whole.stop() is not None:
+            return
+        if len(outcomes) > MOST_OUTCOMES:
+            rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
+            raise InputError("problem", rule, f"{problem.n_robots} robots")
+    rows = np.array([_mask(group, problem.n_robots) for outcome in outcomes for group in outcome])
+    starts = np.cumsum([0, *(len(outcome) for outcome in outcomes[:-1])])
+    entered: list[int] = []
+    selection, level = uniform_selection(problem), np.inf
+    while True:
+        sums = rows @ mixed_information(problem, selection).reshape(problem.n_robots, -1)
+        points = sums.reshape(-1, *objective.prior.shape) + objective.prior_information
+        left = np.maximum.reduceat(objective.value(points), starts)
+        worst = int(left.argmin())
+        if whole.stop() is not None or worst in entered or left[worst] >= level - tolerance * abs(level):
+            return
+        entered.append(worst)
+        bound = relaxation_bound(problem, [Attack(*realise(problem.threat, outcomes[k])) for k in entered])
+        yield bound
+        selection, level = bound.selection, bound.claimed
+
+
+def _mask(group: frozenset[int], n_robots: int) -> FloatArray:
+    """(N,) 1 for the robots of a group."""
+    mask = np.zeros(n_robots)
+    mask[list(group)] = 1.0
+    return mask

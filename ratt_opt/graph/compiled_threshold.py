@@ -123,14 +123,9 @@ def _fill(masks: Any, groups: Any, is_group: Any, start: Any, tables: Any) -> No
 class CompiledThresholdTest:
     """Decides for one plan whether an attack can push the team value to a threshold; see ``ThresholdTest``.
 
-    Parameters
-    ----------
-    threat : N robots, at most ``LARGEST_COMPILED``
-    values : (2**N,) value of every set of robots, by bit mask
+    ``threat`` : N robots, at most ``LARGEST_COMPILED``; ``values`` : (2**N,) value of every set of robots, by bit mask
 
-    Raises
-    ------
-    InputError : too many robots.
+    Raises ``InputError`` : too many robots.
     """
 
     def __init__(self, threat: Threat, values: FloatArray) -> None:

@@ -40,9 +40,7 @@ class SubsetLattice:
     def of(cls, threat: Threat) -> SubsetLattice:
         """Tabulate the graph of ``threat``.
 
-        Raises
-        ------
-        InputError : more than ``LARGEST_LATTICE`` robots.
+        Raises ``InputError`` : more than ``LARGEST_LATTICE`` robots.
         """
         n_robots = threat.graph.n_robots
         if n_robots > LARGEST_LATTICE:
@@ -80,9 +78,7 @@ def _connected(neighbours: list[int], masks: IntArray) -> BoolArray:
 def connected_partitions(threat: Threat) -> Iterator[tuple[int, ...]]:
     """Yield every partition into connected groups that the link budget can leave, as bit masks by lowest robot.
 
-    Raises
-    ------
-    InputError : more than ``LARGEST_LATTICE`` robots.
+    Raises ``InputError`` : more than ``LARGEST_LATTICE`` robots.
     """
     lattice = SubsetLattice.of(threat)
     full = 2**lattice.n_robots - 1
@@ -130,9 +126,7 @@ def finest_partitions(threat: Threat) -> list[tuple[int, ...]]:
     Undoing one step of a refinement keeps groups connected and cuts fewer links, so a partition is
     finest exactly when the cheapest cut of each of its groups exceeds the budget that is left.
 
-    Raises
-    ------
-    InputError : more than ``LARGEST_LATTICE`` robots.
+    Raises ``InputError`` : more than ``LARGEST_LATTICE`` robots.
     """
     lattice = SubsetLattice.of(threat)
     cheapest: dict[int, int] = {}

@@ -200,9 +200,7 @@ def _search(groups: Any, need: Any, budgets: Any, limit: int, state: Any, counte
 class PartitionSearch:
     """All partitions of the team into separable groups within both budgets, one after the other; resumable.
 
-    Parameters
-    ----------
-    need : (G,) robots to blind in each group, at least; may be raised between calls, never lowered
+    ``need`` : (G,) robots to blind in each group, at least; may be raised between calls, never lowered
     """
 
     def __init__(self, groups: SeparableGroups, need: IntArray) -> None:

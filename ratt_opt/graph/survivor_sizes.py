@@ -1,9 +1,8 @@
 """Sizes of the groups of seeing robots that an attack on a complete graph can leave.
 
-On a complete graph every robot and link is alike, so an outcome is feasible or not by its group
-sizes alone. ``b`` blinded robots still hold links and may stand in any group; the links kept,
-``sum_k C(size_k, 2)``, are convex in where they stand, so the cheapest place for all of them is
-the largest group.
+On a complete graph every robot and link is alike, so an outcome is feasible or not by its group sizes alone. ``b``
+blinded robots still hold links and may stand in any group; the links kept, ``sum_k C(size_k, 2)``, are convex in where
+they stand, so the cheapest place for all of them is the largest group.
 """
 
 from __future__ import annotations

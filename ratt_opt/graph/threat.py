@@ -23,9 +23,7 @@ class Threat:
     Robots in ``protected_robots`` cannot be blinded and links in ``protected_links`` cannot
     be cut. Budgets may exceed what can be attacked (at most N robots and all links).
 
-    Raises
-    ------
-    InputError : a budget is out of range, or a protected robot or link does not exist.
+    Raises ``InputError`` : a budget is out of range, or a protected robot or link does not exist.
     """
 
     graph: CommunicationGraph

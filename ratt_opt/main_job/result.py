@@ -25,11 +25,10 @@ __all__ = ["BoundReport", "PlanAssessment"]
 class PlanAssessment:
     """One planner's plan and its worst case; equal to another that says the same.
 
-    ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
-    own elements; ``bait`` : RATT's bait robots, empty for other planners.
-    ``groups`` : the connected groups that the worst attack leaves; ``best_group`` : the robots that still see in the
-    one whose value is the team's; ``posterior`` : (M, d, d) covariances they leave, ``None`` for set
-    functions that are no criterion of information matrices.
+    ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's own elements; ``bait`` :
+    RATT's bait robots, empty for other planners. ``groups`` : the connected groups that the worst attack leaves;
+    ``best_group`` : the robots that still see in the one whose value is the team's; ``posterior`` : (M, d, d)
+    covariances they leave, ``None`` for set functions that are no criterion of information matrices.
     """
 
     name: str
@@ -62,13 +61,12 @@ class PlanAssessment:
 class BoundReport:
     """What to do now, the worst that can follow, and how far that is from the best possible.
 
-    Claims, all in floating point unless a certificate says more: each plan's worst case lies in
-    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
-    ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
-    ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
-    ``inapplicable`` : the guarantees that do not apply here, and why.
-    ``certificate`` : the verified proof file of ``optimum``, or why there is none.
-    ``seconds`` : wall time of each step.
+    Claims, all in floating point unless a certificate says more: each plan's worst case lies in its bracket;
+    ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least ``certified_ratio`` of ``Phi*``. ``best`` is
+    the plan the search for the optimum found. ``curvature`` is given for submodular criteria (log-det),
+    ``total_curvature`` for the others. ``inapplicable`` : the guarantees that do not apply here, and why.
+    ``certificate`` : the verified proof file of ``optimum``, or why there is none. ``seconds`` : wall time of each
+    step.
 
     Two reports are equal when they say the same, whatever time it took.
     """

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Budget
 from ratt_opt.problem import Plan
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
 
 if TYPE_CHECKING:
-    from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
@@ -41,17 +41,13 @@ def nonrobust_search(
 ) -> MaxMinResult:
     """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan where few.
 
-    Parameters
-    ----------
-    time_limit : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
-    budget : an outer search's budget: its seconds and interrupts count too
+    ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
+    ``budget`` : an outer search's budget: its seconds and interrupts count too
 
-    Raises
-    ------
-    InputError : more than 5 million plans of a set function that is no information criterion.
+    Raises ``InputError`` : more than 5 million plans of a set function that is no information criterion.
     """
     unattacked = replace(problem, alpha_s=0, alpha_c=0)
     few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
     if few or not isinstance(problem.objective, InformationObjective):
-        return exhaustive_optimum(unattacked)
+        return exhaustive_optimum(unattacked, budget=Budget.inside(budget, time_limit))
     return solve_maxmin(unattacked, time_limit=time_limit, budget=budget)

@@ -21,10 +21,9 @@ __all__ = ["bounded_rational_attack"]
 def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
     """Blind the strongest robots, then cut off the next strongest while the link budget lasts.
 
-    Strength is the individual value of the chosen element; ties go to the lowest robot. Protected
-    robots are passed over when blinding, and robots with a protected link when cutting off. The
-    first robot whose links exceed what is left of the budget ends the attack. (The paper cuts off
-    ``alpha_cs`` robots, which can exceed its own link budget.)
+    Strength is the individual value of the chosen element; ties go to the lowest robot. Protected robots are passed
+    over when blinding, and robots with a protected link when cutting off. The first robot whose links exceed what is
+    left of the budget ends the attack. (The paper cuts off ``alpha_cs`` robots, which can exceed its own link budget.)
 
     Raises
     ------

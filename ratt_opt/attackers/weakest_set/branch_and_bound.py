@@ -15,8 +15,7 @@ import numpy as np
 
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged
-from ratt_opt.attackers.weakest_set.node_bounds import bound_family
-from ratt_opt.attackers.weakest_set.set_node import SetNode
+from ratt_opt.attackers.weakest_set.set_node import SetNode, bound_family
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -46,10 +45,7 @@ class WeakestSetSearch:
 
     The caller may lower ``threshold`` at every step of :meth:`run`; sets between are then passed over.
 
-    Parameters
-    ----------
-    floor : no set is worth less
-    inside, outside : only sets that contain the first and avoid the second
+    ``floor`` : no set is worth less; ``inside``, ``outside`` : only sets that contain the first and avoid the second
     """
 
     def __init__(

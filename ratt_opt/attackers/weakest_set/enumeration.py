@@ -32,10 +32,8 @@ class AffineBound:
 class Enumeration:
     """Depth-first search over ``chosen`` plus ``size`` of ``robots``, in the order given; resumable.
 
-    Parameters
-    ----------
-    robots : (F,) robots to choose from, distinct and not chosen
-    affine : minorant of the value; none by default
+    ``robots`` : (F,) robots to choose from, distinct and not chosen
+    ``affine`` : minorant of the value; none by default
     """
 
     def __init__(
@@ -140,14 +138,12 @@ def _search(criterion: Any, information: Any, affine: Any, threshold: float, lim
     Robots are taken or left in the order given. A partial choice is left when the affine minorant ``linear +
     scores`` or the averaged bound (:func:`_averaged`) of every completion reaches the threshold.
 
-    Parameters
-    ----------
-    criterion : code, weights (M,), baseline
-    information : (F, M, 3) of the robots to choose from
-    affine : scores (F,), a set's value is at least linear[0] + sum of its scores; and (F + 1, size + 1) the sum of
+    ``criterion`` : code, weights (M,), baseline
+    ``information`` : (F, M, 3) of the robots to choose from
+    ``affine`` : scores (F,), a set's value is at least linear[0] + sum of its scores; and (F + 1, size + 1) the sum of
         the q smallest scores among robots p.. at [p, q]
-    limit : nodes (partial choices looked at) before pausing, counted in ``counters[1]``
-    state : position (size + 1,), sums (size + 1, M, 3), linear (size + 1,), counters (2,)
+    ``limit`` : nodes (partial choices looked at) before pausing, counted in ``counters[1]``
+    ``state`` : position (size + 1,), sums (size + 1, M, 3), linear (size + 1,), counters (2,)
     """
     code, weights, baseline = criterion
     scores, smallest = affine

@@ -27,16 +27,12 @@ if TYPE_CHECKING:
 __all__ = ["Minorant", "affine_minorant"]
 
 KEPT, NEW = 24, 4
-"""Half-spaces per target that a node hands to its children: those that bind there, and new ones.
-
-More make a child's polytopes tighter and its vertices more. At 40 robots neither half nor double changes the nodes.
-"""
+"""Half-spaces per target that a node hands to its children: those that bind there, and new ones. More make a child's
+polytopes tighter and its vertices more. At 40 robots neither half nor double changes the nodes."""
 
 BINDING = 1e-2
-"""Vertices this close to the least of their target, relative to it, count as binding.
-
-It only ranks half-spaces for the children; at 40 robots a tenth of it changes no node.
-"""
+"""Vertices this close to the least of their target, relative to it, count as binding. It only ranks half-spaces for the
+children; at 40 robots a tenth of it changes no node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +74,8 @@ class Minorant:
 def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None) -> Minorant:
     """Best found affine minorant; valid whatever the solver answers.
 
-    Parameters
-    ----------
-    family : 0 < size < F
-    goal : no better bound is needed
-    parent : a minorant of a larger family, whose slopes and half-spaces are a good start
+    ``family`` : 0 < size < F; ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family, whose
+    slopes and half-spaces are a good start
     """
     points = outer_polytopes(family, n_heavy, None if parent is None else parent.normals)
     program = _program(family, points)

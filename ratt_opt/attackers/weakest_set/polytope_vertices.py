@@ -21,11 +21,8 @@ def _cut(plane: Any, row: int, vertices: Any, n: int) -> int:
 
     Loops rather than array expressions: the arrays are tiny, and most of the time was spent on making them.
 
-    Parameters
-    ----------
-    plane : normal (3,), offset
-    row : number of the plane among the facets
-    vertices : points (C, 3), the bits of their facets (C,), and scratch: slack (C,), lost points (C, 4), their facets
+    ``plane`` : normal (3,), offset; ``row`` : number of the plane among the facets; ``vertices`` : points (C, 3), the
+    bits of their facets (C,), and scratch: slack (C,), lost points (C, 4), their facets
     """
     normal, offset = plane
     points, facets, slack, lost, lost_facets = vertices
@@ -72,15 +69,9 @@ def cut_polytopes(normals: Any, offsets: Any, factors: Any, capacity: int) -> An
     segment between a kept and a lost vertex that share two facets. Segments that are not edges only
     add points of the polytope, which does no harm to an outer approximation.
 
-    Parameters
-    ----------
-    normals : (M, D, 3), D <= 64
-    offsets : (M, P, D)
-    factors : (M, 3, 3)
+    ``normals`` : (M, D, 3), D <= 64; ``offsets`` : (M, P, D); ``factors`` : (M, 3, 3)
 
-    Returns
-    -------
-    (V, 3) vertices, polytope by polytope; (V,) bits of the rows they lie on; (M, P) their numbers, 0 where the
+    Returns (V, 3) vertices, polytope by polytope; (V,) bits of the rows they lie on; (M, P) their numbers, 0 where the
     capacity did not suffice
     """
     n_targets, n_patterns, n_rows = offsets.shape

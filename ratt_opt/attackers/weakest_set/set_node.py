@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.weakest_set.enumeration import AffineBound, Enumeration
+from ratt_opt.attackers.weakest_set.minorant import Minorant, affine_minorant
+from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.attackers.weakest_set.minorant import Minorant
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
 
-__all__ = ["SetNode"]
+__all__ = ["FamilyBound", "SetNode", "bound_family"]
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -38,13 +39,9 @@ class SetNode:
     def fixed(self, robots: IntArray, size: int, threshold: float) -> tuple[SetNode, IntArray]:
         """Decide robots by reduced cost: on their other side the minorant reaches the threshold.
 
-        Parameters
-        ----------
-        robots : the undecided ones, of which ``size`` are chosen
+        ``robots`` : the undecided ones, of which ``size`` are chosen
 
-        Returns
-        -------
-        The node with those decided, and the robots left.
+        Returns the node with those decided, and the robots left.
         """
         if self.minorant is None:
             return self, robots
@@ -92,3 +89,37 @@ class SetNode:
             SetNode(bound, serial, self.inside | robot, self.outside, with_it),
             SetNode(bound, serial + 1, self.inside, self.outside | robot, without),
         )
+
+
+HEAVY_ROBOTS = ((50, 4), (10**9, 5))
+"""(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above.
+Each doubles the polytopes and sharpens the bound: with two instead of four, 1.7 times the nodes at 40 robots."""
+
+
+@dataclass(frozen=True, slots=True)
+class FamilyBound:
+    """No set is worth less than ``bound``; ``suggested`` (size,) are positions of robots that may come near it.
+
+    ``minorant`` : where the bound comes from one
+    """
+
+    bound: float
+    suggested: IntArray | None = None
+    minorant: Minorant | None = None
+
+
+def bound_family(family: SetFamily, goal: float, parent: Minorant | None) -> FamilyBound:
+    """Bound a family by its worst axis where that decides, and else by an affine minorant.
+
+    ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family
+    """
+    if family.team.objective.states("planar_levels"):
+        axis = weakest_axis(family)
+        return FamilyBound(axis.bound, axis.chosen)
+    n_free = len(family.information)
+    if not 0 < family.size < n_free:
+        return FamilyBound(-np.inf)
+    heavy = next(heavy for most, heavy in HEAVY_ROBOTS if n_free <= most)
+    minorant = affine_minorant(family, heavy, goal, parent)
+    weakest = np.lexsort((minorant.scores, -minorant.fraction))[: family.size]
+    return FamilyBound(minorant.bound(family.size), weakest, minorant)

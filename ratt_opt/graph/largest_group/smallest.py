@@ -12,8 +12,7 @@ from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
-from ratt_opt.graph.largest_group.complete import by_caa, by_integer_partitions
-from ratt_opt.graph.largest_group.counting import by_counting
+from ratt_opt.graph.largest_group.counting import by_caa, by_counting, by_integer_partitions
 from ratt_opt.graph.largest_group.enumeration import by_separable_groups, by_subsets
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.threat import Threat

@@ -14,16 +14,13 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
-from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.plans.proved_plan import PROVED
-from ratt_opt.solvers.maxmin.search import BranchAndBound
+from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
 from ratt_opt.solvers.maxmin.task import Task
-from ratt_opt.solvers.maxmin.turns import Turns
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.ratt import greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -33,9 +30,9 @@ if TYPE_CHECKING:
 
 __all__ = ["check_limits", "solve_maxmin"]
 
-LISTED_ROBOTS = 12
-LISTED_OUTCOMES = 3000
-"""Up to this many robots and outcomes all non-dominated outcomes are listed beforehand."""
+LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
+"""Up to so many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
+most in vain. Not measured."""
 ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
@@ -73,9 +70,9 @@ def solve_maxmin(
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    if not isinstance(problem.objective, InformationObjective):
-        return exhaustive_optimum(problem)
     budget = Budget.inside(budget, time_limit, max_nodes)
+    if not isinstance(problem.objective, InformationObjective):
+        return exhaustive_optimum(problem, budget=budget)
     first = ratt(problem, alpha_cs=alpha_cs).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
@@ -151,9 +148,7 @@ def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
 def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = None) -> None:
     """Check the limits of a search.
 
-    Raises
-    ------
-    InputError : the gap is negative or not a number, or a limit is not positive.
+    Raises ``InputError`` : the gap is negative or not a number, or a limit is not positive.
     """
     if not (math.isfinite(gap) and gap >= 0):
         raise InputError("gap", "must be a number >= 0", gap)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.bounds.relaxed_plans import mixed_information
+from ratt_opt.bounds.cuts import mixed_information
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -39,9 +39,7 @@ class Task:
     def of(cls, problem: Problem) -> Task:
         """Group each robot's elements by equal information.
 
-        Raises
-        ------
-        InputError : the objective is another kind of set function.
+        Raises ``InputError`` : the objective is another kind of set function.
         """
         objective = problem.information_objective
         classes = []
