@@ -1,14 +1,18 @@
 # Every public name, once: type checkers read this file, and so does the package (see __init__.py).
 
 from ._version import __version__ as __version__
-from .attackers.breaking_budgets import BreakingBudget as BreakingBudget, breaking_budgets as breaking_budgets
-from .attackers.criticality import Criticality as Criticality, criticality_ranking as criticality_ranking
+from .attackers.criticality import (
+    BreakingBudget as BreakingBudget,
+    Criticality as Criticality,
+    breaking_budgets as breaking_budgets,
+    criticality_ranking as criticality_ranking,
+)
 from .attackers.exact import worst_case_attack as worst_case_attack
 from .attackers.heuristics.bounded_rational import bounded_rational_attack as bounded_rational_attack
 from .attackers.heuristics.greedy import greedy_attack as greedy_attack
 from .attackers.heuristics.random_attack import random_attack as random_attack
-from .attackers.result import AttackResult as AttackResult
 from .attackers.survey import attack_survey as attack_survey
+from .attackers.task import AttackResult as AttackResult
 from .audit.ledger import Ledger as Ledger, run_audit as run_audit
 from .audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
 from .audit.worst_ratio.witness import RatioWitness as RatioWitness
@@ -88,8 +92,7 @@ from .setfunctions.sampling import NotFound as NotFound, Violation as Violation
 from .setfunctions.table import TableFunction as TableFunction
 from .setfunctions.zoo import REFERENCE_FAMILIES as REFERENCE_FAMILIES, Reference as Reference, reference as reference
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
-from .solvers.maxmin.solve import solve_maxmin as solve_maxmin
-from .solvers.nonrobust import nonrobust_optimum as nonrobust_optimum
+from .solvers.maxmin.solve import nonrobust_optimum as nonrobust_optimum, solve_maxmin as solve_maxmin
 from .solvers.ratt import greedy as greedy, myopic as myopic, random_plan as random_plan, ratt as ratt
 from .solvers.result import MaxMinResult as MaxMinResult
 from .stopping import Stop as Stop

@@ -10,8 +10,7 @@ from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.task import AttackBracket, AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
@@ -28,7 +27,6 @@ __all__ = ["worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
 

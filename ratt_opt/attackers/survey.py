@@ -12,7 +12,7 @@ from ratt_opt.attackers.heuristics.random_attack import random_attack
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 

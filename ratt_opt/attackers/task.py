@@ -13,8 +13,31 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.plan_values import PlanValues
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
+    from ratt_opt.stopping import Stop
 
-__all__ = ["AttackBracket", "AttackTask"]
+__all__ = ["AttackBracket", "AttackResult", "AttackTask"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttackResult:
+    """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
+
+    ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is ``EXHAUSTED`` or ``CLOSED``; it
+    is 0 (the value of no measurement) for a heuristic. Results are equal when all their fields are.
+    """
+
+    attack: Attack
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+    nodes: int = 0
+
+    def __repr__(self) -> str:
+        attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"
+        cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
+        return f"AttackResult([{self.lower:.6g}, {self.upper:.6g}], {attack}, {self.stop.value}, {cost})"
+
 
 CLOSED_WIDTH = 1e-10
 """Relative width that counts as closed: attacks that are worse for the team by less are not looked for. Values computed

@@ -24,7 +24,6 @@ __all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "
 
 LARGEST_MASK = 60
 """Most robots: a group is a bit mask of 64."""
-
 IMPOSSIBLE = 10_000
 """Blinded robots that no budget holds."""
 

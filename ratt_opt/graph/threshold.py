@@ -28,7 +28,6 @@ __all__ = ["LARGEST_COMPILED", "GroupSplit", "ThresholdTest", "fewest_blinded", 
 
 LARGEST_COMPILED = 20
 """Most robots for which the compiled form of this test tabulates all sets (2**20 sets, up to 1.7e9 pairs per test)."""
-
 UNREACHABLE = np.int16(10_000)
 """Links that no budget holds."""
 

@@ -22,8 +22,7 @@ from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
-from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.stopping import Stop
 
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.solvers.result import MaxMinResult

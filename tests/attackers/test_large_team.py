@@ -10,7 +10,7 @@ from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.task import AttackBracket, AttackTask
-from ratt_opt.attackers.weakest_set import branch_and_bound, set_node
+from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
@@ -178,7 +178,7 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
             raise KeyboardInterrupt
         return affine_minorant(*arguments)
 
-    monkeypatch.setattr(set_node, "affine_minorant", interrupted)
+    monkeypatch.setattr(branch_and_bound, "affine_minorant", interrupted)
     result = ro.worst_case_attack(problem, np.arange(13))
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)

@@ -21,7 +21,7 @@ from ratt_opt import (
 )
 from ratt_opt.problem import Attack
 from ratt_opt.solvers import nonrobust
-from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers.maxmin.solve import nonrobust_search
 from ratt_opt.stopping import Stop
 from tests.strategies import OBJECTIVES, random_problem
 

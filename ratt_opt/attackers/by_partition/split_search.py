@@ -93,7 +93,6 @@ class GroupSurvivors:
 BISECTED = 2e-3
 """Relative width below which the incumbent is tested instead of the middle: where it is optimal, one refutation
 at its value closes the bracket for which bisection would take two dozen."""
-
 NODES_BETWEEN_LOOKS = 20_000
 """Groups tried between two looks at the budget: some hundredths of a second."""
 CHUNK = 4096

@@ -12,7 +12,7 @@ from ratt_opt.attackers.plan_values import PlanValues
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
 
 __all__ = ["bounded_rational_attack"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.result import AttackResult
+from ratt_opt.attackers.task import AttackResult
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 

@@ -14,7 +14,7 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
 
 __all__ = ["random_attack"]

@@ -29,7 +29,6 @@ __all__ = ["Minorant", "affine_minorant"]
 KEPT, NEW = 24, 4
 """Half-spaces per target that a node hands to its children: those that bind there, and new ones. More make a child's
 polytopes tighter and its vertices more. At 40 robots neither half nor double changes the nodes."""
-
 BINDING = 1e-2
 """Vertices this close to the least of their target, relative to it, count as binding. It only ranks half-spaces for the
 children; at 40 robots a tenth of it changes no node."""

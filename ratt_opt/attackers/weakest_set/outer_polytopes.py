@@ -24,10 +24,8 @@ SPHERE, RANK_ONE = 10, 8
 """Directions of half-spaces beside the box: spread evenly where a family has no parent, and along lines of sight. Each
 tightens a polytope and adds vertices to it; all of them, a parent's and the box have to fit the 64 bits of a row set.
 With four instead of ten at 40 robots: a tenth fewer nodes for trace, a tenth more for log-det, the same time."""
-
 CAPACITY = 160
 """Vertices kept per polytope: with up to 64 half-spaces, rarely more than 100."""
-
 SAFETY = 1e-9
 """Relative amount by which every half-space is widened against rounding; distinct per row, so no two meet."""
 

@@ -23,10 +23,8 @@ __all__ = ["WeakestAxis", "weakest_axis"]
 
 FIRST_INTERVALS = 16
 """Arcs per target before bisection: enough that most close at once, few enough that easy targets cost little."""
-
 CLOSED = 1e-12
 """Relative width at which an interval counts as decided."""
-
 LONGEST = 60
 """Bisections; intervals left open then only loosen the bound."""
 

@@ -23,7 +23,6 @@ __all__ = ["by_separable_groups", "by_subsets"]
 
 MOST_GROUPS = 300_000
 """Groups listed before this way is given up: their masks take a second to list and a few megabytes."""
-
 NODES_AT_ONCE = 1_000_000
 """Nodes between two looks at the clock (about a second)."""
 

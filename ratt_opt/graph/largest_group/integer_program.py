@@ -32,7 +32,6 @@ __all__ = ["by_integer_program"]
 
 VIOLATION = 1e-4
 """Inequalities violated by less are not added: far above HiGHS's feasibility tolerance, so that rounds end."""
-
 LARGEST_ROUND = 400
 """Inequalities added per round, the most violated first: fewer make more rounds, more make larger programs."""
 

@@ -29,10 +29,8 @@ __all__ = ["smallest_largest_group"]
 
 AUTOMATIC_NODES = 20_000_000
 """Groups that ``method="auto"`` tries before it turns to the integer program (some ten seconds)."""
-
 LARGEST_AUTOMATIC_PROGRAM = 40
 """Most robots ``method="auto"`` gives to the integer program."""
-
 METHODS = ("auto", "milp", "caa", "partitions", "enumeration", "counting")
 
 

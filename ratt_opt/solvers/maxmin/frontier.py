@@ -9,7 +9,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.plans.candidates import Candidates
-    from ratt_opt.solvers.maxmin.tree import TreeNode
+    from ratt_opt.solvers.maxmin.proof import TreeNode
 
 __all__ = ["ClosingRule", "Frontier"]
 

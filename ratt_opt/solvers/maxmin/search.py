@@ -16,11 +16,10 @@ from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
-from ratt_opt.solvers.maxmin.proof import Leaf, UpperProof
+from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, UpperProof, nodes_below, preorder
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
 from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
-from ratt_opt.solvers.maxmin.tree import TreeNode, nodes_below, preorder
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack
+from ratt_opt.problem import Attack, Plan
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
-__all__ = ["check_limits", "solve_maxmin"]
+__all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "solve_maxmin"]
 
 LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
 """Up to so many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
@@ -156,3 +157,37 @@ def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = N
         raise InputError("time_limit", "must be positive seconds", time_limit)
     if max_nodes is not None and max_nodes < 1:
         raise InputError("max_nodes", "must be at least 1", max_nodes)
+
+
+FEW_PLANS = 300_000
+"""So few plans are evaluated one and all."""
+
+
+def nonrobust_optimum(problem: Problem) -> Plan:
+    """Best plan when nobody attacks, to 1e-9 relative.
+
+    Raises
+    ------
+    InputError : more than 5 million plans of a set function that is no information criterion.
+
+    Source: the algorithm NR-OPT of ratt.tex, Section VI.
+    """
+    result = nonrobust_search(problem)
+    return Plan(elements=result.elements, evaluations=result.evaluations)
+
+
+def nonrobust_search(
+    problem: Problem, *, time_limit: float | None = None, budget: Budget | None = None
+) -> MaxMinResult:
+    """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan where few.
+
+    ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
+    ``budget`` : an outer search's budget: its seconds and interrupts count too
+
+    Raises ``InputError`` : more than 5 million plans of a set function that is no information criterion.
+    """
+    unattacked = replace(problem, alpha_s=0, alpha_c=0)
+    few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
+    if few or not isinstance(problem.objective, InformationObjective):
+        return exhaustive_optimum(unattacked, budget=Budget.inside(budget, time_limit))
+    return solve_maxmin(unattacked, time_limit=time_limit, budget=budget)

@@ -19,9 +19,9 @@ from ratt_opt.solvers.maxmin.task import with_choice
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.frontier import ClosingRule
+    from ratt_opt.solvers.maxmin.proof import TreeNode
     from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
     from ratt_opt.solvers.maxmin.task import Choices, Task
-    from ratt_opt.solvers.maxmin.tree import TreeNode
 
 __all__ = ["ClosedGroup", "GroupProofs", "close_group"]
 

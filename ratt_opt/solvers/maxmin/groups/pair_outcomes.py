@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision
+    from ratt_opt.solvers.maxmin.proof import TreeNode
     from ratt_opt.solvers.maxmin.task import Task
-    from ratt_opt.solvers.maxmin.tree import TreeNode
 
 __all__ = ["Elimination", "PairOutcomes", "PairValues"]
 

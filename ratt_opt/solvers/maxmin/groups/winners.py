@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.proof import Split, TreeNode
 from ratt_opt.solvers.maxmin.task import with_choice
-from ratt_opt.solvers.maxmin.tree import Split, TreeNode
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

@@ -19,7 +19,7 @@ from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 

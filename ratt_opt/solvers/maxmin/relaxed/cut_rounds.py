@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.solvers.maxmin.groups.winners import Winners
     from ratt_opt.solvers.maxmin.plans.adversary import Adversary
+    from ratt_opt.solvers.maxmin.proof import TreeNode
     from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
     from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
-    from ratt_opt.solvers.maxmin.tree import TreeNode
 
 __all__ = ["CUTS_A_ROUND", "CutRounds"]
 
