@@ -7,11 +7,10 @@ from .attackers.criticality import (
     breaking_budgets as breaking_budgets,
     criticality_ranking as criticality_ranking,
 )
-from .attackers.exact import worst_case_attack as worst_case_attack
+from .attackers.exact import attack_survey as attack_survey, worst_case_attack as worst_case_attack
 from .attackers.heuristics.bounded_rational import bounded_rational_attack as bounded_rational_attack
 from .attackers.heuristics.greedy import greedy_attack as greedy_attack
 from .attackers.heuristics.random_attack import random_attack as random_attack
-from .attackers.survey import attack_survey as attack_survey
 from .attackers.task import AttackResult as AttackResult
 from .audit.ledger import Ledger as Ledger, run_audit as run_audit
 from .audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
@@ -44,14 +43,14 @@ from .curvatures.ratios import (
     submodularity_ratio as submodularity_ratio,
 )
 from .errors import FileFormatError as FileFormatError, InputError as InputError, ProofError as ProofError
-from .graph.caa import CaaResult as CaaResult, caa as caa
-from .graph.largest_group.result import LargestGroup as LargestGroup
+from .graph.largest_group.counting import LargestGroup as LargestGroup
 from .graph.largest_group.smallest import smallest_largest_group as smallest_largest_group
 from .graph.outcomes import (
     count_outcomes as count_outcomes,
     non_dominated_outcomes as non_dominated_outcomes,
     realise as realise,
 )
+from .graph.survivor_sizes import CaaResult as CaaResult, caa as caa
 from .main_job.bound import bound as bound
 from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
 from .problem import Attack as Attack, Plan as Plan, Problem as Problem

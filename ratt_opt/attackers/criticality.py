@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from ratt_opt._validation import check_finite
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
 from ratt_opt.budget import Budget
 
 if TYPE_CHECKING:
@@ -63,11 +64,8 @@ def criticality_ranking(
     InputError : the plan is not one element per robot, a link does not exist, or a budget is not a number >= 0.
     """
     values = PlanValues(problem, elements)
-    whole = Budget.inside(budget)
-
-    def attacked(asked: Problem) -> AttackResult:
-        return worst_case_attack(asked, values.plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
-
+    limits: Any = {"max_nodes": max_nodes, "time_limit": time_limit, "budget": Budget.inside(budget)}
+    attacked = partial(worst_case_attack, elements=values.plan, **limits)
     base = attacked(problem)
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
@@ -143,17 +141,12 @@ def breaking_budgets(
     """
     plan = problem.check_plan(elements)
     goal = float(check_finite("value", value, ndim=0))
-    n_links = len(problem.communication.links)
-    whole = Budget.inside(budget)
-
-    def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
-        asked = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
-        return worst_case_attack(asked, plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
-
+    limits: Any = {"max_nodes": max_nodes, "time_limit": time_limit, "budget": Budget.inside(budget)}
+    attacked = partial(worst_case_attack, elements=plan, **limits)
     found: list[BreakingBudget] = []
-    most_links = n_links
+    most_links = len(problem.communication.links)
     for alpha_s in range(problem.n_robots + 1):
-        best = attacked(alpha_s, most_links)
+        best = attacked(replace(problem, alpha_s=alpha_s, alpha_c=most_links))
         if best.upper >= goal:
             continue
         low, high, proved, step = 0, most_links, True, 1
@@ -161,7 +154,7 @@ def breaking_budgets(
             # From few links upwards: large budgets are slow to attack exactly, and seldom needed.
             middle = min(low + step - 1, (low + high) // 2)
             step *= 2
-            result = attacked(alpha_s, middle)
+            result = attacked(replace(problem, alpha_s=alpha_s, alpha_c=middle))
             if result.upper < goal:
                 best, high = result, middle
             else:

@@ -1,21 +1,59 @@
-"""What every exact attacker is given: one plan to attack, what is known of it, and what may be spent."""
+"""What attackers are given (one plan, what is known of it, and what may be spent), and what they return."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.base import SetFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.attackers.plan_values import PlanValues
+    from numpy.typing import ArrayLike
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.stopping import Stop
 
-__all__ = ["AttackBracket", "AttackResult", "AttackTask"]
+__all__ = ["AttackBracket", "AttackResult", "AttackTask", "PlanValues"]
+
+LARGEST_CHUNK = 4096
+"""Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
+
+
+class PlanValues(SetFunction):
+    """``phi`` of the elements that a set of robots has in one plan; counts what it was asked.
+
+    ``problem`` : N robots, E elements; ``elements`` : (N,) element chosen for each robot
+    """
+
+    __slots__ = ("evaluations", "objective", "plan")
+
+    def __init__(self, problem: Problem, elements: ArrayLike) -> None:
+        self.plan: IntArray = problem.check_plan(elements)
+        self.objective: SetFunction = problem.objective
+        self.evaluations = 0
+
+    @property
+    def n(self) -> int:
+        """Number of robots N."""
+        return len(self.plan)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the sets of robots in the rows of ``membership`` (K, N)."""
+        self.evaluations += len(membership)
+        values = np.empty(len(membership))
+        for start in range(0, len(membership), LARGEST_CHUNK):
+            rows = membership[start : start + LARGEST_CHUNK]
+            selected = np.zeros((len(rows), self.objective.n), dtype=np.bool_)
+            selected[:, self.plan] = rows
+            values[start : start + len(rows)] = self.objective.evaluate(selected)
+        return values
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -110,15 +110,10 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]]) -> tuple[float, 
 def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:
     """One affine (d, d) expression per target."""
     objective = problem.information_objective
-    inside = np.flatnonzero(np.isin(problem.robot, group))
-    d = objective.dimension
-    matrices = []
-    for j in range(objective.n_targets):
-        constant = objective.prior_information[j]
-        flat = objective.information[inside, j].reshape(len(inside), -1)
-        mixed = (flat.T @ z[inside]).reshape((d, d), order="C")
-        matrices.append(constant + mixed)
-    return matrices
+    inside, shape = np.flatnonzero(np.isin(problem.robot, group)), (objective.dimension, objective.dimension)
+    of_target = objective.information[inside].reshape(len(inside), objective.n_targets, -1).transpose(1, 2, 0)
+    mixed = [(flat @ z[inside]).reshape(shape, order="C") for flat in of_target]
+    return [prior + information for prior, information in zip(objective.prior_information, mixed, strict=True)]
 
 
 def _cuts_at(problem: Problem, group: tuple[int, ...], selection: FloatArray) -> list[GroupCut]:
@@ -193,7 +188,8 @@ def relaxation_bounds(
         if len(outcomes) > MOST_OUTCOMES:
             rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
             raise InputError("problem", rule, f"{problem.n_robots} robots")
-    rows = np.array([_mask(group, problem.n_robots) for outcome in outcomes for group in outcome])
+    robots = np.arange(problem.n_robots)
+    rows = np.array([np.isin(robots, list(group)) for outcome in outcomes for group in outcome], dtype=np.float64)
     starts = np.cumsum([0, *(len(outcome) for outcome in outcomes[:-1])])
     entered: list[int] = []
     selection, level = uniform_selection(problem), np.inf
@@ -208,10 +204,3 @@ def relaxation_bounds(
         bound = relaxation_bound(problem, [Attack(*realise(problem.threat, outcomes[k])) for k in entered])
         yield bound
         selection, level = bound.selection, bound.claimed
-
-
-def _mask(group: frozenset[int], n_robots: int) -> FloatArray:
-    """(N,) 1 for the robots of a group."""
-    mask = np.zeros(n_robots)
-    mask[list(group)] = 1.0
-    return mask

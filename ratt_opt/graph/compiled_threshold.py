@@ -14,6 +14,7 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
+from ratt_opt.graph.separable_groups import count_ones
 from ratt_opt.graph.threshold import LARGEST_COMPILED, UNREACHABLE, GroupSplit, fewest_blinded, largest_survivors
 
 if TYPE_CHECKING:
@@ -34,11 +35,7 @@ def _links_inside(neighbours: Any) -> Any:
     inside = np.zeros(1 << n_robots, dtype=np.int16)
     for i in range(n_robots):
         for mask in range(1 << i):
-            common, count = mask & neighbours[i], 0
-            while common:
-                common &= common - 1
-                count += 1
-            inside[mask | (1 << i)] = inside[mask] + count
+            inside[mask | (1 << i)] = inside[mask] + count_ones(mask & neighbours[i])
     return inside
 
 
@@ -73,15 +70,8 @@ def _group_of(mask: int, groups: Any, is_group: Any, start: Any, best: Any, tabl
     width, pick = len(best), -1
     low = mask & -mask
     others, position = mask ^ low, 0
-    lowest = 0
-    while (low >> lowest) & 1 == 0:
-        lowest += 1
+    lowest, size = count_ones(low - 1), count_ones(others)
     listed = start[lowest + 1] - start[lowest]
-    size = 0
-    left = others
-    while left:
-        left &= left - 1
-        size += 1
     by_list = size >= 30 or listed < (1 << size)
     best[:] = FAR
     part = others
@@ -124,8 +114,6 @@ class CompiledThresholdTest:
     """Decides for one plan whether an attack can push the team value to a threshold; see ``ThresholdTest``.
 
     ``threat`` : N robots, at most ``LARGEST_COMPILED``; ``values`` : (2**N,) value of every set of robots, by bit mask
-
-    Raises ``InputError`` : too many robots.
     """
 
     def __init__(self, threat: Threat, values: FloatArray) -> None:

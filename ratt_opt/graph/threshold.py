@@ -74,8 +74,6 @@ class ThresholdTest:
 
     ``threat`` : N robots, at most ``LARGEST_LATTICE``; ``values`` : (2**N,) value of every set of robots, by bit mask;
     ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most so many robots
-
-    Raises ``InputError`` : too many robots.
     """
 
     def __init__(self, threat: Threat, values: FloatArray, *, largest_group: int | None = None) -> None:

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
 
@@ -126,7 +125,8 @@ def bound(
     with steps("the best possible plan"):
         part = budget.part(OPTIMUM_SHARE)
         optimum = solve_maxmin(problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, budget=part)
-        best = _assess_optimum(problem, optimum, budget.part(ATTACK_SHARE))
+        found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
+        best = assess(problem, "maxmin", found, budget.part(ATTACK_SHARE), known=optimum.worst_case)
     with steps("curvature and guarantees"):
         k, c = _curvatures(problem, budget.part(CURVATURE_SHARE))
         guarantees = _guarantees(problem, robust, alpha_cs, budget.part(CURVATURE_SHARE), k=k, c=c)
@@ -190,11 +190,6 @@ def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
-
-
-def _assess_optimum(problem: Problem, optimum: MaxMinResult, budget: Budget) -> PlanAssessment:
-    plan = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-    return assess(problem, "maxmin", plan, budget, known=optimum.worst_case)
 
 
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:

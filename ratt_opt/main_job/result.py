@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["FORMAT", "VERSION", "BoundReport", "PlanAssessment", "attack_document", "plan_document", "report_document"]
+__all__ = ["FORMAT", "VERSION", "BoundReport", "PlanAssessment", "attack_document"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -43,7 +43,16 @@ class PlanAssessment:
 
     def to_dict(self) -> dict[str, Any]:
         """The plan as plain data, as ``report.json`` has it."""
-        return plan_document(self)
+        return {
+            "elements": self.elements.tolist(),
+            "controls": list(self.controls),
+            "bait": list(self.bait),
+            "worst_case": _worst_case(self.worst_case),
+            "evaluations": self.evaluations,
+            "groups": [sorted(group) for group in self.groups],
+            "best_group": sorted(self.best_group),
+            "posterior": None if self.posterior is None else self.posterior.tolist(),
+        }
 
     def __repr__(self) -> str:
         return f"PlanAssessment({self.name}, keeps {self.worst_case.lower:.8g} to {self.worst_case.upper:.8g})"
@@ -135,8 +144,40 @@ class BoundReport:
         return max((float(guarantee) for guarantee in self.guarantees.values()), default=0.0)
 
     def to_dict(self) -> dict[str, Any]:
-        """The report as plain data, which is what ``report.json`` holds: unknown numbers are ``None``."""
-        return report_document(self)
+        """The report as plain data: all that tables and figures show but the scenario; unknown numbers are ``None``."""
+        problem, optimum = self.problem, self.optimum
+        return {
+            "format": FORMAT,
+            "version": VERSION,
+            "n_robots": problem.n_robots,
+            "n_targets": self.n_targets,
+            "n_links": len(problem.communication.links),
+            "objective": self.objective,
+            "unit": self.unit,
+            "alpha_s": problem.alpha_s,
+            "alpha_c": problem.alpha_c,
+            "n_max": self.n_max,
+            "alpha_cs": self.alpha_cs,
+            "ratt": _shared(self, self.ratt),
+            "recommended": {"planner": self.recommended.name, **_shared(self, self.recommended)},
+            "optimum": {
+                "lower": _number(optimum.lower),
+                "upper": _number(self.upper),
+                "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
+                "stop": optimum.stop.value,
+                **_shared(self, self.best),
+            },
+            "certificate": _certificate(self.certificate),
+            "certified_ratio": _number(self.certified_ratio),
+            "guarantees": {name: _number(float(value)) for name, value in self.guarantees.items()},
+            "hypotheses": {name: list(value.hypotheses) for name, value in self.guarantees.items()},
+            "inapplicable": dict(self.inapplicable),
+            "guaranteed_share": self.guaranteed_share,
+            "baselines": {plan.name: _shared(self, plan) for plan in self.baselines},
+            "seconds": {name: _number(value) for name, value in self.seconds.items()},
+            "curvature": _curvature(self.curvature),
+            "total_curvature": _curvature(self.total_curvature),
+        }
 
     def __repr__(self) -> str:
         best = f"the best plan keeps {self.optimum.lower:.8g} to {self.upper:.8g}"
@@ -153,43 +194,6 @@ class BoundReport:
 FORMAT = "ratt-opt report"
 VERSION = 1
 """Raised when a field changes its meaning or disappears; new fields alone do not raise it."""
-
-
-def report_document(report: BoundReport) -> dict[str, Any]:
-    """Return what ``report.json`` holds: everything that the tables and figures show but the scenario itself."""
-    problem, optimum = report.problem, report.optimum
-    return {
-        "format": FORMAT,
-        "version": VERSION,
-        "n_robots": problem.n_robots,
-        "n_targets": report.n_targets,
-        "n_links": len(problem.communication.links),
-        "objective": report.objective,
-        "unit": report.unit,
-        "alpha_s": problem.alpha_s,
-        "alpha_c": problem.alpha_c,
-        "n_max": report.n_max,
-        "alpha_cs": report.alpha_cs,
-        "ratt": _shared(report, report.ratt),
-        "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
-        "optimum": {
-            "lower": _number(optimum.lower),
-            "upper": _number(report.upper),
-            "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
-            "stop": optimum.stop.value,
-            **_shared(report, report.best),
-        },
-        "certificate": _certificate(report.certificate),
-        "certified_ratio": _number(report.certified_ratio),
-        "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
-        "hypotheses": {name: list(value.hypotheses) for name, value in report.guarantees.items()},
-        "inapplicable": dict(report.inapplicable),
-        "guaranteed_share": report.guaranteed_share,
-        "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
-        "seconds": {name: _number(value) for name, value in report.seconds.items()},
-        "curvature": _curvature(report.curvature),
-        "total_curvature": _curvature(report.total_curvature),
-    }
 
 
 def attack_document(
@@ -230,23 +234,9 @@ def _budget(row: BreakingBudget) -> dict[str, Any]:
     }
 
 
-def plan_document(plan: PlanAssessment) -> dict[str, Any]:
-    """Return one plan and its worst case as JSON-ready values."""
-    return {
-        "elements": plan.elements.tolist(),
-        "controls": list(plan.controls),
-        "bait": list(plan.bait),
-        "worst_case": _worst_case(plan.worst_case),
-        "evaluations": plan.evaluations,
-        "groups": [sorted(group) for group in plan.groups],
-        "best_group": sorted(plan.best_group),
-        "posterior": None if plan.posterior is None else plan.posterior.tolist(),
-    }
-
-
 def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
     """A plan with what it keeps as a share of the best possible."""
-    return {**plan_document(plan), "share": _number(report.share(plan))}
+    return {**plan.to_dict(), "share": _number(report.share(plan))}
 
 
 def _worst_case(result: AttackResult) -> dict[str, Any]:

@@ -8,8 +8,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackBracket, AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size

@@ -10,8 +10,7 @@ import ratt_opt as ro
 from ratt_opt.attackers.by_partition import split_search
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackBracket, AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget

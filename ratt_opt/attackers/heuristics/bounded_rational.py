@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, heuristic_result
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -43,4 +44,4 @@ def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResu
         if longer is None:
             break
         attack = longer
-    return heuristic_result(problem, values, attack.finished())
+    return heuristic_result(problem, values, Attack(attack.blinded, attack.cut))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:

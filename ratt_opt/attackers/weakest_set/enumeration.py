@@ -90,18 +90,13 @@ class Enumeration:
         The threshold may fall from call to call, not rise.
         """
         if self._size == 0:
-            return self._only(threshold)
+            known, self.finished = self.finished, True
+            return None if known or self._team.value(self._chosen) >= threshold else self._chosen
         if _search(self._criterion, self._information, self._affine, threshold, limit, self._state):
             depth = int(self._counters[0])
             return self._chosen | frozenset(self._robots[self._position[: depth + 1] - 1].tolist())
         self.finished = bool(self._counters[0] < 0)
         return None
-
-    def _only(self, threshold: float) -> frozenset[int] | None:
-        if self.finished:
-            return None
-        self.finished = True
-        return self._chosen if self._team.value(self._chosen) < threshold else None
 
 
 def _smallest_sums(scores: FloatArray, size: int) -> FloatArray:

@@ -2,5 +2,5 @@
 
 Open ``smallest.py`` first: it chooses between the independent ways: ``counting.py`` (complete graphs by CAA and by
 integer partitions; a bracket for any graph), ``enumeration.py`` (partitions into connected groups), and
-``integer_program.py``. All return the record of ``result.py``, whose upper end is recomputed on the graph.
+``integer_program.py``. All return a ``LargestGroup``, whose upper end is recomputed on the graph.
 """

@@ -18,8 +18,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.graph.largest_group.counting import COUNTED, counting_bound, heuristic_cut
-from ratt_opt.graph.largest_group.result import LargestGroup, largest_left, split_result
+from ratt_opt.graph.largest_group.counting import (
+    COUNTED,
+    LargestGroup,
+    counting_bound,
+    heuristic_cut,
+    largest_left,
+    split_result,
+)
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:

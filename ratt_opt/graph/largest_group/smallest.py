@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import networkx as nx
 
     from ratt_opt.graph.communication import Link
-    from ratt_opt.graph.largest_group.result import LargestGroup
+    from ratt_opt.graph.largest_group.counting import LargestGroup
 
 __all__ = ["smallest_largest_group"]
 

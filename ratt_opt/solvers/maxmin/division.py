@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision
     from ratt_opt.solvers.maxmin.proof import TreeNode
-    from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
+    from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
     from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
 
 __all__ = ["NEGLIGIBLE", "Division", "divide_by_scores", "divide_elements", "mixing_gains", "rounding_losses"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ratt_opt.solvers.maxmin.plans.candidates import Candidates
+    from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
     from ratt_opt.solvers.maxmin.proof import TreeNode
 
 __all__ = ["ClosingRule", "Frontier"]

@@ -17,8 +17,7 @@ from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, UpperProof, nodes_below, preorder
-from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
-from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
+from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
 from ratt_opt.stopping import Stop
 
@@ -95,10 +94,11 @@ class BranchAndBound:
 
     def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
-        narrowed = self._narrow(node)
-        if narrowed is None:
-            return None
-        self.frontier.current = node = narrowed
+        if self.pairs is not None and self.rule.level > 0:
+            narrowed = self.pairs.narrow(node, self.rule.better, self.by_winner)
+            if narrowed is None:
+                return None
+            self.frontier.current = node = narrowed
         nodes, stalls = turns.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
         self.rounds.begin(node)
@@ -124,12 +124,6 @@ class BranchAndBound:
                     self.incumbent.improve(plan)
                 self.division.divide(node, relaxed)
                 return None
-
-    def _narrow(self, node: TreeNode) -> TreeNode | None:
-        """What remains of a node once elements that are weak in some pair are split off, if anything does."""
-        if self.pairs is None or not self.rule.level > 0:
-            return node
-        return self.pairs.narrow(node, self.rule.better, self.by_winner)
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one where it is better.

@@ -83,7 +83,7 @@ def solve_maxmin(
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
         plans = [first, *(planner(problem).elements for planner in (greedy, myopic))]
-        incumbent.start(plans if pairs is None else [*plans, pairs.strongest_plan()])
+        incumbent.start(plans if pairs is None else [*plans, pairs.values.strongest_plan()])
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
         stop = _search_and_prove(search, Turns(budget, incumbent), progress)
@@ -107,6 +107,7 @@ def _search_and_prove(search: BranchAndBound, turns: Turns, progress: Progress) 
 def _result(
     problem: Problem, incumbent: Incumbent, search: BranchAndBound | None, stop: Stop, gap: float
 ) -> MaxMinResult:
+    before = problem.information_objective.prior_criterion
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))
     bounded = search is not None and np.isfinite(search.upper)
@@ -124,15 +125,10 @@ def _result(
         stop=stop,
         evaluations=proved.evaluations,
         nodes=incumbent.budget.nodes,
-        posterior_gap=_posterior_gap(problem, float(lower), float(upper)),
+        posterior_gap=None if before is None or before <= lower else float((upper - lower) / (before - lower)),
         worst_case=proved.worst_case,
         proof=search.proof() if search is not None and bounded else None,
     )
-
-
-def _posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
-    before = problem.information_objective.prior_criterion
-    return None if before is None or before <= lower else (upper - lower) / (before - lower)
 
 
 def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:

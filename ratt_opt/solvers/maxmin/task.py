@@ -37,10 +37,7 @@ class Task:
 
     @classmethod
     def of(cls, problem: Problem) -> Task:
-        """Group each robot's elements by equal information.
-
-        Raises ``InputError`` : the objective is another kind of set function.
-        """
+        """Group each robot's elements by equal information."""
         objective = problem.information_objective
         classes = []
         for choice in problem.choices:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.frontier import ClosingRule
     from ratt_opt.solvers.maxmin.proof import TreeNode
-    from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
+    from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
     from ratt_opt.solvers.maxmin.task import Choices, Task
 
 __all__ = ["ClosedGroup", "GroupProofs", "close_group"]
@@ -70,7 +70,9 @@ class _Search:
             share = 2 / (step + 2)
             selection *= 1 - share
             selection[plan] += share
-            point = self._point(selection)
+            chosen = np.flatnonzero(selection)
+            mixed = np.tensordot(selection[chosen], self.objective.information[chosen], axes=1)
+            point: FloatArray = self.objective.prior_information + mixed
             cut = tangent_cut(self.problem, self.members, point)
             self.cuts += 1
             bound, scores = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), choices)
@@ -81,11 +83,6 @@ class _Search:
             if not self.rule.closes(value) or self.cuts > LARGEST_PROOF:
                 raise _RefutedError
         return self._divide(choices, selection, point, cut.target)
-
-    def _point(self, selection: FloatArray) -> FloatArray:
-        chosen = np.flatnonzero(selection)
-        mixed = np.tensordot(selection[chosen], self.objective.information[chosen], axes=1)
-        return np.asarray(self.objective.prior_information + mixed)
 
     def _divide(self, choices: Choices, selection: FloatArray, point: FloatArray, target: int | None) -> ClosedGroup:
         gains = mixing_gains(

@@ -211,10 +211,6 @@ class PairOutcomes:
             return None
         return cls(task, alone)
 
-    def strongest_plan(self) -> IntArray:
-        """(N,) a plan whose weakest pair is as strong as is found."""
-        return self.values.strongest_plan()
-
     def narrow(self, node: TreeNode, level: float, division: WinnerDivision) -> TreeNode | None:
         """Split off elements that are below ``level`` in some pair; return what remains, ``None`` if nothing does."""
         for step in self.values.eliminations(node.choices, level):
