@@ -87,13 +87,9 @@ def worst_case_attack(
     if bracket is None:  # what no attack at all gives
         values.evaluations += len(problem.communication.groups())
         bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
+    attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
     return AttackResult(
-        attack=bracket.attack,
-        lower=min(bracket.lower, bracket.upper),
-        upper=bracket.upper,
-        stop=stop,
-        evaluations=values.evaluations,
-        nodes=own.nodes,
+        attack=attack, lower=lower, upper=upper, stop=stop, evaluations=values.evaluations, nodes=own.nodes
     )
 
 

@@ -18,6 +18,7 @@ from ratt_opt.graph.communication import neighbour_masks
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
@@ -216,6 +217,13 @@ class PartitionSearch:
     def nodes(self) -> int:
         """Groups tried."""
         return int(self._counters[1])
+
+    def next_within(self, nodes: int, budget: Budget) -> list[int] | None:
+        """Spend up to ``nodes`` more of the budget on :meth:`next`; raises ``OutOfBudget`` where none is left."""
+        before = self.nodes
+        chosen = self.next(before + budget.nodes_left(nodes))
+        budget.nodes += self.nodes - before
+        return chosen
 
     def next(self, limit: int) -> list[int] | None:
         """Groups of the next partition; ``None`` once ``finished`` or at ``limit`` nodes in all."""

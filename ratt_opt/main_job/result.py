@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.problem import Problem
+    from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["FORMAT", "VERSION", "BoundReport", "PlanAssessment", "attack_document"]
@@ -223,15 +223,13 @@ def _critical(row: Criticality) -> dict[str, Any]:
     return {**target, "loss": row.loss, "gain_lower": row.gain_lower, "gain_upper": row.gain_upper}
 
 
+def _attack(attack: Attack) -> dict[str, Any]:
+    return {"sensing": sorted(attack.sensing), "links": [list(link) for link in sorted(attack.links)]}
+
+
 def _budget(row: BreakingBudget) -> dict[str, Any]:
-    return {
-        "alpha_s": row.alpha_s,
-        "alpha_c": row.alpha_c,
-        "value": row.value,
-        "sensing": sorted(row.attack.sensing),
-        "links": [list(link) for link in sorted(row.attack.links)],
-        "proved": row.is_proved,
-    }
+    budgets = {"alpha_s": row.alpha_s, "alpha_c": row.alpha_c}
+    return {**budgets, "value": row.value, **_attack(row.attack), "proved": row.is_proved}
 
 
 def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
@@ -240,13 +238,8 @@ def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
 
 
 def _worst_case(result: AttackResult) -> dict[str, Any]:
-    return {
-        "lower": _number(result.lower),
-        "upper": _number(result.upper),
-        "sensing": sorted(result.attack.sensing),
-        "links": [list(link) for link in sorted(result.attack.links)],
-        "stop": result.stop.value,
-    }
+    bracket = {"lower": _number(result.lower), "upper": _number(result.upper)}
+    return {**bracket, **_attack(result.attack), "stop": result.stop.value}
 
 
 def _certificate(given: Certification) -> dict[str, Any]:

@@ -41,10 +41,10 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
     shape = tuple(len(choice) for choice in problem.choices)
-    count = float(np.prod(np.array(shape, dtype=np.float64)))
-    if count > LARGEST_SEARCH:
+    n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
+    if n_plans > LARGEST_SEARCH:
         rule = f"must have at most {LARGEST_SEARCH:,} plans for an exhaustive search (use solve_maxmin)"
-        raise InputError("problem", rule, f"{count:.3g} plans")
+        raise InputError("problem", rule, f"{n_plans:.3g} plans")
     own, stop = Budget.inside(budget), Stop.EXHAUSTED
     worst = np.full(shape, np.inf)
     group_values: dict[frozenset[int], FloatArray] = {}
@@ -66,13 +66,9 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
     lower = upper = float(worst[best])
     if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
         lower, upper = problem.objective([]), min(upper, problem.objective(range(problem.objective.n)))
+    count = sum(values.size for values in group_values.values())
     return MaxMinResult(
-        elements=readonly(elements),
-        lower=lower,
-        upper=upper,
-        stop=stop,
-        evaluations=sum(values.size for values in group_values.values()),
-        nodes=worst.size,
+        elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size
     )
 
 

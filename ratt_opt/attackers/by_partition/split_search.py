@@ -167,9 +167,7 @@ class SplitSearch:
         search = PartitionSearch(self.groups, need)
         exact: dict[int, frozenset[int]] = {}
         while not search.finished:
-            before = search.nodes
-            chosen = search.next(before + self.task.budget.nodes_left(NODES_BETWEEN_LOOKS))
-            self.task.budget.nodes += search.nodes - before
+            chosen = search.next_within(NODES_BETWEEN_LOOKS, self.task.budget)
             if chosen is not None and self._within(chosen, threshold, need, exact):
                 self._accept([(self.groups.members(group), exact[group]) for group in chosen])
                 return True

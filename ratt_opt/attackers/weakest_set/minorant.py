@@ -106,16 +106,9 @@ def _start(family: SetFamily, points: OuterPolytopes, fraction: FloatArray, pare
 def _program(family: SetFamily, points: OuterPolytopes) -> DualProgram:
     information = family.information * points.sound[:, None]
     np.put_along_axis(information.transpose(1, 0, 2), points.heavy[..., None], 0.0, axis=1)
-    return DualProgram(
-        first=points.first,
-        pattern=points.pattern,
-        values=points.values,
-        light=points.light,
-        patterns=points.patterns.astype(np.float64),
-        heavy=points.heavy,
-        information=information,
-        size=family.size,
-    )
+    patterns = points.patterns.astype(np.float64)
+    vertices = points.first, points.pattern, points.values, points.light
+    return DualProgram(*vertices, patterns, points.heavy, information, family.size)
 
 
 def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:

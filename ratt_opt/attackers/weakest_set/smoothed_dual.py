@@ -158,14 +158,8 @@ class _Ascent:
         """The multipliers of the best bound met, and the fractions there."""
         from scipy.optimize import minimize
 
-        minimize(
-            self._negated,
-            self._best,
-            jac=True,
-            method="L-BFGS-B",
-            callback=self._stop_at_goal,
-            options={"maxiter": STEPS, "maxcor": MEMORY},
-        )
+        options = {"maxiter": STEPS, "maxcor": MEMORY}
+        minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=self._stop_at_goal, options=options)
         return self._multipliers(self._best), self._fraction
 
     def _stop_at_goal(self, xk: FloatArray) -> None:  # noqa: ARG002  (the name SciPy looks for)

@@ -115,13 +115,10 @@ class Division:
         objective, singles = self.task.objective, self.task.singles
         points = self.pool.group_points(self.task.mixed(relaxed.selection))
         groups, weights = self._short(node, relaxed)
+        targets = [objective.tangent_targets(points[g], -np.inf, 1)[0] for g in groups.tolist()]
+        inside, mix = self.pool.membership()[groups] > 0, relaxed.selection
         gains = mixing_gains(
-            self.task.problem,
-            selection=relaxed.selection,
-            inside=self.pool.membership()[groups] > 0,
-            points=points[groups],
-            weights=weights,
-            targets=[objective.tangent_targets(points[g], -np.inf, 1)[0] for g in groups.tolist()],
+            self.task.problem, selection=mix, inside=inside, points=points[groups], weights=weights, targets=targets
         )
         i = max(open_robots, key=lambda r: (gains[r], float(np.ptp(singles[node.choices[r]]))))
         heaviest = points[groups[int(weights.argmax())]] if len(weights) else objective.prior_information

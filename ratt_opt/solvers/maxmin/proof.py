@@ -115,12 +115,8 @@ class TreeNode:
 
     def child(self, choices: Choices | None = None, winner: tuple[int, int] | None = None) -> TreeNode:
         """A node below this one, proved so far by the same leaf."""
-        return TreeNode(
-            choices=self.choices if choices is None else choices,
-            winners=self.winners if winner is None else {**self.winners, winner[0]: winner[1]},
-            bound=self.bound,
-            leaf=self.leaf,
-        )
+        winners = self.winners if winner is None else {**self.winners, winner[0]: winner[1]}
+        return TreeNode(self.choices if choices is None else choices, winners, self.bound, self.leaf)
 
     def tighten(self, leaf: Leaf, bound: float) -> None:
         """Keep a leaf that bounds the node by less than its own does."""

@@ -41,12 +41,10 @@ class Task:
         objective = problem.information_objective
         classes = []
         for choice in problem.choices:
-            seen: dict[bytes, int] = {}
-            own: dict[int, list[int]] = {}
+            alike: dict[bytes, list[int]] = {}
             for e in choice.tolist():
-                first = seen.setdefault(objective.information[e].tobytes(), e)
-                own.setdefault(first, []).append(e)
-            classes.append(own)
+                alike.setdefault(objective.information[e].tobytes(), []).append(e)
+            classes.append({members[0]: members for members in alike.values()})
         choices = tuple(np.array(sorted(own), dtype=np.int64) for own in classes)
         return cls(problem, objective, tuple(classes), choices, objective.singletons())
 

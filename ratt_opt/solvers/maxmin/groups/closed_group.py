@@ -85,13 +85,9 @@ class _Search:
         return self._divide(choices, selection, point, cut.target)
 
     def _divide(self, choices: Choices, selection: FloatArray, point: FloatArray, target: int | None) -> ClosedGroup:
+        inside, points = self.inside[None], point[None]
         gains = mixing_gains(
-            self.problem,
-            selection=selection,
-            inside=self.inside[None],
-            points=point[None],
-            weights=np.ones(1),
-            targets=[target],
+            self.problem, selection=selection, inside=inside, points=points, weights=np.ones(1), targets=[target]
         )
         divisible = [i for i in self.members if len(choices[i]) > 1]
         if not divisible:

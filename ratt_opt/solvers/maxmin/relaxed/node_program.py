@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.highs import LinearProgram, Rows, rows_of
+from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,14 +46,8 @@ class NodeProgram:
         self._n, self._robots = n_elements, len(choices)
         zeros, ones = np.zeros(n_elements), np.ones(n_elements)
         owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], 1.0, 1.0)
-        self._program = LinearProgram(
-            np.append(zeros, 1.0),
-            np.append(zeros, -np.inf),
-            np.append(ones, np.inf),
-            rows=owners,
-            maximise=True,
-            solver="simplex",
-        )
+        cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(ones, np.inf)
+        self._program = LinearProgram(cost, lower, upper, rows=owners, maximise=True, solver="simplex")
         self._allowed = np.ones(n_elements, dtype=np.bool_)
         self.in_use: list[int] = []
         """Cuts that are rows now, in row order."""
@@ -62,16 +56,8 @@ class NodeProgram:
     def use(self, cut: int, constant: float, scores: FloatArray) -> None:
         """Add one cut as a row."""
         columns = np.flatnonzero(scores)
-        values = np.append(-scores[columns], 1.0)
-        self._program.add_rows(
-            Rows(
-                lower=np.array([-np.inf]),
-                upper=np.array([constant]),
-                starts=np.array([0, len(values)]),
-                columns=np.append(columns, self._n),
-                values=values,
-            )
-        )
+        row = np.append(columns, self._n), np.append(-scores[columns], 1.0)
+        self._program.add_rows(rows_of([row], -np.inf, constant))
         self.in_use.append(cut)
         self._idle[cut] = 0
 
@@ -106,9 +92,6 @@ class NodeProgram:
         for cut, dual in zip(self.in_use, duals, strict=True):
             self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
         columns = claim.x[: self._n]
-        return RelaxedPlan(
-            selection=np.where(columns > ROUNDING, np.minimum(columns, 1.0), 0.0),
-            cuts=np.array(self.in_use, dtype=np.int64),
-            duals=duals,
-            level=float(claim.x[self._n]),
-        )
+        selection = np.where(columns > ROUNDING, np.minimum(columns, 1.0), 0.0)
+        cuts, level = np.array(self.in_use, dtype=np.int64), float(claim.x[self._n])
+        return RelaxedPlan(selection=selection, cuts=cuts, duals=duals, level=level)
