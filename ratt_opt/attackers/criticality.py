@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_finite
 from ratt_opt.attackers.exact import worst_case_attack
@@ -64,8 +64,8 @@ def criticality_ranking(
     InputError : the plan is not one element per robot, a link does not exist, or a budget is not a number >= 0.
     """
     values = PlanValues(problem, elements)
-    limits: Any = {"max_nodes": max_nodes, "time_limit": time_limit, "budget": Budget.inside(budget)}
-    attacked = partial(worst_case_attack, elements=values.plan, **limits)
+    plan, whole = values.plan, Budget.inside(budget)
+    attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
     base = attacked(problem)
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
@@ -131,9 +131,7 @@ def breaking_budgets(
     Parameters
     ----------
     value : [unit of the objective]
-    max_nodes, time_limit : for each exact attack
-    budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
-        the attacks left are bounded without a search
+    max_nodes, time_limit, budget : as for :func:`criticality_ranking`
 
     Raises
     ------
@@ -141,8 +139,8 @@ def breaking_budgets(
     """
     plan = problem.check_plan(elements)
     goal = float(check_finite("value", value, ndim=0))
-    limits: Any = {"max_nodes": max_nodes, "time_limit": time_limit, "budget": Budget.inside(budget)}
-    attacked = partial(worst_case_attack, elements=plan, **limits)
+    whole = Budget.inside(budget)
+    attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
     found: list[BreakingBudget] = []
     most_links = len(problem.communication.links)
     for alpha_s in range(problem.n_robots + 1):

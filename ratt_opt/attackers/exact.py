@@ -62,8 +62,7 @@ def worst_case_attack(
     ----------
     problem : N robots, E elements
     elements : (N,) element chosen for each robot
-    max_nodes : nodes that may be explored; unlimited by default
-    time_limit : seconds, checked between nodes; unlimited by default
+    max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises

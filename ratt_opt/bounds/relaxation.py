@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -180,14 +181,10 @@ def relaxation_bounds(
     InputError : the objective is no information criterion, or the team is too large to list its outcomes.
     """
     objective = problem.information_objective
-    whole, outcomes = Budget.inside(budget), []
-    for outcome in non_dominated_outcomes(problem.threat):
-        outcomes.append(outcome)
-        if whole.stop() is not None:
-            return
-        if len(outcomes) > MOST_OUTCOMES:
-            rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
-            raise InputError("problem", rule, f"{problem.n_robots} robots")
+    whole, outcomes = Budget.inside(budget), list(islice(non_dominated_outcomes(problem.threat), MOST_OUTCOMES + 1))
+    if len(outcomes) > MOST_OUTCOMES:
+        rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
+        raise InputError("problem", rule, f"{problem.n_robots} robots")
     robots = np.arange(problem.n_robots)
     rows = np.array([np.isin(robots, list(group)) for outcome in outcomes for group in outcome], dtype=np.float64)
     starts = np.cumsum([0, *(len(outcome) for outcome in outcomes[:-1])])

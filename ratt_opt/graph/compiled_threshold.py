@@ -40,23 +40,18 @@ def _links_inside(neighbours: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def _is_connected(mask: int, neighbours: Any) -> bool:
-    reached, fresh = mask & -mask, mask & -mask
-    while fresh:
-        grown = 0
-        for i in range(len(neighbours)):
-            if (fresh >> i) & 1:
-                grown |= neighbours[i]
-        fresh = grown & mask & ~reached
-        reached |= fresh
-    return reached == mask
-
-
-@numba.njit(cache=True)
 def _connected(masks: Any, neighbours: Any) -> Any:
     answer = np.zeros(len(masks), dtype=np.bool_)
-    for k in range(len(masks)):
-        answer[k] = _is_connected(masks[k], neighbours)
+    for k, mask in enumerate(masks):
+        reached, fresh = mask & -mask, mask & -mask
+        while fresh:
+            grown = 0
+            for i in range(len(neighbours)):
+                if (fresh >> i) & 1:
+                    grown |= neighbours[i]
+            fresh = grown & mask & ~reached
+            reached |= fresh
+        answer[k] = reached == mask
     return answer
 
 

@@ -69,7 +69,13 @@ class GroupSurvivors:
         if size in {len(fixed), len(group)}:
             return None  # only one subset, looked at already
         free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
-        sets = self._enumeration(fixed, free, size)
+        left, minorant = size - len(fixed), self.minorants.get(size)
+        if minorant is None:
+            sets = Enumeration(self.team, free, fixed, left)
+        else:  # the team's minorant of this size holds for the subsets of every group
+            constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
+            affine = AffineBound(constant, minorant.scores[free])
+            sets = Enumeration.surest_first(self.team, free, fixed, left, affine)
         while not sets.finished and sets.nodes < PLAIN_NODES:
             found = sets.next_within(threshold, PLAIN_NODES - sets.nodes, budget)
             if found is not None:
@@ -79,15 +85,6 @@ class GroupSurvivors:
         outside = frozenset(range(len(self.team.single))) - group
         search = WeakestSetSearch(self.team, size, threshold, inside=fixed, outside=outside)
         return next((found for found in search.run(budget) if found is not None), None)
-
-    def _enumeration(self, fixed: frozenset[int], free: IntArray, size: int) -> Enumeration:
-        """The team's minorant of this size holds for the subsets of every group; surest robots first."""
-        left = size - len(fixed)
-        minorant = self.minorants.get(size)
-        if minorant is None:
-            return Enumeration(self.team, free, fixed, left)
-        constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
-        return Enumeration.surest_first(self.team, free, fixed, left, AffineBound(constant, minorant.scores[free]))
 
 
 BISECTED = 2e-3

@@ -21,7 +21,7 @@ from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
-    from ratt_opt._validation import BoolArray, IntArray
+    from ratt_opt._validation import IntArray
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
     from ratt_opt.budget import Budget
 
@@ -65,16 +65,10 @@ class SetNode:
         surely_in = chosen & (first - scores >= room)
         surely_out = ~chosen & (scores - last >= room)
         free = ~(surely_in | surely_out)
-        return self._decided(robots, surely_in, surely_out), robots[free]
-
-    def _decided(self, robots: IntArray, surely_in: BoolArray, surely_out: BoolArray) -> SetNode:
-        assert self.minorant is not None, "robots are decided by a minorant"
-        return replace(
-            self,
-            inside=self.inside | frozenset(robots[surely_in].tolist()),
-            outside=self.outside | frozenset(robots[surely_out].tolist()),
-            minorant=self.minorant.restricted(~(surely_in | surely_out), surely_in),
-        )
+        inside = self.inside | frozenset(robots[surely_in].tolist())
+        outside = self.outside | frozenset(robots[surely_out].tolist())
+        minorant = self.minorant.restricted(free, surely_in)
+        return replace(self, inside=inside, outside=outside, minorant=minorant), robots[free]
 
     def enumeration(self, team: PlanarTeam, robots: IntArray, size: int) -> Enumeration:
         """The sets of the node one by one: ``size`` of the undecided ``robots``."""

@@ -138,7 +138,7 @@ def _normals(
 
 def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
     """At vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
-    target = points.target
+    target = np.repeat(np.arange(len(points.heavy)), np.diff(points.first))
     close = np.flatnonzero(closeness > 0)
     order = close[np.lexsort((-closeness[close], target[close]))]
     target = target[order]
@@ -163,6 +163,8 @@ def _recompute(
     constants = np.where(points.sound, program.least(rest), without)
     mean = _mean(family, fraction)
     hidden = np.maximum(target_values(family, mean) - constants - shares @ fraction, 0.0)
+    trace = family.information[..., 0] + family.information[..., 2]
+    share = np.minimum(trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300), 1.0)  # of a target's information
     return Minorant(
         constant=float(constants.sum()),
         scores=shares.sum(axis=0),
@@ -170,16 +172,9 @@ def _recompute(
         own=own,
         heavy=points.heavy,
         fraction=fraction,
-        tension=_tension(family, mean, hidden),
+        tension=np.asarray(share @ np.where(np.isfinite(hidden), hidden, 0.0)),
         normals=_normals(family, points, slopes, rest, constants).astype(np.float32),
     )
-
-
-def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:
-    """(F,) sum over targets of the hidden value times the robot's share of the target's information."""
-    trace = family.information[..., 0] + family.information[..., 2]
-    share = trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300)
-    return np.asarray(np.minimum(share, 1.0) @ np.where(np.isfinite(hidden), hidden, 0.0))
 
 
 @numba.njit(cache=True)

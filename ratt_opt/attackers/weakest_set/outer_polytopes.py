@@ -181,11 +181,6 @@ class OuterPolytopes:
     patterns: IntArray
     base: FloatArray
 
-    @property
-    def target(self) -> IntArray:
-        """(V,)"""
-        return np.repeat(np.arange(len(self.heavy)), np.diff(self.first))
-
 
 def outer_polytopes(family: SetFamily, n_heavy: int, further: FloatArray | None = None) -> OuterPolytopes:
     """Vertices of the outer polytopes of a family, with ``n_heavy`` robots per target enumerated.

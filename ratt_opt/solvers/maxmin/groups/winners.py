@@ -88,14 +88,11 @@ class Winners:
         """After the best plan turned out worse: close again what no longer closes, where that works."""
         if self.proofs.rule.closes(self.finished):
             return
-        for outcome, closed in self._closed.items():
-            self._closed[outcome] = [(g, self._again(g, proof)) for g, proof in closed]
+        for closed in self._closed.values():
+            for k, (group, proof) in enumerate(closed):
+                if not self.proofs.rule.closes(proof.bound):
+                    closed[k] = group, self.proofs.find(group, self._everything) or proof
         self.finished = max((p.bound for closed in self._closed.values() for _, p in closed), default=-np.inf)
-
-    def _again(self, group: int, proof: ClosedGroup) -> ClosedGroup:
-        if self.proofs.rule.closes(proof.bound):
-            return proof
-        return self.proofs.find(group, self._everything) or proof
 
     def above(self, root: TreeNode, used: set[int]) -> TreeNode:
         """The search tree below the winner branches of those among the ``used`` outcomes decided for all plans."""

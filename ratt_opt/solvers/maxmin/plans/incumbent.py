@@ -118,10 +118,6 @@ class ProvedPlan:
         self.evaluations = 0
         self.unproved_stop = Stop.HEURISTIC
 
-    def reaches(self, level: float) -> bool:
-        """Whether the proved value is a plan's known one."""
-        return self.lower >= level - PROVED * abs(level)
-
     def attack(self, plan: IntArray, budget: Budget) -> None:
         """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
 
@@ -155,7 +151,8 @@ class Incumbent:
     @property
     def is_proved(self) -> bool:
         """Whether the best plan's value is proved."""
-        return self.proved.reaches(self.candidates.level)
+        level = self.candidates.level
+        return self.proved.lower >= level - PROVED * abs(level)
 
     def start(self, plans: Sequence[IntArray]) -> None:
         """Improve the most promising of some plans, beat all of them, and attack the best one briefly."""
