@@ -105,13 +105,8 @@ class _Model:
         """The integer program, or its relaxation, with all rows so far."""
         whole = np.zeros(self.n_pairs + 1, dtype=np.bool_)
         whole[[self.column[link] for link in self.links]] = True
-        return LinearProgram(
-            np.append(np.zeros(self.n_pairs), 1.0),
-            self.low,
-            self.high,
-            rows=rows_of(self.rows, self.sides),
-            integer=whole.tolist() if integer else None,
-        )
+        cost, rows = np.append(np.zeros(self.n_pairs), 1.0), rows_of(self.rows, self.sides)
+        return LinearProgram(cost, self.low, self.high, rows=rows, integer=whole.tolist() if integer else None)
 
     def proved(self, duals: FloatArray) -> float:
         """``min over the box of n + sum of duals * (lower - row x)``: below the optimum for any duals >= 0."""

@@ -1,7 +1,8 @@
 """The smallest possible largest group by the way asked for, or by the first that settles it; ways by enumeration.
 
-Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker
-make the largest one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks.
+Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker make the largest
+one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Small teams are decided over all
+their subsets; larger ones are partitioned into separable groups of at most p robots, for p = 1, 2, ... in turn.
 """
 
 from __future__ import annotations
