@@ -158,7 +158,7 @@ class _Ascent:
         """The multipliers of the best bound met, and the fractions there."""
         from scipy.optimize import minimize
 
-        options = {"maxiter": STEPS, "maxcor": MEMORY}
+        options: Any = {"maxiter": STEPS, "maxcor": MEMORY}
         minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=self._stop_at_goal, options=options)
         return self._multipliers(self._best), self._fraction
 

@@ -56,7 +56,7 @@ class NodeProgram:
     def use(self, cut: int, constant: float, scores: FloatArray) -> None:
         """Add one cut as a row."""
         columns = np.flatnonzero(scores)
-        row = np.append(columns, self._n), np.append(-scores[columns], 1.0)
+        row = [*columns.tolist(), self._n], [*(-scores[columns]).tolist(), 1.0]
         self._program.add_rows(rows_of([row], -np.inf, constant))
         self.in_use.append(cut)
         self._idle[cut] = 0
