@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "values_over"]
+__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "over_subsets", "values_over"]
 
 LARGEST_ENUMERATION = 2**24
 """Most sets of a domain that are enumerated (128 MiB of values)."""
@@ -137,3 +137,12 @@ def _rounding(f: SetFunction) -> float:
     if isinstance(f, InformationObjective):
         size += f.prior_magnitude
     return ROUNDING * size
+
+
+def over_subsets(extreme: np.ufunc, table: FloatArray) -> FloatArray:
+    """Smallest (``np.minimum``) or largest (``np.maximum``) entry over all subsets of each set, one axis an owner."""
+    found = table.copy()
+    for axis in range(table.ndim):
+        view = np.moveaxis(found, axis, 0)
+        extreme(view[1:], view[:1], out=view[1:])
+    return found

@@ -20,7 +20,7 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.budget import Budget
 from ratt_opt.curvatures.curvature import GAP, SECONDS, curvature_over
-from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, values_over
+from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.stopping import Stop
@@ -178,7 +178,7 @@ def _smallest_kept(values: FloatArray, groups: list[IntArray]) -> tuple[float, i
     """Smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 where no gain is positive); ``i``, ``A`` and ``B``."""
     best: tuple[float, int | None, Context, Context] = (1.0, None, (), ())
     for i, gain, rest in each_marginal(values, groups):
-        earlier = _running_maximum(gain)
+        earlier = over_subsets(np.maximum, gain)
         with np.errstate(divide="ignore", invalid="ignore"):
             kept = np.where(earlier > 0, gain / earlier, np.inf)
         where = int(kept.argmin())
@@ -187,15 +187,6 @@ def _smallest_kept(values: FloatArray, groups: list[IntArray]) -> tuple[float, i
             small = _attaining_subset(gain, index, float(earlier[index]))
             best = (float(kept[index]), i, elements_at(small, rest), elements_at(index, rest))
     return best
-
-
-def _running_maximum(gain: FloatArray) -> FloatArray:
-    """Largest entry over all subsets of each set."""
-    largest = gain.copy()
-    for axis in range(gain.ndim):
-        view = np.moveaxis(largest, axis, 0)
-        np.maximum(view[1:], view[:1], out=view[1:])
-    return largest
 
 
 def _later_marginals(values: FloatArray, groups: list[IntArray]) -> float:

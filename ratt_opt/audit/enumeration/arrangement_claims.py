@@ -13,7 +13,7 @@ from ratt_opt.audit.appendix.entry import EntryKind, EnumeratedEntry, Reference
 from ratt_opt.audit.appendix.theorems import THEOREM1
 from ratt_opt.audit.enumeration.arrangements import arrangements, caa_groups, is_pattern1, is_pattern2, splits, text_of
 from ratt_opt.audit.enumeration.setting import LARGEST, Setting, counted, every_link_budget, every_setting
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.survivor_sizes import caa
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import permutations, product
 from typing import TYPE_CHECKING
 
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.survivor_sizes import caa
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

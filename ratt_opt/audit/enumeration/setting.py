@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import Counted
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.survivor_sizes import caa
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

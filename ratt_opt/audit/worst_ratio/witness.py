@@ -12,12 +12,11 @@ import numpy as np
 from ratt_opt._validation import IntArray, readonly
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.errors import ProofError
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import TableFunction
-from ratt_opt.solvers.baselines import greedy, myopic
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.ratt import greedy, myopic, ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
