@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EnumeratedEntry
-from ratt_opt.audit.engine.best_factor import best_factors
-from ratt_opt.audit.engine.decide import Verdict, decide
+from ratt_opt.audit.engine.decide import Verdict, best_factors, decide
 from ratt_opt.audit.real_objectives.search import search_real_objectives
 from ratt_opt.problem import Problem
 from ratt_opt.solvers.ratt import bait_and_greedy
@@ -20,12 +19,11 @@ if TYPE_CHECKING:
 
     from ratt_opt.audit.appendix.entry import Counted, Detour, Entry, SizedClaim
     from ratt_opt.audit.appendix.roles import Team
-    from ratt_opt.audit.engine.best_factor import BestFactor
-    from ratt_opt.audit.engine.counterexample import Witness
-    from ratt_opt.audit.engine.decide import Decision
+    from ratt_opt.audit.engine.decide import BestFactor, Decision
+    from ratt_opt.audit.engine.evidence import Witness
     from ratt_opt.audit.real_objectives.search import RealSearch
 
-__all__ = ["DecidedClaim", "DecidedEntry", "Remains", "decide_one", "ratt_chooses_the_roles"]
+__all__ = ["DecidedClaim", "DecidedEntry", "decide_one"]
 
 QUICK_ROBOTS = 3
 

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import T2, T3
-from ratt_opt.audit.appendix.chain import Case, Chain, Line
-from ratt_opt.audit.appendix.roles import Team, attacks_on, optimum, team_of, whose_worst
+from ratt_opt.audit.appendix.entry import Case, Chain, Line
+from ratt_opt.audit.appendix.roles import T2, T3, Team, attacks_on, optimum, team_of, whose_worst
 from ratt_opt.audit.engine.claim import FunctionClass
-from ratt_opt.audit.engine.polynomial import T
+from ratt_opt.audit.engine.rationals import T
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

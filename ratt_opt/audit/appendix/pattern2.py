@@ -1,28 +1,27 @@
-"""Pattern 2: two groups hold the greedy robots; the chains for the group with few baits, V2.
+"""Pattern 2: two groups hold the greedy robots; the chains of the non-decreasing and the submodular proof.
 
-The same chain serves both classes: total curvature (factor ``(1-c)^2``) and submodular
+For the group with few baits, V2, one chain serves both classes: total curvature (factor ``(1-c)^2``) and submodular
 (factor ``1-k``), as the paper says.
 
-Source: ratt.tex, appendix, eq:nd_p2d1v2_1 to _9 and eq:sub_p2d1v2_1 to _9.
+Source: ratt.tex, appendix, eq:nd_p2d1v1 to eq:nd_p2d3v2, eq:sub_p2vk_1 to eq:sub_p2d1v2_9.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import T2, T3
-from ratt_opt.audit.appendix.chain import Case, Chain, Line
+from ratt_opt.audit.appendix.entry import Case, Chain, Line
 from ratt_opt.audit.appendix.pattern1 import ROLES
-from ratt_opt.audit.appendix.roles import Team, optimum, own_best, team_of, whose_worst
+from ratt_opt.audit.appendix.roles import ONE_PLUS_K, T2, T3, Team, attacks_on, optimum, own_best, team_of, whose_worst
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality
-from ratt_opt.audit.engine.polynomial import T, constant
+from ratt_opt.audit.engine.rationals import T, constant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt.audit.appendix.roles import Robots
 
-__all__ = ["beside_v2", "chains", "few_baits_chain", "x1_text"]
+__all__ = ["GROUP", "beside_v2", "chains"]
 
 FEW_BAITS = ((1, 1, 0, 2), (1, 1, 0, 3), (1, 1, 1, 2), (2, 1, 0, 3), (1, 2, 0, 3))
 """Baits and greedy robots of V2, greedy robots of V1 chosen before them, alpha_cs."""
@@ -126,3 +125,58 @@ def _few_baits_attacked() -> Iterator[Case]:
         line = Line(">=", team.compared(left) * T2, "(1-c)^2/alpha_cs f(u* on V2\\A*)", constant(alpha_cs))
         text = f"{team.text(team.bait[:1])}; alpha_cs = {alpha_cs}"
         yield Case(size=text, team=team, start=team.chosen(left), lines=(line,))
+
+
+SUB_ROLES = "f normalised, non-decreasing, submodular, curvature <= k; baits and greedy robots as RATT chooses them"
+GROUP = ("b1", "b2", "g1")
+"""V1 with alpha_s = 1 and |V2g| = 1; x1 is the greedy robot in V2."""
+
+
+def submodular_chains() -> tuple[Chain, ...]:
+    """The chains of the submodular proof, in the paper's order."""
+    many = tuple(_case(team, attacked) for team in beside_v2(("b1", "b2")) for attacked in attacks_on(GROUP, 1))
+    return (
+        Chain(name="sub_p2vk", function_class=FunctionClass.CURVATURE, hypotheses=SUB_ROLES, cases=tuple(_all_bait())),
+        Chain(name="sub_p2d1v1", function_class=FunctionClass.CURVATURE, hypotheses=SUB_ROLES, cases=many),
+        few_baits_chain("sub_p2d1v2", FunctionClass.CURVATURE, SUB_ROLES),
+    )
+
+
+def _all_bait() -> Iterator[Case]:
+    for survivors, attacked in ((1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (4, 0)):
+        team = team_of(survivors + attacked, 0)
+        left = team.bait[:survivors]
+        lines = (
+            Line("=", team.chosen(left), "f(bait on the survivors)"),
+            Line(">=", team.singles(left) * T, "(1-k) sum of f(bait_i)"),
+            Line("=", team.singles(map(optimum, left)) * T, "(1-k) sum of f(u*_i)"),
+            Line(">=", team.compared(left) * T, "(1-k) f(u*)"),
+        )
+        yield Case(size=team.text(team.bait[survivors:]), team=team, start=team.chosen(left), lines=lines)
+
+
+def _case(team: Team, attacked: Robots) -> Case:
+    left = tuple(r for r in GROUP if r not in attacked)
+    first = [r for r in ("b1",) if r not in attacked]
+    kept, hit = [r for r in ("g1",) if r not in attacked], [r for r in ("g1",) if r in attacked]
+    greedy = team.greedy
+    split, swapped = team.singles([*first, "b2", *kept]), team.singles([*first, "x1", *kept])
+    lines = (
+        Line("=", team.chosen(left), "f(u) on V1b\\A* and V1g\\A*"),
+        Line(">=", team.singles(left) * T, "(1-k) sum of f(u_i)"),
+        Line("=", split * T, "(1-k) [V1b2\\A* + V1b1 + V1g\\A*]"),
+        Line(">=", swapped * T, "(1-k) [V1b2\\A* + V2g + V1g\\A*]"),
+        Line("=", swapped * T, "(1-k) [V1b2\\A* + Vg\\A*]"),
+        Line(">=", (team.singles(hit) + team.singles(["x1", *kept])) * T, "(1-k) [attacked of Vg + the rest of Vg]"),
+        Line("=", team.singles(greedy) * T, "(1-k) sum over Vg of f(u_i)"),
+        Line(">=", team.chosen(greedy) * T, "(1-k) f(u on Vg)"),
+        Line(">=", team.compared(greedy) * T, "(1-k)/(1+k) f(u* on Vg)", ONE_PLUS_K),
+        Line(
+            ">=",
+            team.compared(left) * T,
+            "(1-k)/(1+k) f(u* on V1\\A*)",
+            ONE_PLUS_K,
+            readings=whose_worst(team, GROUP, attacked),
+        ),
+    )
+    return Case(size=x1_text(team, attacked), team=team, start=team.chosen(left), lines=lines)

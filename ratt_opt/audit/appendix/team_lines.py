@@ -11,11 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.roles import Team
+from ratt_opt.audit.appendix.roles import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor, Team
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
-from ratt_opt.audit.engine.polynomial import T, constant
+from ratt_opt.audit.engine.rationals import T, constant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.engine.polynomial import ONE, ZERO, Polynomial, constant, signed_sum
+from ratt_opt.audit.engine.rationals import ONE, ZERO, Polynomial, constant, signed_sum
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ __all__ = ["Claim", "FunctionClass", "Ground", "Inequality", "Linear"]
 class FunctionClass(Enum):
     """Classes of normalised set functions."""
 
-    ANY = "normalised"
     NON_DECREASING = "non-decreasing"
     TOTAL_CURVATURE = "non-decreasing, total curvature at most c"
     SUBMODULAR = "non-decreasing and submodular"

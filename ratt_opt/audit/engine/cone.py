@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.engine.claim import FunctionClass, Ground, Inequality, Linear
-from ratt_opt.audit.engine.polynomial import T
+from ratt_opt.audit.engine.rationals import T
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
@@ -37,7 +37,6 @@ class Elementary:
 
 
 _RULES = {
-    FunctionClass.ANY: (),
     FunctionClass.NON_DECREASING: ("monotone",),
     FunctionClass.TOTAL_CURVATURE: ("low", "high", "monotone"),
     FunctionClass.SUBMODULAR: ("diminishing", "monotone"),
@@ -109,7 +108,7 @@ def _single(function_class: FunctionClass, base: int, x: int, *, is_last: bool) 
             yield Elementary("monotone", (x,), base)
         yield Elementary("low", (x,), base)
         yield Elementary("high", (x,), base)
-    elif is_last and function_class is not FunctionClass.ANY:
+    elif is_last:
         # Diminishing marginals: the smallest one is at the largest set.
         yield Elementary("monotone", (x,), base)
         if function_class is FunctionClass.CURVATURE and base:

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.audit.engine.cone import elementary, elementary_keys
-from ratt_opt.audit.engine.polynomial import ONE, ZERO, Polynomial, T, constant
-from ratt_opt.audit.engine.proof import Proof, ProofStep, check_proof
-from ratt_opt.audit.engine.rationals import solve_exactly
+from ratt_opt.audit.engine.evidence import Proof, ProofStep, check_proof
+from ratt_opt.audit.engine.rationals import ONE, ZERO, Polynomial, T, constant, solve_exactly
 from ratt_opt.errors import ProofError
 from ratt_opt.highs import LinearProgram, Rows
 

@@ -1,27 +1,41 @@
 """Claims about sizes, groups and patterns, decided by exhaustive enumeration.
 
-An arrangement of N robots says how many baits and how many greedy robots each group has.
+Each pattern and distribution is also shown to occur, with the smallest team, so that no claim is cut off below it.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
-from itertools import combinations_with_replacement, product
+from itertools import combinations_with_replacement, permutations, product
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
 from ratt_opt.audit.appendix.theorems import THEOREM1
-from ratt_opt.audit.enumeration.arrangements import arrangements, caa_groups, is_pattern1, is_pattern2, splits, text_of
-from ratt_opt.audit.enumeration.setting import LARGEST, Setting, counted, every_link_budget, every_setting
+from ratt_opt.audit.engine.decide import Verdict
+from ratt_opt.audit.enumeration.arrangements import (
+    LARGEST,
+    Arrangement,
+    Setting,
+    arrangements,
+    caa_groups,
+    counted,
+    every_link_budget,
+    every_setting,
+    is_pattern1,
+    is_pattern2,
+    pattern2_pairs,
+    splits,
+    text_of,
+)
 from ratt_opt.graph.caa import caa
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-    from ratt_opt.audit.appendix.entry import Counted
     from ratt_opt.audit.enumeration.arrangements import Arrangement
 
-__all__ = ["arrangement_entries"]
+__all__ = ["arrangement_entries", "first_occurrence", "smallest_team_entries"]
 
 CLAIM = EntryKind.CLAIM
 OTHERS = Reference("nd_other_patterns", CLAIM)
@@ -144,3 +158,81 @@ def _figure(n_bait_in_second: int) -> Counted:
     fault = "" if fine else f"n_max = {s.n_max}, alpha_cs = {s.alpha_cs}, alpha = {s.alpha}, three groups: {good}"
     what = "splits into three groups with the largest of 5"
     return counted([fault] * max(len(good), 1), "N = 10, alpha_s = 2, alpha_c = 29", what)
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """Groups, which two are V1 and V2, and how many robots are blinded in each group."""
+
+    setting: Setting
+    groups: Arrangement
+    v1: int
+    v2: int
+    blinded: tuple[int, ...]
+
+    def text(self) -> str:
+        """The situation in words."""
+        spread = zip(self.groups, self.blinded, strict=True)
+        groups = ", ".join(f"{b} bait + {g} greedy ({hit} blinded)" for (b, g), hit in spread)
+        return f"{self.setting.text()}; groups {groups}; V1 is group {self.v1 + 1}, V2 group {self.v2 + 1}"
+
+
+_occurs = partial(
+    EnumeratedEntry,
+    kind=EntryKind.CLAIM,
+    chain="smallest teams",
+    hypotheses="N > alpha, alpha_s >= 1, CAA's own groups",
+)
+
+
+def smallest_team_entries() -> Iterator[EnumeratedEntry]:
+    """Yield one entry a pattern and distribution, and one for each dominance claim."""
+    where = {1: "all blinded robots in V1", 2: "all of them outside V1 (Pattern 2: in V2)", 3: "in V1 and elsewhere"}
+    for pattern, distribution in product((1, 2), where):
+        text = f"Pattern {pattern}, Distribution {distribution} occurs: {where[distribution]}"
+        run = partial(first_occurrence, partial(_is_distribution, pattern, distribution))
+        yield _occurs(label=f"nd_p{pattern}d{distribution}_occurs", statement=text, enumerate_cases=run)
+    for distribution in (2, 3):
+        text = f"Pattern 2, Distribution {distribution}: two or more robots of V2 survive, all of them greedy"
+        run = partial(first_occurrence, partial(_is_dominance, distribution))
+        yield _occurs(label=f"nd_p2d{distribution}v2_dominance_occurs", statement=text, enumerate_cases=run)
+
+
+def first_occurrence(occurs: Callable[[Situation], bool]) -> Counted:
+    """Enumerate situations, smallest team first, until one qualifies."""
+    seen = 0
+    for setting in every_setting(LARGEST):
+        for situation in _situations(setting):
+            seen += 1
+            if occurs(situation):
+                sizes = f"{seen} situations, N <= {setting.n_robots}"
+                return Counted(verdict=Verdict.PROVED, sizes=sizes, detail=f"smallest: {situation.text()}")
+    return Counted(verdict=Verdict.REFUTED, sizes=f"{seen} situations, N <= {LARGEST}", detail="none qualifies")
+
+
+def _situations(setting: Setting) -> Iterator[Situation]:
+    if not setting.alpha_s or setting.n_greedy <= 0:
+        return
+    for groups in arrangements(setting):
+        for blinded in product(*(range(b + g + 1) for b, g in groups)):
+            if sum(blinded) == setting.alpha_s:
+                for v1, v2 in permutations(range(len(groups)), 2):
+                    yield Situation(setting, groups, v1, v2, blinded)
+
+
+def _is_distribution(pattern: int, distribution: int, at: Situation) -> bool:
+    setting, groups = at.setting, at.groups
+    if pattern == 1:
+        fits = groups[at.v1] == (setting.alpha_s, setting.n_greedy)
+    else:
+        fits = groups[at.v2][1] > 0 and (at.v1, at.v2) in pattern2_pairs(groups, setting)
+    first, all_of_them = at.blinded[at.v1], setting.alpha_s
+    outside = at.blinded[at.v2] if pattern == 2 else all_of_them - first
+    return fits and (first == all_of_them, outside == all_of_them, 0 < first < all_of_them)[distribution - 1]
+
+
+def _is_dominance(distribution: int, at: Situation) -> bool:
+    """V2 keeps two greedy robots at least when its blinded robots are its baits, and no more."""
+    bait, greedy = at.groups[at.v2]
+    left = bait + greedy - at.blinded[at.v2]
+    return _is_distribution(2, distribution, at) and bait <= at.blinded[at.v2] and left >= 2

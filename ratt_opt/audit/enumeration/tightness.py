@@ -11,8 +11,8 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
 from ratt_opt.audit.worst_ratio.families import attaining_instance, limit_instance, limit_ratio

@@ -10,7 +10,7 @@ from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, 
 from ratt_opt.audit.report.words import title
 
 if TYPE_CHECKING:
-    from ratt_opt.audit.report.document import EntryRecord, LedgerDocument
+    from ratt_opt.audit.report.records import EntryRecord, LedgerDocument
 
 __all__ = ["Finding", "findings"]
 

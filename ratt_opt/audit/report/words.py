@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ratt_opt.audit.report.document import (
+    from ratt_opt.audit.report.records import (
         ClaimRecord,
         EntryHead,
         EntryRecord,

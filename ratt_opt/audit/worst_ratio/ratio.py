@@ -11,8 +11,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt.audit.worst_ratio.class_rows import NonDecreasing, Submodular
-from ratt_opt.audit.worst_ratio.search import RatioSearch
-from ratt_opt.audit.worst_ratio.skeleton import Skeleton, skeleton
+from ratt_opt.audit.worst_ratio.search import RatioSearch, Skeleton, skeleton
 from ratt_opt.audit.worst_ratio.witness import PLANNERS, RatioQuestion, RatioWitness, replay
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError

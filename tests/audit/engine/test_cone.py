@@ -9,7 +9,7 @@ import pytest
 
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.cone import elementary, elementary_keys
-from ratt_opt.audit.engine.counterexample import check_class
+from ratt_opt.audit.engine.evidence import check_class
 from ratt_opt.errors import ProofError
 from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB
 
