@@ -7,8 +7,8 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json
-from ratt_opt.audit.appendix import pattern1, pattern2
 from ratt_opt.audit.appendix.entry import entries_of
+from ratt_opt.audit.appendix.patterns import pattern1_chains, pattern2_chains, submodular_chains
 from ratt_opt.audit.appendix.readings import dominance_entries, readings_of_sets, readings_of_the_attack
 from ratt_opt.audit.appendix.team_lines import team_lines
 from ratt_opt.audit.appendix.theorems import closing_lines, lemmas, theorems
@@ -19,9 +19,8 @@ from ratt_opt.audit.enumeration.running_time import running_time_entries
 from ratt_opt.audit.enumeration.size_claims import size_entries
 from ratt_opt.audit.enumeration.tightness import tightness_entries
 from ratt_opt.audit.report.findings import findings
-from ratt_opt.audit.report.pages import html_report, markdown_report
+from ratt_opt.audit.report.pages import html_report, markdown_report, per_chain
 from ratt_opt.audit.report.records import entry_record
-from ratt_opt.audit.report.words import per_chain
 from ratt_opt.budget import Budget
 
 if TYPE_CHECKING:
@@ -77,7 +76,7 @@ class Ledger:
 def all_entries() -> Iterator[Entry]:
     """Yield every entry in the paper's order: readings, Pattern 1, Pattern 2, closing lines, the rest."""
     yield from readings_of_the_attack()
-    for one in (*pattern1.chains(), *pattern2.chains(), *pattern2.submodular_chains()):
+    for one in (*pattern1_chains(), *pattern2_chains(), *submodular_chains()):
         yield from entries_of(one)
     yield from chain(readings_of_sets(), team_lines(), closing_lines(), dominance_entries(), theorems(), lemmas())
     yield from chain(arrangement_entries(), smallest_team_entries(), size_entries())

@@ -160,13 +160,12 @@ class Case:
     given: tuple[Inequality, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Chain:
     """A chain of (in)equalities, given at several sizes with the same lines, smallest first."""
 
     name: str
     function_class: FunctionClass
-    hypotheses: str
     cases: tuple[Case, ...]
 
     @property
@@ -192,7 +191,8 @@ def entries_of(chain: Chain) -> Iterator[ClaimEntry]:
 def _entry(chain: Chain, number: int, kind: EntryKind, reading: str) -> ClaimEntry:
     line, label, is_whole = chain.lines[number], chain.label(number), kind is CUMULATIVE
     origin = "the start of its chain" if is_whole else "the line before" if number else "the left-hand side"
-    hypotheses = chain.hypotheses
+    submodular = "submodular, curvature <= k" if chain.function_class.is_submodular else "total curvature <= c"
+    hypotheses = f"f normalised, non-decreasing, {submodular}; baits and greedy robots as RATT chooses them"
     if line.cited is not None and not is_whole:
         hypotheses = f"only what the stated reason uses: {'; '.join(premise.reason for premise in line.cited)}"
     return ClaimEntry(

@@ -18,7 +18,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.pattern2 import GROUP, beside_v2
+from ratt_opt.audit.appendix.patterns import GROUP, beside_v2
 from ratt_opt.audit.appendix.roles import ONE_PLUS_K, Side, Team, attacks_on, team_of, worst_for
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, THEOREM1
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear

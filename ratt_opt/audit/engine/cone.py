@@ -50,12 +50,7 @@ def largest_marginal(ground: Ground, element: int) -> str:
 
 
 def elementary(function_class: FunctionClass, ground: Ground, key: Elementary) -> Inequality:
-    """Rebuild the inequality that ``key`` names.
-
-    Raises
-    ------
-    ProofError : the key names no elementary inequality of this class.
-    """
+    """Rebuild the inequality that ``key`` names; raises ``ProofError`` where it names none of this class."""
     x = key.elements[0]
     added = sum(1 << e for e in key.elements)
     if key.rule not in _RULES[function_class] or key.base & added or len(set(key.elements)) != len(key.elements):

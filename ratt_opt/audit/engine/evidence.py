@@ -48,12 +48,7 @@ class Proof:
 
 
 def step_inequality(claim: Claim, step: ProofStep) -> Inequality:
-    """The inequality that a step multiplies.
-
-    Raises
-    ------
-    ProofError : the step names none.
-    """
+    """The inequality that a step multiplies; raises ``ProofError`` where it names none."""
     if isinstance(step.source, int):
         if not 0 <= step.source < len(claim.premises):
             raise ProofError(f"premise {step.source} does not exist")
@@ -62,11 +57,9 @@ def step_inequality(claim: Claim, step: ProofStep) -> Inequality:
 
 
 def check_proof(claim: Claim, proof: Proof) -> None:
-    """Accept a proof or name its first fault.
+    """Accept a proof or raise ``ProofError`` with its first fault.
 
-    Raises
-    ------
-    ProofError : a step is no inequality of the claim, a multiplier may be negative, or the sum is not the claim.
+    A step is no inequality of the claim, a multiplier may be negative, or the sum is not the claim.
     """
     total = Linear()
     t = None if proof.curvature is None else 1 - proof.curvature
@@ -123,11 +116,9 @@ def values_of(values: tuple[int, ...], auxiliary: Mapping[str, Fraction]) -> dic
 
 
 def check_witness(claim: Claim, witness: Witness) -> None:
-    """Accept a counterexample or name its first fault.
+    """Accept a counterexample or raise ``ProofError`` with its first fault.
 
-    Raises
-    ------
-    ProofError : the function is not of the class, breaks a premise, or does not break the claim.
+    The function is not of the class, breaks a premise, or does not break the claim.
     """
     if witness.names != claim.ground.names or len(witness.values) != 1 << claim.ground.n:
         raise ProofError("the witness is on other elements than the claim")
@@ -147,12 +138,7 @@ def check_witness(claim: Claim, witness: Witness) -> None:
 
 
 def check_class(function_class: FunctionClass, values: tuple[int, ...], n: int, curvature: Fraction | None) -> None:
-    """Test the definitions of ``function_class`` on a full integer table.
-
-    Raises
-    ------
-    ProofError : naming the property that fails and where.
-    """
+    """Test the definitions of ``function_class`` on a full integer table; ``ProofError`` says what fails and where."""
     if values[0] != 0:
         raise ProofError("the function is not normalised")
     full = (1 << n) - 1

@@ -81,11 +81,8 @@ def evaluation_bound(n_elements: int, sizes: Sequence[int]) -> int:
     The first greedy round reuses the single values. A later round evaluates every element of the robots without a
     choice, so the count is largest when robots with few elements are picked first: the s-th smallest counts ``s - 1``
     times. Each of the ``R - 1`` later rounds takes at most ``n_elements``, and ``R <= n_elements``: so the total is at
-    most ``n_elements**2`` for any R and any sizes.
-
-    Parameters
-    ----------
-    n_elements : ``|U_V|``; sizes : (R,) number of elements of each greedy robot
+    most ``n_elements**2`` for any R and any sizes. ``n_elements`` is ``|U_V|``, ``sizes`` the (R,) number of elements
+    of each greedy robot.
     """
     return n_elements + sum(rank * size for rank, size in enumerate(sorted(sizes)))
 
@@ -118,12 +115,7 @@ def lazy_greedy_picks(problem: Problem, robots: IntArray) -> tuple[IntArray, int
 
 
 def fit_growth(elements: Sequence[int] | FloatArray, evaluations: Sequence[int] | FloatArray) -> GrowthFit:
-    """Fit a power law to evaluation counts.
-
-    Raises
-    ------
-    InputError : fewer than two different sizes, or a count that is not positive.
-    """
+    """Fit a power law to evaluation counts; ``InputError`` for fewer than two sizes or a count that is not positive."""
     x, y = np.asarray(elements, dtype=np.float64), np.asarray(evaluations, dtype=np.float64)
     if len(np.unique(x)) < 2 or x.shape != y.shape:
         raise InputError("elements", "must hold at least two different sizes, one per count", x.tolist())

@@ -93,12 +93,7 @@ def is_castable(claim: Claim, team: Team | None) -> bool:
 
 
 class Stage:
-    """An instance with the values and optima already computed.
-
-    Parameters
-    ----------
-    problem : complete graph; its own budgets play no part
-    """
+    """An instance (complete graph; its own budgets play no part) with the values and optima already computed."""
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
@@ -154,10 +149,7 @@ class ExactCriterion:
 
     The trace criterion comes out as ``fmpq``; log-det as an ``arb`` ball that contains the true value
     (a comparison of balls is true only when it is certain). Equal values are the same object.
-
-    Raises
-    ------
-    InputError : the objective is neither criterion.
+    Any other objective raises ``InputError``.
     """
 
     def __init__(self, objective: SetFunction) -> None:

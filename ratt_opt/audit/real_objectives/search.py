@@ -92,9 +92,7 @@ def objective_for(function_class: FunctionClass) -> str:
 def search_real_objectives(claims: Sequence[SizedClaim], *, refuted: bool) -> RealSearch | None:
     """Try the claims of one entry; ``None`` where none can be cast in the roles of an instance.
 
-    Parameters
-    ----------
-    refuted : the claims are known to fail for some function: look harder for a geometry that breaks them
+    ``refuted`` claims are known to fail for some function: look harder for a geometry that breaks them.
     """
     usable = [sized for sized in claims if is_castable(sized.claim, sized.team)]
     if not usable:

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind, Reference
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
-from ratt_opt.audit.report.words import title
 
 if TYPE_CHECKING:
-    from ratt_opt.audit.report.records import EntryRecord, LedgerDocument
+    from ratt_opt.audit.report.records import EntryHead, EntryRecord, LedgerDocument
 
-__all__ = ["Finding", "findings"]
+__all__ = ["Finding", "findings", "title"]
 
 STEP = EntryKind.STEP
 PLAN, OPTIMUM, TEAM = "the plan's", "the optimum's", "the team's only"
@@ -26,6 +25,12 @@ class Finding:
     heading: str
     sentences: tuple[str, ...]
     table: tuple[tuple[str, ...], ...] = ()
+
+
+def title(record: EntryHead) -> str:
+    """Label, kind and reading of an entry."""
+    reading = f" ({record['reading']})" if record["reading"] else ""
+    return f"{record['label']}, {record['kind']}{reading}"
 
 
 def findings(document: LedgerDocument) -> tuple[Finding, ...]:

@@ -41,13 +41,7 @@ def attaining_instance(size: int, curvature: Fraction) -> RatioWitness:
     other plan covers no item twice: it is additive, 1 each, and keeps 2m whatever m robots are blinded. So the ratio
     is at most t, and the pattern-free theorem says at least t.
 
-    Parameters
-    ----------
-    size : m >= 1; curvature : k in [0, 1 - 1/m]
-
-    Raises
-    ------
-    InputError : ``curvature`` is larger, where ``v_j`` would exceed it.
+    ``size`` is m >= 1; ``InputError`` unless ``curvature`` is in [0, 1 - 1/m]: above, ``v_j`` would exceed it.
     """
     if not 0 <= curvature <= 1 - Fraction(1, size):
         raise InputError("curvature", f"must be in [0, {1 - Fraction(1, size)}]", curvature)
@@ -88,10 +82,7 @@ def limit_instance(size: int, curvature: Fraction) -> RatioWitness:
     bait, greedy: ``(a-1)(t-1) <= b(1-t)``; greedy, bait: ``t <= 1``;
     others, M: ``b(t-1) <= 0`` with the same other, else ``1 - 1/t <= b(1-t)``; M, others: ``(d-1)(1-1/t) <= 0``, else
     ``d(1-1/t) <= 0``; M, bait: ``t <= 1/t``; bait, M: ``(a-1)(t-1) <= b(1-t)``; M and greedy: ``1 <= 1/t``.
-
-    Parameters
-    ----------
-    size : g >= 1; curvature : c in [0, 1)
+    ``size`` is g >= 1, ``curvature`` c in [0, 1).
     """
     n, kept = 2 * size, 1 - curvature
     bait, greedy, others = range(size), range(size, n), range(n, 2 * n)

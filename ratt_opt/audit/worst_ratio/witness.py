@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import IntArray, readonly
+from ratt_opt._values import ByValue
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.errors import ProofError
 from ratt_opt.graph.caa import caa
@@ -60,7 +61,7 @@ class RatioQuestion:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RatioWitness(RatioQuestion):
+class RatioWitness(ByValue, RatioQuestion):
     """A set function on 2N elements, two per robot, with the threat and the planner it is bad for.
 
     ``values`` : (4**N,) integers, ``values[mask]`` the value of the subset ``mask``. Element ``i`` is the planner's
@@ -69,15 +70,6 @@ class RatioWitness(RatioQuestion):
     """
 
     values: IntArray = field(repr=False)
-
-    def _key(self) -> tuple[object, ...]:
-        return (*(getattr(self, name) for name in RatioQuestion.__slots__), self.values.tobytes())
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, RatioWitness) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(self._key())
 
     def problem(self) -> Problem:
         """Return the instance, on the complete graph, for any planner and attacker of the library."""
@@ -96,11 +88,8 @@ def scaled_values(values: Sequence[Fraction]) -> IntArray | None:
 def replay(witness: RatioWitness) -> Fraction:
     """Check that the function is of its class and return planner's worst-case value over optimum, exactly.
 
-    Runs the library's planner, exact attacker and exhaustive optimum on the instance.
-
-    Raises
-    ------
-    ProofError : the function is not normalised, not of the class, exceeds its curvature, or has optimum 0.
+    Runs the library's planner, exact attacker and exhaustive optimum on the instance; raises ``ProofError`` where the
+    function is not normalised, not of the class, exceeds its curvature, or has optimum 0.
     """
     check_class(witness)
     problem = witness.problem()
