@@ -52,7 +52,7 @@ class Decision:
         """For which curvatures the verdict holds."""
         if not self.claim.function_class.is_parametric:
             return "no curvature in the claim"
-        symbol = self.claim.symbol
+        symbol = self.claim.function_class.symbol
         if self.witness is not None:
             return f"{symbol} = {self.witness.curvature}"
         if self.proofs and self.proofs[0].curvature is None:
@@ -131,15 +131,13 @@ def best_factors(refuted: Sequence[Claim]) -> tuple[BestFactor, ...]:
 
 def _for_all(refuted: Sequence[Claim], curvature: Fraction | None) -> BestFactor | None:
     """The smallest factor: every value in a claim is non-negative, so it serves the other claims too."""
-    each = []
+    least: BestFactor | None = None
     for claim in refuted:
         found = _at(claim, curvature)
-        if found is None:
-            return None
-        each.append(found)
-        if found.factor == 0:
-            break
-    return min(each, key=lambda found: found.factor)
+        if found is None or found.factor == 0:
+            return found
+        least = found if least is None or found.factor < least.factor else least
+    return least
 
 
 def _at(claim: Claim, curvature: Fraction | None) -> BestFactor | None:

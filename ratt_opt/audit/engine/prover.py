@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.audit.engine.cone import elementary, elementary_keys
+from ratt_opt.audit.engine.claim import elementary, elementary_keys
 from ratt_opt.audit.engine.evidence import Proof, ProofStep, check_proof
 from ratt_opt.audit.engine.rationals import ONE, ZERO, Polynomial, T, constant, solve_exactly
 from ratt_opt.errors import ProofError
@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.audit.engine.claim import Claim, Key, Linear
-    from ratt_opt.audit.engine.cone import Elementary
+    from ratt_opt.audit.engine.claim import Claim, Elementary, Key, Linear
 
     Entries = dict[tuple[Key, int], Fraction]
     """Coefficients by value and power of ``t``: the rows of the linear program."""

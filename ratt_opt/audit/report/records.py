@@ -204,7 +204,7 @@ def _proof(claim: Claim, proof: Proof) -> ProofRecord:
     steps = []
     for step in proof.steps:
         inequality = step_inequality(claim, step)
-        multiplier = step.multiplier.form_text(claim.symbol)
+        multiplier = step.multiplier.form_text(claim.function_class.symbol)
         steps.append([multiplier, inequality.reason, claim.text(inequality.expression)])
     return {
         "curvature": None if proof.curvature is None else str(proof.curvature),

@@ -12,7 +12,7 @@ import numpy as np
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt.audit.worst_ratio.class_rows import NonDecreasing, Submodular
 from ratt_opt.audit.worst_ratio.search import RatioSearch, Skeleton, skeleton
-from ratt_opt.audit.worst_ratio.witness import PLANNERS, RatioQuestion, RatioWitness, replay
+from ratt_opt.audit.worst_ratio.witness import FAMILIES, PLANNERS, RatioQuestion, RatioWitness, replay
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.stopping import Stop
@@ -25,7 +25,6 @@ __all__ = ["WorstCaseRatio", "pattern_free_ratio", "worst_case_ratio"]
 LARGEST_TEAM = 7
 """Most robots: a witness has ``4**N`` values."""
 
-FAMILIES = ("submodular", "nondecreasing")
 DOMAINS = ("elements", "feasible")
 
 
@@ -141,12 +140,8 @@ def check_curvature(value: float | str | Fraction) -> Fraction:
 
 
 def _check_names(question: RatioQuestion) -> None:
-    choices = (
-        ("family", question.family, FAMILIES),
-        ("planner", question.planner, tuple(PLANNERS)),
-        ("domain", question.domain, DOMAINS),
-    )
-    for name, value, known in choices:
+    for name, known in (("family", FAMILIES), ("planner", PLANNERS), ("domain", DOMAINS)):
+        value = getattr(question, name)
         if value not in known:
             raise InputError(name, f"must be one of {', '.join(known)}", value)
 

@@ -12,6 +12,8 @@ import numpy as np
 from ratt_opt._validation import IntArray, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.audit.engine.claim import FunctionClass
+from ratt_opt.audit.engine.evidence import check_class
 from ratt_opt.errors import ProofError
 from ratt_opt.graph.caa import caa
 from ratt_opt.problem import Plan, Problem
@@ -24,9 +26,11 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-__all__ = ["PLANNERS", "RatioQuestion", "RatioWitness", "replay", "scaled_values"]
+__all__ = ["FAMILIES", "PLANNERS", "RatioQuestion", "RatioWitness", "replay", "scaled_values"]
 
 PLANNERS: dict[str, Callable[[Problem], Plan]] = {"ratt": ratt, "myopic": myopic, "greedy": greedy}
+
+FAMILIES = {"submodular": FunctionClass.CURVATURE, "nondecreasing": FunctionClass.TOTAL_CURVATURE}
 
 LARGEST_VALUE = 2**52
 """Sums and comparisons of integers up to here are exact in float64, in which the library's planners compute."""
@@ -91,7 +95,7 @@ def replay(witness: RatioWitness) -> Fraction:
     Runs the library's planner, exact attacker and exhaustive optimum on the instance; raises ``ProofError`` where the
     function is not normalised, not of the class, exceeds its curvature, or has optimum 0.
     """
-    check_class(witness)
+    _check(witness)
     problem = witness.problem()
     plan = PLANNERS[witness.planner](problem)
     attack = worst_case_attack(problem, plan.elements)
@@ -103,31 +107,11 @@ def replay(witness: RatioWitness) -> Fraction:
     return Fraction(int(attack.upper), int(optimum))
 
 
-def check_class(witness: RatioWitness) -> None:
+def _check(witness: RatioWitness) -> None:
     """Raise ``ProofError`` unless the table is exactly what the witness says: definition by definition, in integers."""
-    values, n = witness.values, 2 * witness.n_robots
-    if len(values) != 1 << n or values[0] != 0 or values.max() > LARGEST_VALUE:
+    values, n = witness.values, witness.n_robots
+    if len(values) != 4**n or values[0] != 0 or values.max() > LARGEST_VALUE:
         raise ProofError("witness: values must hold 4**N integers up to 2**52, the first 0")
-    masks = np.arange(1 << n)
-    for x in range(n):
-        contexts = masks[masks >> x & 1 == 0]
-        marginal = values[contexts | 1 << x] - values[contexts]
-        if marginal.min() < 0:
-            raise ProofError(f"witness: element {x} has a negative marginal")
-        for y in range(x + 1, n) if witness.family == "submodular" else ():
-            without = contexts >> y & 1 == 0
-            after = values[contexts[without] | 1 << x | 1 << y] - values[contexts[without] | 1 << y]
-            if (after > marginal[without]).any():
-                raise ProofError(f"witness: diminishing returns fail for elements {x} and {y}")
-        _check_curvature(witness, x, contexts, marginal)
-
-
-def _check_curvature(witness: RatioWitness, x: int, contexts: IntArray, marginal: IntArray) -> None:
-    if witness.domain == "feasible":
-        n = witness.n_robots
-        feasible = (contexts & contexts >> n == 0) & (contexts >> (x % n) & 1 == 0) & (contexts >> (x % n + n) & 1 == 0)
-        marginal = marginal[feasible]
-    # Contexts are ascending, so the first marginal is the value of the element alone.
-    largest = int(marginal[0]) if witness.family == "submodular" else int(marginal.max())
-    if int(marginal.min()) < (1 - witness.curvature) * largest:
-        raise ProofError(f"witness: element {x} exceeds the curvature {witness.curvature}")
+    masks = np.arange(len(values))
+    feasible = masks & masks >> n & (1 << n) - 1 == 0 if witness.domain == "feasible" else None
+    check_class(FAMILIES[witness.family], values, witness.curvature, feasible)

@@ -7,8 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from ratt_opt.audit.engine.claim import Claim, Ground, Linear
-from ratt_opt.audit.engine.cone import Elementary
+from ratt_opt.audit.engine.claim import Claim, Elementary, Ground, Linear
 from ratt_opt.audit.engine.decide import Decision, decide
 from ratt_opt.audit.engine.evidence import ProofStep, check_proof
 from ratt_opt.audit.engine.prover import find_proof
