@@ -1,9 +1,8 @@
 """The lines that sum up a distribution or a pattern: from groups to the team.
 
-``team`` is RATT's worst-case value and ``opt`` the optimum's. Both are bounds between numbers
-that are no function values, so they enter as auxiliary numbers with the facts that define them.
-Each claim fixes which group wins for the optimum and uses that group's own factor, which is at
-least the minimum the paper writes (opt >= 0).
+``team`` is RATT's worst-case value and ``opt`` the optimum's. Both are bounds between numbers that are no function
+values, so they enter as auxiliary numbers with the facts that define them. Each claim fixes which group wins for the
+optimum and uses that group's own factor, which is at least the minimum the paper writes (opt >= 0).
 """
 
 from __future__ import annotations

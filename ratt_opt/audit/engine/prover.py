@@ -1,9 +1,8 @@
 """Find a proof: non-negative multipliers of elementary inequalities that sum to the claim.
 
-For all curvatures at once, multipliers are forms in ``t = 1-c`` and ``s = c``: with
-``t + s = 1`` every row of degree r and the claim of degree D become homogeneous, and a
-multiplier ``sum_a x_a t^a s^(D-r-a)`` with ``x_a >= 0`` is non-negative on [0, 1]. The
-unknowns ``x_a`` solve one linear program, whose solution is rounded and re-checked.
+For all curvatures at once, multipliers are forms in ``t = 1-c`` and ``s = c``: with ``t + s = 1`` every row of degree r
+and the claim of degree D become homogeneous, and a multiplier ``sum_a x_a t^a s^(D-r-a)`` with ``x_a >= 0`` is
+non-negative on [0, 1]. The unknowns ``x_a`` solve one linear program, whose solution is rounded and re-checked.
 """
 
 from __future__ import annotations

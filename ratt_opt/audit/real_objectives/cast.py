@@ -147,9 +147,8 @@ def _greedy_order(problem: Problem, elements: IntArray, robots: list[int]) -> li
 class ExactCriterion:
     """Values of one objective by the definition, on its float64 data read as exact rationals.
 
-    The trace criterion comes out as ``fmpq``; log-det as an ``arb`` ball that contains the true value
-    (a comparison of balls is true only when it is certain). Equal values are the same object.
-    Any other objective raises ``InputError``.
+    The trace criterion comes out as ``fmpq``; log-det as an ``arb`` ball that contains the true value (a comparison of
+    balls is true only when it is certain). Equal values are the same object. Any other objective raises ``InputError``.
     """
 
     def __init__(self, objective: SetFunction) -> None:

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 from ratt_opt.audit.engine.evidence import step_inequality
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from ratt_opt.audit.decided import DecidedClaim, DecidedEntry
+    from ratt_opt.audit.appendix.entry import Entry, SizedClaim
     from ratt_opt.audit.engine.claim import Claim
-    from ratt_opt.audit.engine.decide import BestFactor
+    from ratt_opt.audit.engine.decide import BestFactor, Decision, Verdict
     from ratt_opt.audit.engine.evidence import Proof, Witness
     from ratt_opt.audit.real_objectives.search import RealSearch
 
 __all__ = ["ClaimRecord", "EntryHead", "EntryRecord", "FactorRecord", "LedgerDocument", "OtherEntry",
-           "RealRecord", "WitnessRecord", "WorstRecord", "entry_record", "real_record"]  # fmt: skip
+           "RealRecord", "WitnessRecord", "WorstRecord", "begun", "claim_record", "factor_record",
+           "real_record"]  # fmt: skip
 
 
 class ProofRecord(TypedDict):
@@ -140,38 +139,8 @@ class LedgerDocument(TypedDict):
     entries: list[EntryRecord]
 
 
-ENUMERATED = "exhaustive enumeration"
-BY_CONE = "linear programming over the set-function cone, re-checked exactly"
-
-
-def entry_record(decided: DecidedEntry) -> EntryRecord:
-    """The record of one entry, without what other entries say about it."""
-    counted, remains = decided.counted, decided.remains
-    if counted is not None:
-        record = _begun(decided, ENUMERATED)
-        record["sizes"], record["detail"] = counted.sizes, counted.detail
-        record["counterexamples"], record["claims"] = list(counted.cases), []
-        record["seconds"] = decided.seconds
-        return record
-    robots = [claim.sized.robots for claim in decided.claims]
-    in_play = f"{min(robots)} to {max(robots)} robots in play, {len(robots)} cases"
-    record = _begun(decided, BY_CONE)
-    record["function_class"] = decided.claims[0].sized.claim.function_class.value
-    record["sizes"] = f"for all functions of the class, {in_play}"
-    record["curvature"] = sorted({claim.decision.scope for claim in decided.claims})
-    record["claims"] = [_claim(claim) for claim in decided.claims]
-    if remains is not None:
-        record["best_factors"] = _factors(remains.factors)
-        record["realistic"] = None if remains.real is None else real_record(remains.real)
-        if remains.has_detours:
-            record["follows_from"] = remains.follows_from
-    record["seconds"] = decided.seconds
-    return record
-
-
-def _begun(decided: DecidedEntry, decided_by: str) -> EntryRecord:
+def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:
     """A record without its evidence, which the caller adds in the order of the file."""
-    entry = decided.entry
     head: EntryHead = {
         "label": entry.label,
         "kind": entry.kind.value,
@@ -180,22 +149,23 @@ def _begun(decided: DecidedEntry, decided_by: str) -> EntryRecord:
         "statement": entry.statement,
         "hypotheses": entry.hypotheses,
         "decided_by": decided_by,
-        "verdict": decided.verdict.value,
+        "verdict": verdict.value,
     }
     return cast("EntryRecord", head)
 
 
-def _claim(decided: DecidedClaim) -> ClaimRecord:
-    claim, decision = decided.sized.claim, decided.decision
+def claim_record(sized: SizedClaim, decision: Decision, chooses_roles: bool | None) -> ClaimRecord:
+    """One size with its evidence; ``chooses_roles`` as in :class:`WitnessRecord`."""
+    claim = sized.claim
     return {
-        "size": decided.sized.size,
-        "robots": decided.sized.robots,
+        "size": sized.size,
+        "robots": sized.robots,
         "claim": claim.text(),
         "premises": len(claim.premises),
         "verdict": decision.verdict.value,
         "scope": decision.scope,
         "proofs": [_proof(claim, proof) for proof in decision.proofs],
-        "witness": None if decision.witness is None else _witness(claim, decision.witness, decided.chooses_roles),
+        "witness": None if decision.witness is None else _witness(claim, decision.witness, chooses_roles),
     }
 
 
@@ -227,15 +197,10 @@ def _witness(claim: Claim, witness: Witness, chooses_roles: bool | None) -> Witn
     }
 
 
-def _factors(found: Iterable[BestFactor]) -> list[FactorRecord]:
-    return [
-        {
-            "curvature": None if best.curvature is None else str(best.curvature),
-            "factor": str(best.factor),
-            "cannot_exceed_by_1/1000": best.is_best,
-        }
-        for best in found
-    ]
+def factor_record(best: BestFactor) -> FactorRecord:
+    """The best factor at one curvature."""
+    curvature = None if best.curvature is None else str(best.curvature)
+    return {"curvature": curvature, "factor": str(best.factor), "cannot_exceed_by_1/1000": best.is_best}
 
 
 def real_record(found: RealSearch) -> RealRecord:
