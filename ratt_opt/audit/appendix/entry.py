@@ -219,29 +219,26 @@ def _serves_by(line: Line, label: str, kind: EntryKind, reading: str) -> Referen
 def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:
     """Yield the line from each earlier line but the one before, latest first, with all of RATT's choices given."""
     for start in range(number - 2, -1, -1):
-        claims = []
-        for case in chain.cases:
-            before, line = case.lines[start], case.lines[number]
-            premises = case.team.premises + case.given + line.readings.get(reading, ())
-            left, right = before.expression * line.denominator, line.expression * before.denominator
-            claims.append(_sized(chain.function_class, case, premises, left, right))
-        yield Detour(chain.label(start), tuple(claims))
+        both = (_both_ways(chain, case, case.lines[start], case.lines[number], reading) for case in chain.cases)
+        yield Detour(chain.label(start), tuple(there for there, _ in both))
 
 
-def _claims(chain: Chain, case: Case, number: int, kind: EntryKind, reading: str) -> Iterator[SizedClaim]:
+def _claims(chain: Chain, case: Case, number: int, kind: EntryKind, reading: str) -> tuple[SizedClaim, ...]:
     line, before = case.lines[number], Line("", case.start, "")
     if kind is not CUMULATIVE and number:
         before = case.lines[number - 1]
-    roles = case.team.premises if kind is CUMULATIVE or line.cited is None else line.cited
-    premises = roles + case.given + line.readings.get(reading, ())
+    both = _both_ways(chain, case, before, line, reading, cited=None if kind is CUMULATIVE else line.cited)
+    return both if kind is AS_WRITTEN else both[:1]
+
+
+def _both_ways(
+    chain: Chain, case: Case, before: Line, line: Line, reading: str, *, cited: tuple[Inequality, ...] | None = None
+) -> tuple[SizedClaim, SizedClaim]:
+    """``before >= line`` and the reverse, from all of RATT's choices unless the premises are cited."""
+    team, robots = case.team, len(case.team.robots)
+    premises = (team.premises if cited is None else cited) + case.given + line.readings.get(reading, ())
     left, right = before.expression * line.denominator, line.expression * before.denominator
-    yield _sized(chain.function_class, case, premises, left, right)
-    if kind is AS_WRITTEN:
-        yield _sized(chain.function_class, case, premises, right, left)
-
-
-def _sized(
-    function_class: FunctionClass, case: Case, premises: tuple[Inequality, ...], left: Linear, right: Linear
-) -> SizedClaim:
-    claim = case.team.comparison(function_class, left, right, premises)
-    return SizedClaim(size=case.size, robots=len(case.team.robots), claim=claim, team=case.team)
+    there = team.comparison(chain.function_class, left, right, premises)
+    back = team.comparison(chain.function_class, right, left, premises)
+    first = SizedClaim(size=case.size, robots=robots, claim=there, team=team)
+    return first, SizedClaim(size=case.size, robots=robots, claim=back, team=team)

@@ -14,12 +14,14 @@ alpha_s = 1, |V1| = |V2| = 3, hence N = 6; with part of the attack in V1, alpha_
 
 from __future__ import annotations
 
-from itertools import combinations
+from functools import partial
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
 from ratt_opt.audit.appendix.patterns import GROUP, beside_v2
 from ratt_opt.audit.appendix.roles import ONE_PLUS_K, Side, Team, attacks_on, team_of, worst_for
+from ratt_opt.audit.appendix.team_lines import OPTIMUM, PLAN
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, THEOREM1
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
 from ratt_opt.audit.engine.rationals import T
@@ -29,6 +31,8 @@ from ratt_opt.graph.threat import Threat
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from ratt_opt.audit.appendix.roles import Robots
 
 __all__ = ["SETTINGS", "dominance_entries", "readings_of_sets", "readings_of_the_attack"]
 
@@ -46,18 +50,12 @@ def readings_of_the_attack() -> Iterator[ClaimEntry]:
         ("team_subgroup", Side.RATT, ">=", "RATT's", PATTERN_FREE_ND),
         (optimum, Side.OPTIMUM, "<=", "the optimum's", Reference(optimum, STEP)),
     )
-    for worst, reading in (
-        (Side.RATT, "A* is the plan's worst attack"),
-        (Side.OPTIMUM, "A* is the optimum's worst attack"),
-    ):
+    for worst, reading in ((Side.RATT, PLAN), (Side.OPTIMUM, OPTIMUM)):
         for label, side, used, who, serves_by in lines:
             above, below = tuple(_other_attacks(worst, side)), tuple(_below(side))
             as_used = above if used == ">=" else below
-            for kind, relation, claims in (
-                (STEP, used, as_used),
-                (AS_WRITTEN, "=", above + below),
-                (CUMULATIVE, used, as_used),
-            ):
+            forms = ((STEP, used, as_used), (AS_WRITTEN, "=", above + below), (CUMULATIVE, used, as_used))
+            for kind, relation, claims in forms:
                 yield ClaimEntry(
                     label=label,
                     kind=kind,
@@ -148,75 +146,54 @@ SETTINGS = {2: (6, 1, 9), 3: (7, 2, 12)}
 """Distribution -> (N, alpha_s, alpha_c): CAA gives n_max = 3 and 4, so groups (3, 3) and (4, 3)."""
 SURVIVORS = ("b1", "b2", "b3")
 RIVALS = ("g1", "g2")
-STATED, WORST = "stated reason only", "A* is the worst attack"
 FAMILIES = {FunctionClass.TOTAL_CURVATURE: "total curvature", FunctionClass.CURVATURE: "submodular"}
-
-
-def _team(distribution: int) -> Team:
-    """One control per robot: RATT's plan is the only plan, so nothing else is in play."""
-    bait = team_of(SETTINGS[distribution][0] - 2, 0).bait
-    return Team(bait, RIVALS, without_optimum=frozenset((*bait, *RIVALS)))
-
-
-def deciding_outcome(distribution: int) -> tuple[tuple[str, ...], ...]:
-    """The outcome used, after checking that the library finds it among the attacks of this setting."""
-    n_robots, alpha_s, alpha_c = SETTINGS[distribution]
-    groups = (SURVIVORS, *((rival,) for rival in RIVALS))
-    robots = _team(distribution).robots
-    outcome = {frozenset(robots.index(name) for name in group) for group in groups}
-    threat = Threat(CommunicationGraph.complete(n_robots), alpha_s, alpha_c)
-    assert any(set(found) == outcome for found in non_dominated_outcomes(threat)), "the outcome is within the budgets"
-    return groups
 
 
 def dominance_entries() -> Iterator[ClaimEntry]:
     """Yield the claim with its stated reason, and with "A* is the worst attack" added, for both classes."""
-    for distribution in SETTINGS:
-        team = _team(distribution)
-        for kind in FAMILIES:
-            text = f"more baits than greedy robots survive, each bait is individually better; {kind.value}"
-            stated = _sized(distribution, kind, team.bait_premises())
-            yield _entry(distribution, kind, STATED, text, (stated,))
-            text = f"RATT's choices, and A* is the worst attack on its plan; {kind.value}"
-            yield _entry(distribution, kind, WORST, text, tuple(_cases(distribution, kind)))
+    for distribution, function_class in product(SETTINGS, FAMILIES):
+        yield from _dominance(distribution, function_class)
 
 
-def _cases(distribution: int, function_class: FunctionClass) -> Iterator[SizedClaim]:
-    team = _team(distribution)
-    for group in deciding_outcome(distribution):
+def _dominance(distribution: int, function_class: FunctionClass) -> Iterator[ClaimEntry]:
+    n_robots, alpha_s, alpha_c = SETTINGS[distribution]
+    bait = team_of(n_robots - len(RIVALS), 0).bait
+    # One control per robot: RATT's plan is the only plan, so nothing else is in play.
+    team = Team(bait, RIVALS, without_optimum=frozenset((*bait, *RIVALS)))
+    size = f"N = {n_robots}, alpha_s = {alpha_s}, alpha_c = {alpha_c}: 3 baits of V1 and 2 greedy of V2 left"
+    family, label = FAMILIES[function_class], f"nd_p2d{distribution}v2_dominance"
+
+    def sized(premises: tuple[Inequality, ...], case: str = "") -> SizedClaim:
+        claim = team.comparison(function_class, team.chosen(SURVIVORS), team.chosen(RIVALS), premises)
+        return SizedClaim(size=size + case, robots=n_robots, claim=claim, team=team)
+
+    def given_that(group: Robots) -> SizedClaim:
         name = f"{{{','.join(group)}}}"
         reason = f"the best group of the other attack is {name}, and A* is no better for the team"
         reaches = Inequality(reason, team.chosen(group) - team.chosen(RIVALS))
-        case = f"; other attack's best group {name}"
-        yield _sized(distribution, function_class, (*team.premises, reaches), case)
+        return sized((*team.premises, reaches), f"; other attack's best group {name}")
 
-
-def _sized(
-    distribution: int, function_class: FunctionClass, premises: tuple[Inequality, ...], case: str = ""
-) -> SizedClaim:
-    n_robots, alpha_s, alpha_c = SETTINGS[distribution]
-    team = _team(distribution)
-    return SizedClaim(
-        size=f"N = {n_robots}, alpha_s = {alpha_s}, alpha_c = {alpha_c}: 3 baits of V1 and 2 greedy of V2 left{case}",
-        robots=n_robots,
-        claim=team.comparison(function_class, team.chosen(SURVIVORS), team.chosen(RIVALS), premises),
-        team=team,
-    )
-
-
-def _entry(
-    distribution: int, function_class: FunctionClass, reading: str, hypotheses: str, claims: tuple[SizedClaim, ...]
-) -> ClaimEntry:
-    family, label = FAMILIES[function_class], f"nd_p2d{distribution}v2_dominance"
-    proved = Reference(label, EntryKind.CLAIM, f"{WORST}; {family}")
-    return ClaimEntry(
+    entry = partial(
+        ClaimEntry,
         label=label,
         kind=EntryKind.CLAIM,
         chain="dominance",
         statement="f(u on V1\\A*) >= f(u on V2\\A*) when only greedy robots of V2 survive",
-        hypotheses=hypotheses,
-        claims=claims,
-        reading=f"{reading}; {family}",
         survives_by=Reference(f"nd_p2d{distribution}v2", EntryKind.CUMULATIVE),
-        serves_by=None if reading == WORST else proved,
     )
+    proved, reading = f"A* is the worst attack; {family}", f"stated reason only; {family}"
+    text = f"more baits than greedy robots survive, each bait is individually better; {function_class.value}"
+    serves_by, claims = Reference(label, EntryKind.CLAIM, proved), (sized(team.bait_premises()),)
+    yield entry(hypotheses=text, claims=claims, reading=reading, serves_by=serves_by)
+    text = f"RATT's choices, and A* is the worst attack on its plan; {function_class.value}"
+    threat = Threat(CommunicationGraph.complete(n_robots), alpha_s, alpha_c)
+    cases = tuple(given_that(group) for group in _deciding_outcome(team, threat))
+    yield entry(hypotheses=text, claims=cases, reading=proved)
+
+
+def _deciding_outcome(team: Team, threat: Threat) -> tuple[Robots, ...]:
+    """The outcome used, after checking that the library finds it among the attacks of this setting."""
+    groups = (SURVIVORS, *((rival,) for rival in RIVALS))
+    outcome = {frozenset(team.robots.index(name) for name in group) for group in groups}
+    assert any(set(found) == outcome for found in non_dominated_outcomes(threat)), "the outcome is within the budgets"
+    return groups

@@ -37,12 +37,8 @@ THEOREM1_SUB = Reference("eqn:appro_submodular", EntryKind.THEOREM)
 PATTERN_FREE_ND = Reference("pattern_free_nd", EntryKind.THEOREM)
 PATTERN_FREE_SUB = Reference("pattern_free_sub", EntryKind.THEOREM)
 GROUPS = "the class and RATT's choices only; every set S of surviving robots, hence every graph, attack and budget"
-LARGEST_GROUP = 4
-"""Baits in a group of baits only."""
-LARGEST_TEAM = 5
-"""Robots in play in a group of any pattern: with six the sets of a claim are 4,096."""
-
-
+LARGEST_GROUP, LARGEST_TEAM = 4, 5
+"""Baits in a group of baits only; robots in play in a group of any pattern: with six the sets of a claim are 4,096."""
 SURVIVING = "f(u on S) >= {} f(u* on S)"
 _theorem = partial(ClaimEntry, kind=EntryKind.THEOREM, chain="theorems")
 
@@ -56,7 +52,7 @@ def closing_lines() -> Iterator[ClaimEntry]:
     for label in ("nd1", "nd"):
         text = f"{nd}, which gives min[(1-c)^3, (1-c)^2/alpha_cs] for the team"
         yield _line(label, CUMULATIVE, text, every_nd, GROUPS)
-    parts = {"Pattern 1": CUBED, "Pattern 2": CUBED, "any other pattern": CUBED}
+    parts = dict.fromkeys(("Pattern 1", "Pattern 2", "any other pattern"), CUBED)
     given = "the bounds of Patterns 1 and 2 and of the patterns left out"
     joined = _line("nd1", STEP, "all patterns together", _joined(ND, parts), given)
     yield replace(joined, reading="with the omitted patterns")
@@ -95,14 +91,10 @@ def _joined(function_class: FunctionClass, parts: dict[str, Factor]) -> Iterator
 
 def theorems() -> Iterator[ClaimEntry]:
     """Yield Theorem 1, the pattern-free theorem, and the better bounds of groups of baits."""
+    first = "Theorem 1: at least {0} >= min[{0}, {1}/alpha_cs]"
     for name, kind, factor, text in (
-        (THEOREM1, ND, CUBED, "Theorem 1: at least (1-c)^3 >= min[(1-c)^3, (1-c)^2/alpha_cs]"),
-        (
-            THEOREM1_SUB,
-            SUB,
-            KEPT_OVER_ONE_PLUS_K,
-            "Theorem 1: at least (1-k)/(1+k) >= min[(1-k)/(1+k), (1-k)/alpha_cs]",
-        ),
+        (THEOREM1, ND, CUBED, first.format("(1-c)^3", "(1-c)^2")),
+        (THEOREM1_SUB, SUB, KEPT_OVER_ONE_PLUS_K, first.format("(1-k)/(1+k)", "(1-k)")),
         (PATTERN_FREE_ND, ND, SQUARED, "pattern-free: at least (1-c)^2 of the optimum"),
         (PATTERN_FREE_SUB, SUB, KEPT, "pattern-free: at least 1-k of the optimum"),
     ):

@@ -93,8 +93,7 @@ def _decide(claim: Claim) -> Decision:
 def _on_grid(claim: Claim) -> Decision:
     proofs = []
     for curvature in curvatures_tried(claim):
-        each = (find_proof(claim, feasible=feasible, curvature=curvature) for feasible in (True, False))
-        proof = next((found for found in each if found is not None), None)
+        proof = _proof_at(claim, curvature)
         if proof is None:
             searched = claim.ground.n <= LARGEST_GROUND
             return Decision(claim=claim, verdict=Verdict.NO_VIOLATION if searched else Verdict.UNDECIDED)
@@ -147,7 +146,7 @@ def _at(claim: Claim, curvature: Fraction | None) -> BestFactor | None:
         return None
     ratio = max(least, 0.0)
     tried = (Fraction(ratio).limit_denominator(SIMPLE), floor(ratio * STEP.denominator) * STEP)
-    factor = next((factor for factor in tried if _is_proved(_scaled(claim, factor), curvature)), None)
+    factor = next((factor for factor in tried if _proof_at(_scaled(claim, factor), curvature)), None)
     if factor is None:
         return None
     above = find_witness(_scaled(claim, factor + STEP), curvature=curvature)
@@ -155,8 +154,9 @@ def _at(claim: Claim, curvature: Fraction | None) -> BestFactor | None:
     return BestFactor(curvature=at, factor=factor, is_best=above is not None)
 
 
-def _is_proved(claim: Claim, curvature: Fraction | None) -> bool:
-    return any(find_proof(claim, feasible=feasible, curvature=curvature) is not None for feasible in (True, False))
+def _proof_at(claim: Claim, curvature: Fraction | None) -> Proof | None:
+    each = (find_proof(claim, feasible=feasible, curvature=curvature) for feasible in (True, False))
+    return next((found for found in each if found is not None), None)
 
 
 def _scaled(claim: Claim, factor: Fraction) -> Claim:

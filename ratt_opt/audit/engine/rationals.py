@@ -172,11 +172,9 @@ class Polynomial:
         for degree in range(self.degree, max(self.degree, LARGEST_FORM) + 1):
             form = self.form(degree)
             if min(form) >= 0:
-                bases = (
-                    filter(None, (power_of(symbol, degree - a), power_of(f"(1-{symbol})", a)))
-                    for a in range(degree + 1)
-                )
-                return signed_sum([_term(h, "*".join(base)) for h, base in zip(form, bases, strict=True) if h])
+                powers = [(power_of(symbol, degree - a), power_of(f"(1-{symbol})", a)) for a in range(degree + 1)]
+                bases = ["*".join(filter(None, both)) for both in powers]
+                return signed_sum([_term(h, base) for h, base in zip(form, bases, strict=True) if h])
         return self.text(symbol)
 
 

@@ -140,18 +140,15 @@ N_TARGETS = 6
 
 def running_time_entries() -> Iterator[EnumeratedEntry]:
     """Yield Theorem 2 as a bound on the number of evaluations, and its measured growth."""
-    yield EnumeratedEntry(
-        label="thm:ratt_run_time",
+    theorem2 = partial(EnumeratedEntry, label="thm:ratt_run_time", chain="theorems")
+    yield theorem2(
         kind=EntryKind.THEOREM,
-        chain="theorems",
         statement="RATT evaluates f at most |U|^2 times, |U| the number of all controls",
         hypotheses="first greedy round reuses the single values; every order in which greedy robots may be picked",
         enumerate_cases=partial(count_orders, LARGEST),
     )
-    yield EnumeratedEntry(
-        label="thm:ratt_run_time",
+    yield theorem2(
         kind=EntryKind.MEASUREMENT,
-        chain="theorems",
         statement="on Section VI scenarios (log-det, 12 controls a robot) the count stays below |U|^2, and lazy "
         "evaluation finds the same plan",
         hypotheses=f"random_scenario(N, {N_TARGETS}, alpha_s=1, alpha_c=0, seed=s), N in {MEASURED_TEAMS}, "

@@ -15,9 +15,8 @@ from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, R
 from ratt_opt.audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
-from ratt_opt.audit.worst_ratio.families import attaining_instance, limit_instance, limit_ratio
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
-from ratt_opt.audit.worst_ratio.witness import replay
+from ratt_opt.audit.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:

@@ -219,9 +219,8 @@ def _realistic_lines(found: RealRecord) -> list[str]:
     elif worst["relative_violation"] > 0:
         lines.append(f"worst geometry found: violated by {size} in rounding, not confirmed exactly; {worst['origin']}")
     else:
-        lines.append(
-            f"worst geometry found: not violated (margin {-worst['relative_violation']:.3g}); {worst['origin']}"
-        )
+        margin = f"margin {-worst['relative_violation']:.3g}"
+        lines.append(f"worst geometry found: not violated ({margin}); {worst['origin']}")
     return lines
 
 

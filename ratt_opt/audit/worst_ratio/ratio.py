@@ -119,8 +119,8 @@ def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
     """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
 
     Proved in ``bounds.guarantees.pattern_free_bound``: its plan is any whose robots are bait or chosen greedily.
-    Neither can be improved for all N: ``families.attaining_instance`` attains the first for every ``k < 1``,
-    and the ratios of ``families.limit_instance`` tend to the second.
+    Neither can be improved for all N: ``witness.attaining_instance`` attains the first for every ``k < 1``,
+    and the ratios of ``witness.limit_instance`` tend to the second.
     """
     return 1 - curvature if family == "submodular" else (1 - curvature) ** 2
 
