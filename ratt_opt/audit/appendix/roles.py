@@ -29,10 +29,6 @@ __all__ = ["CUBED", "KEPT", "KEPT_OVER_ONE_PLUS_K", "ONE_PLUS_K", "SQUARED", "T2
            "Team", "attacks_on", "every_group", "one_group", "optimum", "own_best", "team_of",
            "whose_worst", "worst_for"]  # fmt: skip
 
-PLAN_WORST = "A* hurts RATT's plan most in its group"
-OPTIMUM_WORST = "A* hurts the optimum most in its group"
-ANY_ATTACK = "A* worst for the team only, so any attack on a group that is not the best"
-
 
 class Side(Enum):
     """Whose value an attack is judged by."""
@@ -188,9 +184,9 @@ def worst_for(team: Team, group: Robots, attacked: Robots, *, side: Side) -> tup
 def whose_worst(team: Team, group: Robots, attacked: Robots) -> dict[str, tuple[Inequality, ...]]:
     """Readings of A*: the plan's worst attack in the group, the optimum's in the group, or the team's."""
     return {
-        PLAN_WORST: worst_for(team, group, attacked, side=Side.RATT),
-        OPTIMUM_WORST: worst_for(team, group, attacked, side=Side.OPTIMUM),
-        ANY_ATTACK: (),
+        "A* hurts RATT's plan most in its group": worst_for(team, group, attacked, side=Side.RATT),
+        "A* hurts the optimum most in its group": worst_for(team, group, attacked, side=Side.OPTIMUM),
+        "A* worst for the team only, so any attack on a group that is not the best": (),
     }
 
 

@@ -72,23 +72,20 @@ class Ground:
         """Bit mask of a set of names."""
         return sum(1 << self.names.index(name) for name in set(elements))
 
-    def members(self, mask: int) -> tuple[int, ...]:
+    @staticmethod
+    @cache
+    def members(mask: int) -> tuple[int, ...]:
         """Indices of the elements of ``mask``."""
-        return _members(mask)
+        return tuple(e for e in range(mask.bit_length()) if mask >> e & 1)
 
     def is_feasible(self, mask: int) -> bool:
         """Whether no robot owns two elements of ``mask``."""
-        owners = [self.owner[e] for e in _members(mask)]
+        owners = [self.owner[e] for e in self.members(mask)]
         return len(set(owners)) == len(owners)
 
     def text(self, mask: int) -> str:
         """``f(a,b)`` for the set of ``mask``."""
         return f"f({','.join(self.names[e] for e in self.members(mask))})"
-
-
-@cache
-def _members(mask: int) -> tuple[int, ...]:
-    return tuple(e for e in range(mask.bit_length()) if mask >> e & 1)
 
 
 Key = int | str
@@ -248,7 +245,8 @@ def elementary_keys(function_class: FunctionClass, ground: Ground, *, feasible: 
     """Yield enough elementary inequalities to span the class (redundant ones are left out)."""
 
     def fits(base: int, x: int) -> bool:
-        return not base >> x & 1 and not (feasible and any(ground.owner[e] == ground.owner[x] for e in _members(base)))
+        clashes = feasible and any(ground.owner[e] == ground.owner[x] for e in ground.members(base))
+        return not base >> x & 1 and not clashes
 
     for base in (m for m in range(1 << ground.n) if not feasible or ground.is_feasible(m)):
         free = [x for x in range(ground.n) if fits(base, x)]

@@ -13,29 +13,23 @@ from typing import TYPE_CHECKING
 from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
 from ratt_opt.audit.appendix.theorems import THEOREM1
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.arrangements import (
+from ratt_opt.audit.enumeration.setting import (
     LARGEST,
-    Arrangement,
     Setting,
-    arrangements,
     caa_groups,
     counted,
     every_link_budget,
     every_setting,
-    is_pattern1,
-    is_pattern2,
-    pattern2_pairs,
     splits,
-    text_of,
 )
 from ratt_opt.graph.caa import caa
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ratt_opt.audit.enumeration.arrangements import Arrangement
 
-__all__ = ["arrangement_entries", "first_occurrence", "smallest_team_entries"]
+__all__ = ["Arrangement", "arrangement_entries", "arrangements", "first_occurrence", "is_pattern1",
+           "is_pattern2", "smallest_team_entries"]  # fmt: skip
 
 CLAIM = EntryKind.CLAIM
 OTHERS = Reference("nd_other_patterns", CLAIM)
@@ -46,6 +40,9 @@ LARGEST_FOR_VALUES = 5
 
 
 CAA_IS_EXACT = Reference("caa_largest_group", CLAIM)
+Arrangement = tuple[tuple[int, int], ...]
+"""Groups as (baits, greedy robots)."""
+
 _claim = partial(EnumeratedEntry, kind=CLAIM, chain="patterns", hypotheses="RATT's and CAA's definitions")
 
 
@@ -132,7 +129,7 @@ def _caa_counts_groups() -> Counted:
 def _patterns_cover() -> Counted:
     def fault(groups: Arrangement, setting: Setting) -> str:
         covered = is_pattern1(groups, setting) or is_pattern2(groups, setting)
-        return "" if covered else f"{setting.text()}: groups {text_of(groups)}"
+        return "" if covered else f"{setting.text()}: groups {_text_of(groups)}"
 
     settings = (setting for setting in every_setting(LARGEST) if setting.n_greedy > 0)
     faults = (fault(groups, setting) for setting in settings for groups in arrangements(setting))
@@ -225,7 +222,7 @@ def _is_distribution(pattern: int, distribution: int, at: Situation) -> bool:
     if pattern == 1:
         fits = groups[at.v1] == (setting.alpha_s, setting.n_greedy)
     else:
-        fits = groups[at.v2][1] > 0 and (at.v1, at.v2) in pattern2_pairs(groups, setting)
+        fits = groups[at.v2][1] > 0 and (at.v1, at.v2) in _pattern2_pairs(groups, setting)
     first, all_of_them = at.blinded[at.v1], setting.alpha_s
     outside = at.blinded[at.v2] if pattern == 2 else all_of_them - first
     return fits and (first == all_of_them, outside == all_of_them, 0 < first < all_of_them)[distribution - 1]
@@ -236,3 +233,38 @@ def _is_dominance(distribution: int, at: Situation) -> bool:
     bait, greedy = at.groups[at.v2]
     left = bait + greedy - at.blinded[at.v2]
     return _is_distribution(2, distribution, at) and bait <= at.blinded[at.v2] and left >= 2
+
+
+def arrangements(setting: Setting) -> Iterator[Arrangement]:
+    """Every way to fill CAA's own groups with RATT's baits and greedy robots (the paper's most favourable reading)."""
+    sizes = caa_groups(setting.n_robots, setting.alpha_c)
+    seen = set()
+    for greedy in product(*(range(size + 1) for size in sizes)):
+        if sum(greedy) == setting.n_greedy:
+            arrangement = tuple(sorted(((s - g, g) for s, g in zip(sizes, greedy, strict=True)), reverse=True))
+            if arrangement not in seen:
+                seen.add(arrangement)
+                yield arrangement
+
+
+def _text_of(arrangement: Arrangement) -> str:
+    """The groups in words."""
+    return ", ".join(f"{b} bait + {g} greedy" for b, g in arrangement)
+
+
+def is_pattern1(arrangement: Arrangement, setting: Setting) -> bool:
+    """Whether one group holds alpha_s baits and all greedy robots."""
+    return (setting.alpha_s, setting.n_greedy) in arrangement
+
+
+def is_pattern2(arrangement: Arrangement, setting: Setting) -> bool:
+    """Whether two groups are the V1 and V2 of Pattern 2."""
+    return any(True for _ in _pattern2_pairs(arrangement, setting))
+
+
+def _pattern2_pairs(arrangement: Arrangement, setting: Setting) -> Iterator[tuple[int, int]]:
+    """Yield the indices of the groups that can be V1 and V2 of Pattern 2."""
+    for (i, (b1, g1)), (j, (b2, g2)) in permutations(enumerate(arrangement), 2):
+        fits = g1 + g2 == setting.n_greedy and b1 == setting.alpha_s + g2
+        if fits and b2 + g2 <= setting.alpha_cs and b2 > 0:
+            yield i, j

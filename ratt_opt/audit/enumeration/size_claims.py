@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind, EnumeratedEntry, Reference
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND
-from ratt_opt.audit.enumeration.arrangements import LARGEST, counted, every_setting
+from ratt_opt.audit.enumeration.setting import LARGEST, counted, every_setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ratt_opt.audit.appendix.entry import Counted
-    from ratt_opt.audit.enumeration.arrangements import Setting
+    from ratt_opt.audit.enumeration.setting import Setting
 
     Check = Callable[[Setting], str]
     """What is wrong at one setting, or the empty string."""

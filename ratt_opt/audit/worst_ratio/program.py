@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     """Rational multipliers by row."""
 
 __all__ = ["BEHIND", "DENOMINATORS", "MANY_COLUMNS", "ClaimedOptimum", "RatioProgram", "Row",
-           "basic_multipliers", "checked_bound", "exact_point", "proved_bound"]  # fmt: skip
+           "basic_multipliers", "checked_bound", "proved_bound", "rational_points"]  # fmt: skip
 
 MANY_COLUMNS = 1000
 """From here on an interior-point method with crossover on all rows at once beats simplex on a growing list of rows."""
@@ -147,14 +147,16 @@ def basic_multipliers(program: RatioProgram, claimed: ClaimedOptimum) -> Multipl
     return {i: value for i, value in zip(claimed.tight_rows, solved, strict=True) if value}
 
 
-def exact_point(program: RatioProgram, claimed: ClaimedOptimum) -> list[Fraction]:
-    """The point of the basis without rounding: its rows hold with equality. Not checked here."""
+def rational_points(program: RatioProgram, claimed: ClaimedOptimum) -> Iterator[list[Fraction]]:
+    """Yield rational points near a claimed optimum, simple ones first, then the basis's own. Not checked here."""
+    for denominator in DENOMINATORS:
+        yield [Fraction(float(v)).limit_denominator(denominator) for v in claimed.x]
     right = [program.rows[i].least for i in claimed.tight_rows]
     solved = solve_square(_basis(program, claimed), right, len(claimed.basic_columns))
     point = [Fraction(0)] * len(claimed.x)
     for j, value in zip(claimed.basic_columns, solved, strict=True):
         point[j] = value
-    return point
+    yield point
 
 
 def _basis(program: RatioProgram, claimed: ClaimedOptimum) -> Iterator[tuple[int, int, Fraction]]:

@@ -19,15 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.audit.worst_ratio.program import (
-    BEHIND,
-    DENOMINATORS,
-    ClaimedOptimum,
-    RatioProgram,
-    Row,
-    exact_point,
-    proved_bound,
-)
+from ratt_opt.audit.worst_ratio.program import BEHIND, ClaimedOptimum, RatioProgram, Row, proved_bound, rational_points
 from ratt_opt.audit.worst_ratio.witness import scaled_values
 from ratt_opt.errors import ProofError
 from ratt_opt.graph.communication import CommunicationGraph
@@ -35,7 +27,7 @@ from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.graph.threat import Threat
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable
 
     from ratt_opt._validation import IntArray
     from ratt_opt.audit.worst_ratio.class_rows import ClassRows
@@ -224,7 +216,7 @@ class RatioSearch:
     def _record(self, node: _Node, claimed: ClaimedOptimum) -> None:
         """Turn a solution into a rational instance; keep it when its exact ratio is the smallest so far."""
         used = self._used(node)
-        for point in self._points(claimed):
+        for point in rational_points(self.program, claimed):
             table = scaled_values(self.rows.table(point, used))
             if table is None or not np.any(table):
                 continue
@@ -236,9 +228,3 @@ class RatioSearch:
                 self.upper, self.table = ratio, table
             if ratio < claimed.x[0] + BEHIND:
                 return
-
-    def _points(self, claimed: ClaimedOptimum) -> Iterator[list[Fraction]]:
-        """Yield rational points, simple ones first, then the basis without rounding."""
-        for denominator in DENOMINATORS:
-            yield [Fraction(float(v)).limit_denominator(denominator) for v in claimed.x]
-        yield exact_point(self.program, claimed)

@@ -33,17 +33,8 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-__all__ = [
-    "FAMILIES",
-    "PLANNERS",
-    "RatioQuestion",
-    "RatioWitness",
-    "attaining_instance",
-    "limit_instance",
-    "limit_ratio",
-    "replay",
-    "scaled_values",
-]
+__all__ = ["FAMILIES", "PLANNERS", "RatioQuestion", "RatioWitness", "attaining_instance", "limit_instance",
+           "limit_ratio", "replay", "scaled_values"]  # fmt: skip
 
 PLANNERS: dict[str, Callable[[Problem], Plan]] = {"ratt": ratt, "myopic": myopic, "greedy": greedy}
 

@@ -6,16 +6,15 @@ import pytest
 
 from ratt_opt.audit.appendix.readings import SETTINGS
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries, first_occurrence, smallest_team_entries
-from ratt_opt.audit.enumeration.arrangements import (
-    Setting,
+from ratt_opt.audit.enumeration.arrangement_claims import (
+    arrangement_entries,
     arrangements,
-    caa_groups,
-    counted,
+    first_occurrence,
     is_pattern1,
     is_pattern2,
-    splits,
+    smallest_team_entries,
 )
+from ratt_opt.audit.enumeration.setting import Setting, caa_groups, counted, splits
 from ratt_opt.audit.enumeration.size_claims import size_entries
 
 SIZES = {entry.label: entry for entry in size_entries()}
