@@ -52,21 +52,16 @@ def _case_d1(team: Team, attacked: Robots) -> Case:
     left = [robot for robot in team.robots if robot not in attacked]
     hit, kept = [g for g in greedy if g in attacked], [g for g in greedy if g not in attacked]
     split = team.singles(r for r in left if r in team.bait) + team.singles(kept)
+    each, readings = team.singles(hit) + team.singles(kept), whose_worst(team, team.robots, attacked)
     lines = (
         Line("=", team.chosen(left), "f(u) on V1b\\A* and V1g\\A*"),
         Line(">=", team.singles(left) * T, "(1-c) sum of f(u_i)"),
         Line("=", split * T, "(1-c) [sum over surviving baits + sum over surviving greedy robots]"),
-        Line(
-            ">=",
-            (team.singles(hit) + team.singles(kept)) * T,
-            "(1-c) [attacked greedy robots' f(u_i) + surviving ones']",
-        ),
+        Line(">=", each * T, "(1-c) [attacked greedy robots' f(u_i) + surviving ones']"),
         Line("=", team.singles(greedy) * T, "(1-c) sum over V1g"),
         Line(">=", team.chosen(greedy) * T2, "(1-c)^2 f(u on V1g)"),
         Line(">=", team.compared(greedy) * T3, "(1-c)^3 f(u* on V1g)"),
-        Line(
-            ">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=whose_worst(team, team.robots, attacked)
-        ),
+        Line(">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=readings),
     )
     return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines)
 
@@ -139,7 +134,7 @@ def _case_d3(team: Team, attacked: Robots) -> Case:
     greedy_left = [g for g in team.greedy if g not in attacked]
     split = team.singles(safe) + team.singles(kept) + team.singles(greedy_left)
     a, b = team.compared(safe), team.compared(team.greedy)
-    whole = team.compared((*safe, *team.greedy))
+    whole, readings = team.compared((*safe, *team.greedy)), whose_worst(team, team.robots, attacked)
     lines = (
         Line("=", team.chosen(left), "f(u) on V1b\\A* and V1g\\A*"),
         Line(">=", team.singles(left) * T, "(1-c) sum of f(u_i)"),
@@ -147,9 +142,7 @@ def _case_d3(team: Team, attacked: Robots) -> Case:
         Line(">=", a * T2 + b * T3, "(1-c)^2 f(u* on V1b1) + (1-c)^3 f(u* on V1g)"),
         Line(">=", (a + b) * T3, "(1-c)^3 [f(u* on V1b1) + f(u* on V1g)]"),
         Line(">=", whole * T3, "(1-c)^3 f(u* on V1b1 and V1g): subadditivity of a non-decreasing f"),
-        Line(
-            ">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=whose_worst(team, team.robots, attacked)
-        ),
+        Line(">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=readings),
     )
     return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines)
 
@@ -227,9 +220,8 @@ def _substituted(team: Team, group: Robots, hit: Robots) -> Case:
     """The stated reason: replace a safe bait by ``x1``, quote Pattern 1's bound there, compare individual values."""
     left = [r for r in group if r not in hit]
     swapped = [*(r for r in left if r != team.bait[-1]), "x1"]
-    quoted = Inequality(
-        "Pattern 1's bound for the substituted group", team.chosen(swapped) - team.compared(swapped) * T3
-    )
+    bound = team.chosen(swapped) - team.compared(swapped) * T3
+    quoted = Inequality("Pattern 1's bound for the substituted group", bound)
     order = tuple(Inequality(f"f({b}) >= f(x1)", team.f([b]) - team.f(["x1"])) for b in team.bait)
     line = Line(
         ">=",
@@ -273,7 +265,7 @@ def _case(team: Team, attacked: Robots) -> Case:
     left = tuple(r for r in GROUP if r not in attacked)
     first = [r for r in ("b1",) if r not in attacked]
     kept, hit = [r for r in ("g1",) if r not in attacked], [r for r in ("g1",) if r in attacked]
-    greedy = team.greedy
+    greedy, readings = team.greedy, whose_worst(team, GROUP, attacked)
     split, swapped = team.singles([*first, "b2", *kept]), team.singles([*first, "x1", *kept])
     lines = (
         Line("=", team.chosen(left), "f(u) on V1b\\A* and V1g\\A*"),
@@ -285,12 +277,6 @@ def _case(team: Team, attacked: Robots) -> Case:
         Line("=", team.singles(greedy) * T, "(1-k) sum over Vg of f(u_i)"),
         Line(">=", team.chosen(greedy) * T, "(1-k) f(u on Vg)"),
         Line(">=", team.compared(greedy) * T, "(1-k)/(1+k) f(u* on Vg)", ONE_PLUS_K),
-        Line(
-            ">=",
-            team.compared(left) * T,
-            "(1-k)/(1+k) f(u* on V1\\A*)",
-            ONE_PLUS_K,
-            readings=whose_worst(team, GROUP, attacked),
-        ),
+        Line(">=", team.compared(left) * T, "(1-k)/(1+k) f(u* on V1\\A*)", ONE_PLUS_K, readings=readings),
     )
     return Case(size=x1_text(team, attacked), team=team, start=team.chosen(left), lines=lines)

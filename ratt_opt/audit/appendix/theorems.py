@@ -101,22 +101,16 @@ def theorems() -> Iterator[ClaimEntry]:
         statement = f"{text}: f(u on S) >= factor f(o on S) for every S and every plan o"
         claims = tuple(every_group(kind, factor, largest=LARGEST_TEAM))
         yield _theorem(label=name.label, statement=statement, claims=claims, hypotheses=GROUPS)
-    sizes = range(1, LARGEST_GROUP + 1)
+    shares = [(ONE + constant(g - 1) * T, g) for g in range(1, LARGEST_GROUP + 1)]
+    better_sub = [Factor(share, constant(g)) for share, g in shares]
+    better_nd = [Factor(share * T, T + constant(g - 1)) for share, g in shares]
     for label, kind, better, share in (
-        ("all_bait_sub", SUB, map(_better_sub, sizes), "(1+(g-1)(1-k))/g"),
-        ("all_bait_nd", ND, map(_better_nd, sizes), "(1+(g-1)(1-c))/(1+(g-1)/(1-c))"),
+        ("all_bait_sub", SUB, better_sub, "(1+(g-1)(1-k))/g"),
+        ("all_bait_nd", ND, better_nd, "(1+(g-1)(1-c))/(1+(g-1)/(1-c))"),
     ):
         text = f"an all-bait group of g robots keeps {share} of the optimum"
-        kept = one_group(kind, [*better], all_bait=True)
+        kept = one_group(kind, better, all_bait=True)
         yield _theorem(label=label, statement=text, claims=tuple(kept), hypotheses="all surviving robots are bait")
-
-
-def _better_sub(size: int) -> Factor:
-    return Factor(ONE + constant(size - 1) * T, constant(size))
-
-
-def _better_nd(size: int) -> Factor:
-    return Factor((ONE + constant(size - 1) * T) * T, T + constant(size - 1))
 
 
 SIZES = (2, 3, 4)
@@ -218,6 +212,5 @@ def _marginals() -> Iterator[SizedClaim]:
                 high = Linear.of(other) - Linear.of(other ^ 1)
                 claim = Claim(function_class=SUB, ground=ground, conclusion=low - high * T)
                 at, against = (ground.text(mask ^ 1)[1:] for mask in (base, other))
-                yield SizedClaim(
-                    size=f"{size} elements, marginals of a at {at} and {against}", robots=size, claim=claim
-                )
+                text = f"{size} elements, marginals of a at {at} and {against}"
+                yield SizedClaim(size=text, robots=size, claim=claim)

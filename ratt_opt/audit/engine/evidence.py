@@ -113,8 +113,7 @@ class Witness:
 def values_of(values: tuple[int, ...], auxiliary: Mapping[str, Fraction]) -> dict[int | str, Fraction]:
     """Function values by bit mask and the other numbers by name, as expressions ask for them."""
     known: dict[int | str, Fraction] = {mask: Fraction(v) for mask, v in enumerate(values)}
-    known.update(auxiliary)
-    return known
+    return known | dict(auxiliary)
 
 
 def check_witness(claim: Claim, witness: Witness) -> None:

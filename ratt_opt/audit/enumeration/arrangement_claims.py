@@ -37,8 +37,6 @@ ALL_PATTERNS = Reference("nd1", EntryKind.CUMULATIVE)
 LARGEST_FOR_CAA = 12
 LARGEST_FOR_VALUES = 5
 """Robots whose values 1 to 3 are packed in groups in every way: 0.3 s; six take 4.6 s."""
-
-
 CAA_IS_EXACT = Reference("caa_largest_group", CLAIM)
 Arrangement = tuple[tuple[int, int], ...]
 """Groups as (baits, greedy robots)."""
@@ -59,15 +57,8 @@ def arrangement_entries() -> Iterator[EnumeratedEntry]:
         text, run = f"the example of Pattern {pattern} is consistent", partial(_figure, pattern - 1)
         yield _claim(label=f"fig:p{pattern}_3d", statement=text, enumerate_cases=run)
     cover = "every arrangement is Pattern 1 or Pattern 2"
-    of_patterns = partial(
-        EnumeratedEntry,
-        chain="patterns",
-        hypotheses="RATT's and CAA's definitions",
-        enumerate_cases=_patterns_cover,
-        survives_by=ALL_PATTERNS,
-        serves_by=OTHERS,
-    )
-    yield of_patterns(label="patterns_cover", kind=CLAIM, statement=cover)
+    of_patterns = partial(_claim, enumerate_cases=_patterns_cover, survives_by=ALL_PATTERNS, serves_by=OTHERS)
+    yield of_patterns(label="patterns_cover", statement=cover)
     text, reading = f"the bound holds for all arrangements, as {cover}", "from Patterns 1 and 2 alone"
     yield of_patterns(label="nd1", kind=EntryKind.STEP, statement=text, reading=reading)
     yield _claim(
@@ -174,12 +165,7 @@ class Situation:
         return f"{self.setting.text()}; groups {groups}; V1 is group {self.v1 + 1}, V2 group {self.v2 + 1}"
 
 
-_occurs = partial(
-    EnumeratedEntry,
-    kind=EntryKind.CLAIM,
-    chain="smallest teams",
-    hypotheses="N > alpha, alpha_s >= 1, CAA's own groups",
-)
+_occurs = partial(_claim, chain="smallest teams", hypotheses="N > alpha, alpha_s >= 1, CAA's own groups")
 
 
 def smallest_team_entries() -> Iterator[EnumeratedEntry]:

@@ -75,12 +75,8 @@ def counted(faults: Iterable[str], sizes: str, what: str) -> Counted:
     found = list(faults)
     cases = [fault for fault in found if fault]
     verdict = Verdict.REFUTED if cases else Verdict.PROVED if found else Verdict.UNDECIDED
-    return Counted(
-        verdict=verdict,
-        sizes=sizes,
-        detail=f"{len(found)} {what} enumerated, {len(cases)} break the claim",
-        cases=tuple(cases[:SHOWN_CASES]),
-    )
+    detail = f"{len(found)} {what} enumerated, {len(cases)} break the claim"
+    return Counted(verdict=verdict, sizes=sizes, detail=detail, cases=tuple(cases[:SHOWN_CASES]))
 
 
 def splits(n_robots: int, alpha_c: int, largest: int | None = None) -> list[tuple[int, ...]]:

@@ -25,7 +25,6 @@ PART_ATTACKED = Reference("nd_p1d3v1_7", EntryKind.CUMULATIVE)
 MANY_BAITS = Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE)
 LARGEST_FOR_BOUND = 5
 
-
 _claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="sizes", hypotheses="RATT's and CAA's definitions")
 
 

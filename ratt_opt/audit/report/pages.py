@@ -35,11 +35,10 @@ summary{cursor:pointer}pre{white-space:pre-wrap;overflow-wrap:anywhere;backgroun
 
 def html_report(document: LedgerDocument) -> str:
     """Return the page; all text from the ledger is escaped."""
-    counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
     state = "" if document["complete"] else "<p><strong>The run was interrupted: entries are missing.</strong></p>"
     body = [
         "<h1>Proof ledger</h1>",
-        f"<p>{len(document['entries'])} entries: {escape(counts)}. {document['seconds']:.0f} s.</p>",
+        f"<p>{escape(_counts(document))}</p>",
         state,
         "<p>A proof is a sum of elementary inequalities with multipliers that are never negative; a "
         "counterexample is an explicit function. Both were checked in rational arithmetic. Every claim and "
@@ -92,7 +91,8 @@ def _entry(record: EntryRecord) -> str:
 
 def markdown_report(document: LedgerDocument) -> str:
     """Return the report as text; every cell is escaped."""
-    lines = ["# Proof ledger", "", _opening(document), ""]
+    state = "" if document["complete"] else " The run was interrupted: entries are missing."
+    lines = ["# Proof ledger", "", f"{_counts(document)}{state}", ""]
     for finding in findings(document):
         lines += finding_lines(finding)
     lines += ["## Verdicts per chain", ""]
@@ -117,10 +117,9 @@ def finding_lines(finding: Finding) -> list[str]:
     return [*lines, _row(list(head)), _row(["---"] * len(head)), *(_row(list(row)) for row in rows), ""]
 
 
-def _opening(document: LedgerDocument) -> str:
-    state = "" if document["complete"] else " The run was interrupted: entries are missing."
+def _counts(document: LedgerDocument) -> str:
     counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
-    return f"{len(document['entries'])} entries: {counts}. {document['seconds']:.0f} s.{state}"
+    return f"{len(document['entries'])} entries: {counts}. {document['seconds']:.0f} s."
 
 
 def _refuted(record: EntryRecord) -> list[str]:

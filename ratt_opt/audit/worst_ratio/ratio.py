@@ -100,7 +100,10 @@ def worst_case_ratio(
         domain=domain,
         planner=planner,
     )
-    _check_names(question)
+    choices = (("family", family, FAMILIES), ("planner", planner, PLANNERS), ("domain", domain, DOMAINS))
+    for name, value, known in choices:
+        if value not in known:
+            raise InputError(name, f"must be one of {', '.join(known)}", value)
     budget = Budget(time_limit)
     parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
     floor = pattern_free_ratio(question.curvature, family) if use_theorem else Fraction(0)
@@ -128,8 +131,6 @@ def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
 def check_curvature(value: float | str | Fraction) -> Fraction:
     """Return a curvature in [0, 1] as a rational; floats are read as the decimal they print as."""
     rule = "must be a number in [0, 1]"
-    if isinstance(value, (bool, np.bool_)):
-        raise InputError("curvature", rule, value)
     try:
         number = value if isinstance(value, Fraction) else Fraction(str(value))
     except (ValueError, ZeroDivisionError):
@@ -137,13 +138,6 @@ def check_curvature(value: float | str | Fraction) -> Fraction:
     if not 0 <= number <= 1:
         raise InputError("curvature", rule, value)
     return number
-
-
-def _check_names(question: RatioQuestion) -> None:
-    for name, known in (("family", FAMILIES), ("planner", PLANNERS), ("domain", DOMAINS)):
-        value = getattr(question, name)
-        if value not in known:
-            raise InputError(name, f"must be one of {', '.join(known)}", value)
 
 
 def _check_sensing(alpha_s: int, n_robots: int) -> int:

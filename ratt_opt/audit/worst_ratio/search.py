@@ -119,12 +119,8 @@ class _Node:
 class RatioSearch:
     """Closes the bracket of one worst-case ratio.
 
-    Parameters
-    ----------
-    skeleton : the combinatorial part
-    rows : columns and rows of the class
-    accept : checks a table of integers and returns the exact ratio that it attains, or raises ``ProofError``
-    floor : a proved lower bound on the ratio
+    ``accept`` checks a table of integers and returns the exact ratio that it attains, or raises ``ProofError``;
+    ``floor`` is a proved lower bound on the ratio.
     """
 
     def __init__(
