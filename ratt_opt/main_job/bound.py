@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
+from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.write import certify_if_possible
