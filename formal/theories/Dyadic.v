@@ -10,6 +10,10 @@ Import Order.Theory GRing.Theory Num.Theory.
 
 Record dyadic := Dyadic { man : Z; sc : N }.
 
+Lemma dyadicK : cancel (fun x => (man x, Z.of_N (sc x))) (fun q => Dyadic q.1 (Z.to_N q.2)).
+Proof. by case=> m k /=; rewrite N2Z.id. Qed.
+Canonical dyadic_eqType := EqType dyadic (CanEqMixin dyadicK).
+
 Definition d0 : dyadic := Dyadic 0 0.
 Definition d1 : dyadic := Dyadic 1 0.
 Definition up (x : dyadic) (k : N) : Z := Z.shiftl (man x) (Z.of_N k).
