@@ -199,14 +199,18 @@ have : forall g0, (g0 <= g)%N -> (g < g0 + size parts)%N ->
 by move=> /(_ 0%N (leq0n _) gl kids).
 Qed.
 
-Theorem upper_treeP t : check_upper t all_plans [::] -> dle d0 upper -> worst <= val upper.
+Lemma in_all_plans (i : robot) : (p i : nat) \in nth [::] all_plans i.
 Proof.
-rewrite (val_le F) val0 => h u0; have [le|pos] := leP worst 0; first exact: le_trans le u0.
-apply: check_upperP h pos _ _ => // i.
 rewrite /all_plans (nth_map 0%N) ?size_iota ?ltn_ord // nth_iota ?ltn_ord // add0n mem_filter mem_iota add0n.
 have pos_n : (0 < size (owners w))%N by case/and3P: ok.
 have ps : (p i < size (owners w))%N by apply: leq_trans (ltn_ord (p i)) _; rewrite /top_element prednK.
 rewrite ps /= andbT; have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK => [->//|].
 by case/and3P: ok => _ /allP own _; apply: own; apply: mem_nth.
+Qed.
+
+Theorem upper_treeP t : check_upper t all_plans [::] -> dle d0 upper -> worst <= val upper.
+Proof.
+rewrite (val_le F) val0 => h u0; have [le|pos] := leP worst 0; first exact: le_trans le u0.
+apply: check_upperP h pos _ _ => // i; exact: in_all_plans.
 Qed.
 End Checker.
