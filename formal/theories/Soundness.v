@@ -28,6 +28,10 @@ Proof.
 by rewrite [x + z + _]addrACA subrr addr0 [b - a + _]addrACA addrCA [- a + y]addrC -(opprB a y) subrr addr0.
 Qed.
 
+Lemma tangent_shape (F : realFieldType) (h a t b x y : F) :
+  h - (a * (2%:R * t) - a * b * (x + y)) = h - 2%:R * (a * t) + a * b * x + a * b * y.
+Proof. by ring. Qed.
+
 Section Pieces.
 Variables (F : realFieldType) (d : nat).
 Local Notation val := (val F).
@@ -268,5 +272,116 @@ have -> : posterior prior_of info_of (contributed p G) j = (mx F d (nth [::] low
 apply: pd_add pdl _; apply: psdD; first by case: (lowP j).
 apply: psdD; first by apply: psd_sum => i _; case: (deltaP (p i) j).
 by apply: psd_scalar; rewrite subr_ge0; apply: worst_ge.
+Qed.
+
+(** ** Linear bounds on groups *)
+Lemma mx_nil : mx F d [::] = 0.
+Proof. by apply/matrixP => i j; rewrite !mxE /get !nth_nil /= val0. Qed.
+
+Lemma dotsE Ws Is : size Ws = m -> size Is = m ->
+  val (dots d Ws Is) = \sum_(j : target) \tr ((mx F d (nth [::] Ws j))^T *m mx F d (nth [::] Is j)).
+Proof.
+move=> sW sI; rewrite /dots val_sum big_map big_filter.
+rewrite (_ : \sum_(x <- zip Ws Is | ~~ nilp x.1) _ = \sum_(x <- zip Ws Is) val (mdot d x.1 x.2)); last first.
+  rewrite big_mkcond; apply: eq_bigr => -[W A] _ /=; case: ifP => // /negbFE/nilP ->.
+  by rewrite mx_dot mx_nil trmx0 mul0mx mxtrace0.
+rewrite (big_nth ([::], [::])) size_zip sW sI minnn big_mkord; apply: eq_bigr => j _.
+by rewrite nth_zip ?sW // mx_dot.
+Qed.
+
+Lemma info_row_size e : (e < size (owners w))%N -> size (nth [::] (info_matrices pb) e) = m.
+Proof. by move=> el; rewrite (nth_map [::]) ?infos_size // size_map rows_size. Qed.
+
+Lemma dots_info Ws (e : element) : size Ws = m ->
+  val (dots d Ws (nth [::] (info_matrices pb) e)) = \sum_(j : target) \tr ((mx F d (nth [::] Ws j))^T *m info_of e j).
+Proof.
+move=> sW; rewrite dotsE ?info_row_size ?element_lt //; apply: eq_bigr => j _.
+by rewrite nth_info ?element_lt.
+Qed.
+
+Lemma highs_size : size highs = m.
+Proof. by have [-> _] := all_some_nth [::] [::] 0 highsE; rewrite size_map. Qed.
+
+Lemma base_high : objective pb = MaxEigenvalue -> base <= val (prior_high pr).
+Proof.
+move=> e; rewrite /base e; move: range_good; rewrite /prior_range_ok e => /andP[/allP h _].
+apply: largest_le => // j; have := h j; rewrite mem_iota add0n ltn_ord nth_prior // => /(_ isT).
+have [s _] := prior_good j; have w0 := weight_gt0 j.
+have sm : symmetrical (mx F d (msub d (mscalar d (prior_high pr)) (mscale d (nth d0 ws j) (unpack d (nth [::] (priors pb) j))))).
+  by apply: sub_symmetrical; [apply: scalar_symmetrical | apply: scale_symmetrical].
+move/(is_psdP sm); rewrite mx_sub mx_scalar mx_scale -/(weight_of j) -/(prior_of j) => p.
+rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e s) => v; have := p v.
+rewrite !formBm !form_scalar formZm !subr_ge0 => le.
+by rewrite mulrAC ler_pdivl_mulr // [form _ _ _ * _]mulrC.
+Qed.
+
+Lemma gradientP pt g : gradient (objective pb) d m ws (prior_matrices pb) highs (prior_high pr) pt = Some g ->
+  size g.1 = m /\ forall p (G : {set robot}), is_plan (team_of w) p ->
+  value (contributed p G) <= val g.2 + \sum_(i in G) val (dots d g.1 (nth [::] (info_matrices pb) (p i))).
+Proof.
+rewrite /gradient; case e: (objective pb); case: pt => [ys|j t v] //; case: ifP => // cond [<-] /=.
+  rewrite size_mkseq; split=> // p G okp; set Ws := mkseq _ m.
+  have sW : size Ws = m by rewrite size_mkseq.
+  pose Y (j : target) := mx F d (unpack d (nth [::] ys j)).
+  have Ys j : symmetrical (Y j) := unpack_symmetrical F d _.
+  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: (Y j *m Y j).
+    rewrite nth_mkseq // mx_scale mx_mul (nth_map [::]) ?(eqP cond) // -/(Y j).
+    by rewrite linearZ /= trmx_mul Ys.
+  rewrite val_add dotsE ?highs_size // val_sum_iota.
+  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m Y j *m info_of (p i) j))); last first.
+    move=> i _; rewrite dots_info //; apply: eq_bigr => j _.
+    by rewrite We -scalemxAl linearZ.
+  rewrite [X in _ <= _ + X]exchange_big /= -!big_split /value e /trace_value /trace_base /trace_penalty -sumrB; apply: ler_sum => j _ /=.
+  have [sL pL] := posterior_pd G okp j; have [sP pP] := prior_good j.
+  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr val_mul val_sub val_mul !mx_trace val_nat.
+  rewrite nth_prior // (nth_map [::]) ?(eqP cond) // -/(prior_of j) -/(Y j) -!mulrDr.
+  apply: ler_wpmul2l; first exact: weight_ge0.
+  have := trace_fenchel (Y j) sL pL; rewrite Ys => fen.
+  have sand A : \tr (Y j *m A *m Y j) = \tr (Y j *m Y j *m A) by rewrite mxtrace_mulC mulmxA.
+  have up : \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j) <=
+      \tr (Y j *m Y j *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m Y j *m info_of (p i) j).
+    rewrite sand /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /=.
+    rewrite -mulmxBr -sand; apply: psd_trace => x; have [_ ph] := highP j.
+    have := ph (Y j *m x); rewrite /form trmx_mul Ys !mulmxA //.
+  rewrite -[X in _ <= X]addrA -addrA ler_add2l; apply: le_trans (_ : - (2%:R * \tr (Y j) - \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j)) <= _); first by rewrite ler_opp2.
+  by rewrite opprB addrC ler_add2l.
+move/and3P: cond => [jm s0 bt]; set s := dsum _ in s0 bt; set b := quotient_up _ _ _ in bt *.
+rewrite size_mkseq; split=> // p G okp; set W := mkm _ _; set Ws := mkseq _ m.
+have sW : size Ws = m by rewrite size_mkseq.
+pose jt : target := Ordinal jm; pose V : 'cV[F]_d := \col_i val (nth d0 v i).
+have VV : dot V V = val s.
+  by rewrite dot_sum val_sum_iota; apply: eq_bigr => i _; rewrite mxE val_mul expr2.
+rewrite (val_lt F) val0 -VV in s0; rewrite (val_le F) !val_mul -VV in bt.
+have V0 : V != 0 by apply: contraTneq s0 => ->; rewrite /dot mulmx0 mxE ltxx.
+have mW : mx F d W = (weight_of jt * val b) *: (V *m V^T).
+  by rewrite mx_mkm; apply/matrixP => i k; rewrite !mxE !val_mul big_ord1 !mxE.
+have one (A : target -> 'M[F]_d) : \sum_(k : target) \tr ((mx F d (nth [::] Ws k))^T *m A k) =
+    weight_of jt * val b * form (A jt) V V.
+  rewrite (bigD1 jt) //= big1 ?addr0 => [|k ne].
+    rewrite nth_mkseq // eqxx mW linearZ /= trmx_mul trmxK -scalemxAl linearZ /=; congr (_ * _).
+    by rewrite mxtrace_mulC mulmxA mxtrace_mulC mulmxA /form /mxtrace big_ord1.
+  by rewrite nth_mkseq // ifN ?mx_nil ?trmx0 ?mul0mx ?mxtrace0 //.
+rewrite val_add val_sub !val_mul val_nat dotsE ?highs_size // one.
+rewrite (eq_bigr (fun i => weight_of jt * val b * form (info_of (p i) jt) V V)); last first.
+  by move=> i _; rewrite dots_info // one.
+have [sL pL] := posterior_pd G okp jt; set L := posterior _ _ _ in sL pL.
+have w0 := weight_gt0 jt; have b0 : 0 <= val b.
+  by rewrite -(pmulr_lge0 _ s0); apply: le_trans bt; rewrite -expr2 sqr_ge0.
+have fen := largest_eigenvalue_fenchel (lmaxP e) (val t) sL pL V0.
+have Lb : form (L jt) V V <= form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V.
+  rewrite /L /posterior sum_contributed // formDm form_sum ler_add2r -subr_ge0 -formBm.
+  by have [_ h] := highP jt; apply: h.
+have le1 : 2%:R * val t - val b * form (L jt) V V <= lmax (invmx (L jt)).
+  apply: le_trans fen; rewrite ler_add2l ler_opp2 mulrA ler_pdivr_mulr // [X in _ <= X]mulrAC.
+  by apply: ler_wpmul2r; [apply: (pd_psd pL) | rewrite expr2].
+rewrite valueE -/L /penalty e -!mulr_sumr.
+have le2 : weight_of jt * lmax (invmx (L jt)) <= maxeig_penalty weight_of lmax L.
+  exact: (le_largest (fun k => weight_of k * lmax (invmx (L k)))).
+have le3 : weight_of jt * (2%:R * val t) - weight_of jt * val b *
+    (form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V) <= maxeig_penalty weight_of lmax L.
+  apply: le_trans le2; rewrite -mulrA -mulrBr; apply: ler_wpmul2l; first exact: ltW.
+  by apply: le_trans le1; rewrite ler_add2l ler_opp2; apply: ler_wpmul2l.
+have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
+by rewrite (tangent_shape (val (prior_high pr)) (weight_of jt) (val t) (val b)) lexx.
 Qed.
 End Sound.
