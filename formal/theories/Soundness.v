@@ -32,6 +32,13 @@ Lemma tangent_shape (F : realFieldType) (h a t b x y : F) :
   h - (a * (2%:R * t) - a * b * (x + y)) = h - 2%:R * (a * t) + a * b * x + a * b * y.
 Proof. by ring. Qed.
 
+Lemma rearrange2 (V : zmodType) (a b x y z t : V) : b + (x + y) = a - (z + t) + x + (b - a) + (y + t + z).
+Proof.
+rewrite -[y + t + z]addrA [t + z]addrC; move: (z + t) => q; set u := a - q.
+rewrite [u + x + _ + _]addrACA; have -> : b - a + q = b - u by rewrite /u opprB addrA addrAC.
+by rewrite -[u + x + y]addrA [RHS]addrC [RHS]addrA subrK.
+Qed.
+
 Section Pieces.
 Variables (F : realFieldType) (d : nat).
 Local Notation val := (val F).
@@ -384,4 +391,327 @@ have le3 : weight_of jt * (2%:R * val t) - weight_of jt * val b *
 have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
 by rewrite (tangent_shape (val (prior_high pr)) (weight_of jt) (val t) (val b)) lexx.
 Qed.
+
+Theorem upper_sound p : check_upper_part pb cl pr highs -> is_plan (team_of w) p ->
+  worst_case (team_of w) value p <= val (upper cl).
+Proof.
+rewrite /check_upper_part; set groups := [seq seeing_groups w a | a <- listed pr].
+case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs].
+set cuts := cut_bounds _ _ _ _ => /and4P[lok /allP range u0 tree] okp.
+have sizes k : (k < size gs)%N -> size (nth ([::], d0) pts k).1 = size (owners w).
+  by move=> kl; rewrite (nth_map ([::], d0)) //= !size_map infos_size.
+apply: (upper_treeP net_good value0 lok erefl _ okp _ tree u0).
+  apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
+  by rewrite size_map size_zip sizes // minnn.
+move=> k; rewrite size_map => kl; rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
+have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
+set grp := nth [::] (nth [::] groups a) g.
+have [szg h] := all_some_nth (TracePoint [::]) ([::], d0) q eg.
+rewrite szg in ql; have [s1 bound] := gradientP (h ql).
+have := bound p (set_of w grp) okp; rewrite -szg in ql.
+rewrite (nth_map ([::], d0)) //=; congr (_ <= _ + _).
+rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last first.
+  by rewrite size_zip !size_map infos_size minnn element_lt.
+rewrite nth_zip ?size_map ?infos_size //= (nth_map [::]) ?size_map ?infos_size ?element_lt //.
+have -> : nth 0%N (owners w) (p i) = i.
+  have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
+  by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
+by case: ifP => // _; rewrite val0.
+Qed.
+
+(** ** The plan's worst case *)
+Lemma nth_plan (i : robot) : (plan_of i : nat) = nth 0%N (plan cl) i.
+Proof.
+case/and3P: plan_good => /eqP sz /allP lt _; rewrite ffunE inordK //.
+have := lt (nth 0%N (plan cl) i); rewrite mem_nth ?sz ?ltn_ord // => /(_ isT) h.
+by apply: leq_trans h _; rewrite /top_element prednK ?owners_pos.
+Qed.
+
+Lemma plan_ofP : is_plan (team_of w) plan_of.
+Proof.
+apply/forallP => i; rewrite /= nth_plan; apply/eqP/val_inj; rewrite /= /robot_of.
+case/and3P: plan_good => _ _ /allP/(_ (i : nat)); rewrite mem_iota add0n ltn_ord => /(_ isT)/eqP ->.
+by rewrite inordK.
+Qed.
+
+Let rows := [seq nth [::] (info_matrices pb) e | e <- plan cl].
+Definition plan_loss (j : nat) : dyadic := dsum [seq nth d0 (nth [::] defects e) j | e <- plan cl].
+Let start := mkseq (fun j => msub d (nth [::] lows j) (mscalar d (plan_loss j))) m.
+Let add := add_robot d m rows.
+Let plan_room := dsub (base_low pb pr) (lower cl).
+Local Notation below := (fun i => (i < robots w)%N).
+Local Notation info_at i j := (info_of (plan_of (robot_of w i)) j).
+
+Definition fam (s : seq dmat) (j : target) : 'M[F]_d := mx F d (nth [::] s j).
+(** What a case knows of target [j] when the robots of the list [T] see together. *)
+Definition known (T : seq nat) (j : target) : 'M[F]_d :=
+  mx F d (nth [::] lows j) - (val (plan_loss j))%:M + \sum_(i <- T) info_at i j.
+
+Lemma plan_size : size (plan cl) = robots w.
+Proof. by case/and3P: plan_good => /eqP. Qed.
+
+Lemma rows_at i (j : target) : (i < robots w)%N -> mx F d (nth [::] (nth [::] rows i) j) = info_at i j.
+Proof.
+move=> il; have e := nth_plan (robot_of w i); rewrite robot_ofK // in e.
+by rewrite (nth_map 0%N) ?plan_size // -e nth_info ?element_lt.
+Qed.
+
+Lemma famE T j : all below T -> fam (foldl add start T) j = known T j.
+Proof.
+elim/last_ind: T => [|T i IH] b.
+  by rewrite /fam /known big_nil addr0 nth_mkseq // mx_sub mx_scalar.
+move: b; rewrite all_rcons => /andP[il b].
+rewrite -cats1 foldl_cat /= /fam nth_mkseq // mx_add rows_at // -/(fam _ j) IH //.
+by rewrite /known big_cat big_seq1 /= addrA.
+Qed.
+
+Lemma known_symmetrical T j : symmetrical (known T j).
+Proof.
+rewrite /symmetrical /known linearD linearB /= tr_scalar_mx (proj1 (lowP j)); congr (_ + _).
+by apply: symmetrical_sum => i _; apply: info_symmetrical.
+Qed.
+
+Lemma plan_lossE j : val (plan_loss j) = \sum_(i : robot) delta (plan_of i) j.
+Proof.
+rewrite /plan_loss val_sum big_map (big_nth 0%N) plan_size big_mkord; apply: eq_bigr => i _.
+by rewrite /delta nth_plan.
+Qed.
+
+(** The group's information, compared with what the case knows. *)
+Lemma known_below T (G : {set robot}) j : uniq T -> all below T -> (forall i, i \in T -> robot_of w i \in G) ->
+  exists2 R, psd R & posterior prior_of info_of (contributed plan_of G) j =
+    known T j + (invmx (prior_of j) - mx F d (nth [::] lows j)) + R.
+Proof.
+move=> uT bT TG; pose S := set_of w T.
+have SG : S \subset G by apply/subsetP => i; rewrite inE => /TG; rewrite robot_of_val.
+have sumT : \sum_(i <- T) info_at i j = \sum_(i in S) info_of (plan_of i) j.
+  rewrite -(big_map (robot_of w) xpredT (fun i => info_of (plan_of i) j)) -[RHS]big_enum /=.
+  apply: perm_big; apply: uniq_perm; rewrite ?enum_uniq //.
+    rewrite map_inj_in_uniq // => x y xT yT /(congr1 (@nat_of_ord _)); rewrite !robot_ofK //; exact: (allP bT).
+  move=> i; rewrite mem_enum inE; apply/mapP/idP => [[x xT ->]|iT]; last by exists (i : nat); rewrite ?robot_of_val.
+  by rewrite robot_ofK //; apply: (allP bT).
+exists (\sum_(i in G :\: S) (info_of (plan_of i) j + (delta (plan_of i) j)%:M) +
+        (\sum_(i | i \notin G :\: S) delta (plan_of i) j)%:M).
+  apply: psdD; first by apply: psd_sum => i _; case: (deltaP (plan_of i) j).
+  by apply: psd_scalar; apply: sumr_ge0 => i _; case: (deltaP (plan_of i) j).
+rewrite /posterior sum_contributed ?plan_ofP // (big_setID S) /= (setIidPr SG) /known sumT plan_lossE.
+have -> : (\sum_(i : robot) delta (plan_of i) j)%:M = (\sum_(i | i \notin G :\: S) delta (plan_of i) j)%:M +
+    (\sum_(i in G :\: S) delta (plan_of i) j)%:M :> 'M[F]_d.
+  rewrite (bigID (fun i => i \in G :\: S)) /= addrC.
+  by apply/matrixP => i k; rewrite !mxE mulrnDl.
+rewrite big_split /= scalar_sum; exact: rearrange2.
+Qed.
+
+Lemma good_above A L : good A -> (forall j, symmetrical (L j)) -> (forall j, exists2 R, psd R & L j = A j + R) ->
+  penalty L <= penalty A.
+Proof.
+by move=> gA sL h; apply: penalty_antitone => // j; have [R pR ->] := h j; rewrite addrC addKr.
+Qed.
+
+Lemma base_lowP : val (base_low pb pr) <= base.
+Proof.
+rewrite /base_low /base; case e: (objective pb).
+  rewrite /trace_total val_sum_iota /trace_base; apply: ler_sum => j _.
+  by rewrite val_mul mx_trace nth_prior.
+move: range_good; rewrite /prior_range_ok e => /andP[_ /hasP[j]]; rewrite mem_iota add0n => /andP[_ jm] npd.
+pose k : target := Ordinal jm; apply: le_trans (le_largest (fun j => weight_of j * lmax (prior_of j)) k).
+rewrite leNgt; apply: contra npd => lt.
+have [s p] := prior_good k; rewrite nth_prior //.
+have sm : symmetrical (mx F d (msub d (mscalar d (prior_low pr)) (mscale d (nth d0 ws j) (unpack d (nth [::] (priors pb) j))))).
+  by apply: sub_symmetrical; [apply: scalar_symmetrical | apply: scale_symmetrical].
+apply/(is_pdP sm); rewrite mx_sub mx_scalar mx_scale => v v0.
+have /(lmaxP e s)/(_ v) := lexx (lmax (prior_of k)); rewrite !formBm !form_scalar formZm !subr_ge0 => le.
+rewrite subr_gt0; apply: (@le_lt_trans _ _ (weight_of k * lmax (prior_of k) * dot v v)).
+  rewrite -mulrA; exact: (ler_wpmul2l (weight_ge0 k) le).
+by rewrite ltr_pmul2r ?dot_gt0.
+Qed.
+
+Lemma enough_value (S : {set element}) : penalty (posterior prior_of info_of S) <= val plan_room ->
+  val (lower cl) <= value S.
+Proof.
+rewrite /plan_room val_sub ler_subr_addr addrC -ler_subr_addr => h; rewrite valueE.
+by apply: le_trans h _; rewrite ler_add2r base_lowP.
+Qed.
+
+Section Lower.
+Let kind := objective pb.
+
+Lemma all_some_iota (U : Type) (f : nat -> option U) y0 r (j : target) :
+  all_some [seq f i | i <- iota 0 m] = Some r -> f j = Some (nth y0 r j).
+Proof.
+move=> h; have [_ h2] := all_some_nth 0%N y0 j h; rewrite size_iota in h2.
+by have := h2 (ltn_ord j); rewrite nth_iota // add0n.
+Qed.
+
+Lemma trace_upP p s y : trace_up d m ws p s = Some y -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ trace_penalty weight_of (fam s) <= val y.
+Proof.
+rewrite /trace_up; case e: (all_some _) => [ys|//] [<-] sym.
+have h j := trace_inverse_upP (sym j) (all_some_iota d0 j e).
+split=> [j|]; first by split=> //; case: (h j).
+rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l; first exact: weight_ge0.
+by case: (h j).
+Qed.
+
+Lemma eigen_enoughP x s : eigen_enough d m ws x s -> (forall j, symmetrical (fam s j)) ->
+  kind = MaxEigenvalue -> good (fam s) /\ maxeig_penalty weight_of lmax (fam s) <= val x.
+Proof.
+rewrite /eigen_enough (val_lt F) val0 => /andP[x0 /allP h] sym e.
+have each (j : target) : pd (fam s j) /\ psd (val x *: fam s j - (weight_of j)%:M).
+  have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT)/andP[h1 h2]; split; first by apply/(is_pdP (sym j)).
+  have sm : symmetrical (mx F d (msub d (mscale d x (nth [::] s j)) (mscalar d (nth d0 ws j)))).
+    by apply: sub_symmetrical; [apply: scale_symmetrical; apply: sym | apply: scalar_symmetrical].
+  by have := is_psdP sm h2; rewrite mx_sub mx_scale mx_scalar.
+split=> [j|]; first by split=> //; case: (each j).
+apply: largest_le => // j; have [pA pB] := each j; have w0 := weight_gt0 j; have u0 : 0 < weight_of j / val x by rewrite divr_gt0.
+rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e (symmetrical_inv (sym j))).
+have pu : pd ((weight_of j / val x)%:M : 'M[F]_d).
+  by move=> v v0; rewrite form_scalar mulr_gt0 ?dot_gt0.
+have su : symmetrical ((weight_of j / val x)%:M : 'M[F]_d) by rewrite /symmetrical tr_scalar_mx.
+have diff : psd (fam s j - (weight_of j / val x)%:M).
+  move=> v; rewrite -(pmulr_rge0 _ x0); have := pB v; rewrite !formBm formZm !form_scalar mulrBr mulrA.
+  by rewrite mulrCA divff ?gt_eqF // mulr1.
+have := inverse_antitone su (sym j) pu diff; rewrite invmx_scalar invf_div //.
+Qed.
+
+Lemma withinP x s : penalty_within kind d m ws x s -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ penalty (fam s) <= val x.
+Proof.
+rewrite /penalty_within /penalty -/kind; case e: kind => h sym; last exact: eigen_enoughP.
+case/orP: h; rewrite /is_at_most; case eu: (trace_up _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
+  by have [g h] := trace_upP eu sym; split=> //; apply: le_trans h le.
+Qed.
+
+Lemma penalty_upP x s y : penalty_up kind d m ws x s = Some y -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ penalty (fam s) <= val y.
+Proof.
+rewrite /penalty_up /penalty -/kind; case e: kind => h sym; first exact: trace_upP h sym.
+move: h; rewrite /eigen_up; case: ifP => // h [<-]; exact: eigen_enoughP.
+Qed.
+
+Lemma fam_symmetrical T j : all below T -> symmetrical (fam (foldl add start T) j).
+Proof. by move=> b; rewrite famE //; apply: known_symmetrical. Qed.
+
+(** At least the prior's information: worth at least 0. *)
+Lemma prior_worth T (G : {set robot}) : uniq T -> all below T -> (forall i, i \in T -> robot_of w i \in G) ->
+  (forall j, psd (known T j - mx F d (nth [::] lows j))) -> dle (lower cl) d0 ->
+  val (lower cl) <= value (contributed plan_of G).
+Proof.
+move=> uT bT TG h; rewrite (val_le F) val0 => le; apply: le_trans le _.
+have base0 : base = penalty (posterior prior_of info_of (contributed plan_of set0)).
+  have := value0; rewrite valueE => /eqP; rewrite subr_eq0 => /eqP ->; by rewrite /contributed imset0.
+rewrite valueE base0 subr_ge0; apply: good_above; first exact: (posterior_pd _ plan_ofP).
+  by move=> j; apply: posterior_sym.
+move=> j; have [R pR ->] := known_below j uT bT TG; exists ((known T j - mx F d (nth [::] lows j)) + R).
+  by apply: psdD.
+rewrite /posterior /contributed imset0 big_set0 addr0.
+by rewrite [known T j + _]addrCA !addrA.
+Qed.
+
+Lemma worth_sound T : uniq T -> all below T ->
+  worth kind d m ws lows (lower cl) plan_room (foldl add start T) ->
+  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Proof.
+move=> uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
+  apply: (prior_worth uT bT TG) le => j; have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT).
+  have sm := sub_symmetrical (fam_symmetrical j bT) (proj1 (lowP j)).
+  by move/(is_psdP sm); rewrite mx_sub -/(fam _ j) famE.
+have [g le] := withinP h (fun j => fam_symmetrical j bT).
+apply: enough_value; apply: le_trans le; apply: good_above => // j; first exact: posterior_sym.
+have [R pR ->] := known_below j uT bT TG; exists ((invmx (prior_of j) - mx F d (nth [::] lows j)) + R).
+  by apply: psdD => //; case: (lowP j).
+by rewrite famE // [RHS]addrA.
+Qed.
+
+(** The average of the cases, each with one robot's information [r] times. *)
+Lemma known_average (T T' : seq nat) r j : size T' = r -> (0 < r)%N ->
+  known (T ++ T') j = (size T')%:R^-1 *: \sum_(i <- T') (known T j + r%:R *: info_at i j).
+Proof.
+move=> sT r0; have rn : (r%:R : F) != 0 by rewrite pnatr_eq0 -lt0n.
+rewrite big_split /= sT scalerDr -scaler_sumr scalerA mulVf // scale1r.
+rewrite big_const_seq count_predT iter_addr_0 sT -scaler_nat scalerA mulVf // scale1r.
+by rewrite /known big_cat addrA.
+Qed.
+
+Lemma case_fam T i j r : all below T -> (i < robots w)%N ->
+  fam (add_times d m rows r (foldl add start T) i) j = known T j + r%:R *: info_at i j.
+Proof.
+move=> b il; rewrite /fam nth_mkseq // mx_add mx_scale val_nat rows_at // -/(fam _ j) famE //.
+Qed.
+
+Lemma average_sound T rest r : uniq T -> all below T -> (0 < r)%N ->
+  average_worth kind d m ws lows rows (lower cl) plan_room (foldl add start T) rest r ->
+  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
+  (forall i, i \in T ++ T' -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Proof.
+move=> uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
+have bTT : all below (T ++ T') by rewrite all_cat bT.
+have uT' : uniq T' by move: uTT; rewrite cat_uniq => /and3P[].
+pose st := foldl add start T; pose A i := fam (add_times d m rows r st i).
+have AE i j : i \in T' -> A i j = known T j + r%:R *: info_at i j.
+  by move=> iT; apply: case_fam => //; apply: (allP bT').
+have Asym i j : i \in T' -> symmetrical (A i j).
+  move=> iT; rewrite AE // /symmetrical linearD linearZ /= known_symmetrical; congr (_ + _ *: _).
+  exact: info_symmetrical.
+have T'0 : T' != [::] by rewrite -size_eq0 sz -lt0n.
+have avg j : known (T ++ T') j = (size T')%:R^-1 *: \sum_(i <- T') A i j.
+  rewrite (known_average T j sz r0); congr (_ *: _); rewrite big_seq [RHS]big_seq.
+  by apply: eq_bigr => i iT; rewrite AE.
+case/orP: h => [/allP h|].
+  have each i : i \in T' -> as_good_as_prior d m lows (lower cl) (add_times d m rows r st i).
+    by move=> /sub iR; apply: h; apply: map_f.
+  have le : dle (lower cl) d0.
+    by case: (T') T'0 each => [//|i T1] _ each; case/andP: (each i (mem_head _ _)).
+  apply: (prior_worth uTT bTT TG) le => j.
+  have -> : known (T ++ T') j - mx F d (nth [::] lows j) =
+      (size T')%:R^-1 *: \sum_(i <- T') (A i j - mx F d (nth [::] lows j)).
+    rewrite avg sumrB scalerBr; congr (_ - _); rewrite big_const_seq count_predT iter_addr_0 -scaler_nat scalerA.
+    by rewrite mulVf ?scale1r // pnatr_eq0 size_eq0.
+  apply: psdZ; first by rewrite invr_ge0 ler0n.
+  rewrite big_seq; apply: psd_sum => i iT; have /andP[_ /allP hj] := each i iT.
+  have := hj j; rewrite mem_iota add0n ltn_ord => /(_ isT).
+  have sm := sub_symmetrical (Asym i j iT) (proj1 (lowP j)).
+  by move/(is_psdP sm); rewrite mx_sub -/(fam _ j).
+case e: (all_some _) => [ys|//]; cbv zeta; set tau := nth d0 _ r.-1.
+rewrite (val_le F) val_add !val_mul val_nat val_sum big_map => le.
+pose y i := val (nth d0 ys (index i rest)).
+have szy : size ys = size rest by have [-> _] := all_some_nth [::] d0 0 e; rewrite size_map.
+have each i : i \in T' -> good (A i) /\ penalty (A i) <= y i.
+  move=> iT; have iR := sub _ iT; have [_ h] := all_some_nth [::] d0 (index i rest) e.
+  rewrite size_map index_mem (nth_map 0%N) ?index_mem // nth_index // in h.
+  by apply: penalty_upP (h iR) _ => j; apply: Asym.
+apply: enough_value; apply: le_trans (_ : penalty (fun j => (size T')%:R^-1 *: \sum_(i <- T') A i j) <= _).
+  apply: good_above => [j||j]; last 1 first.
+  - have [R pR ->] := known_below j uTT bTT TG.
+    exists ((invmx (prior_of j) - mx F d (nth [::] lows j)) + R); last by rewrite avg [RHS]addrA.
+    by apply: psdD => //; case: (lowP j).
+  - split; first by apply: average_symmetrical => i; apply: Asym.
+    by apply: average_pd => // i /each[g _]; case: (g j).
+  by move=> j; apply: posterior_sym.
+apply: le_trans (penalty_convex T'0 (fun i iT => proj1 (each i iT))) _.
+have r0' : 0 < (size T')%:R :> F by rewrite ltr0n sz.
+rewrite ler_pdivr_mull // sz; apply: le_trans le.
+pose f i := Num.max 0 (y i - val tau).
+apply: (@le_trans _ _ (\sum_(i <- T') (f i + val tau))).
+  rewrite big_seq [X in _ <= X]big_seq; apply: ler_sum => i /each[_ h]; apply: le_trans h _.
+  by rewrite -ler_subl_addr /f le_maxr lexx orbT.
+rewrite big_split /= big_const_seq count_predT iter_addr_0 sz mulr_natl ler_add2r.
+have -> : \sum_(i <- T') f i = \sum_(i <- rest | i \in T') f i.
+  rewrite -[RHS]big_filter; apply: perm_big; apply: uniq_perm; rewrite ?filter_uniq // => i.
+  by rewrite mem_filter; case iT: (i \in T') => //=; rewrite (sub _ iT).
+apply: (@le_trans _ _ (\sum_(i <- rest) f i)).
+  by rewrite big_mkcond; apply: ler_sum => i _; case: ifP => // _; rewrite /f le_maxr lexx.
+rewrite (big_nth 0%N) [X in _ <= X](big_nth d0) szy big_mkord [X in _ <= X]big_mkord; apply: ler_sum => k _.
+by rewrite /f /y index_uniq // val_max val0 val_sub.
+Qed.
+
+Theorem lower_sound : check_lower_part pb cl pr lows defects ->
+  forall a, allowed (team_of w) a -> val (lower cl) <= team_value (team_of w) value plan_of a.
+Proof.
+rewrite /check_lower_part; case: (lower_part pr) => [k t|t|//].
+  move=> /and3P[full forced h] a oka; have [i ki] := forcedP net_good full oka forced.
+  apply: (size_treeP worth_sound average_sound ki h).
+move=> h a oka; exact: (attack_treeP net_good erefl worth_sound oka h).
+Qed.
+End Lower.
 End Sound.
