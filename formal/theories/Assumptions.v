@@ -1,11 +1,14 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner Quadratic Criteria Certificate.
+From Ratt Require Import Teams Guarantees Planner GroupSize Quadratic Criteria Certificate.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
 Print Assumptions non_decreasing_guarantee.
 Print Assumptions ratt_submodular.
 Print Assumptions ratt_non_decreasing.
+Print Assumptions group_size_submodular.
+Print Assumptions group_size_total_curvature.
+Print Assumptions ratt_optimal.
 Print Assumptions trace_fenchel.
 Print Assumptions trace_fenchel_tight.
 Print Assumptions largest_eigenvalue_fenchel.
