@@ -207,11 +207,16 @@ let attack value =
   | [ robots; pairs ] -> (nats "attack robots" robots, links "attack links" pairs)
   | _ -> assert false
 
-let point kind value =
+let exacts_of_length where length value =
+  let found = exacts where value in
+  if List.length found <> length then format where (Printf.sprintf "must be a list of %d entries" length);
+  found
+
+let point kind d value =
   match (kind, value) with
-  | Trace, _ -> TracePoint (List.map (exacts "point Y") (array "point" value))
+  | Trace, _ -> TracePoint (List.map (exacts_of_length "point Y" (d * (d + 1) / 2)) (array "point" value))
   | MaxEigenvalue, List [ target; size; direction ] ->
-      EigenPoint (nat "point target" target, exact "point t" size, exacts "point v" direction)
+      EigenPoint (nat "point target" target, exact "point t" size, exacts_of_length "point v" d direction)
   | _ -> format "point" "must be a list of 3 entries"
 
 let cut value =
@@ -219,13 +224,13 @@ let cut value =
   | [ a; g; k ] -> ((nat "cut attack" a, nat "cut group" g), nat "cut point" k)
   | _ -> format "cut" "must be a list of 3 entries"
 
-let rec length = function [] -> 0 | _ :: rest -> 1 + length rest
+let rec int_of_nat = function O -> 0 | S k -> 1 + int_of_nat k
 
 let proofs pb prior_range upper lower =
   match fields "upper proof" [ "attacks"; "points"; "cuts"; "tree" ] upper with
   | [ attacks; points; cuts; tree ] ->
       let listed = List.map attack (array "attacks" attacks) in
-      let arity a = if attack_ok pb.net a then length (seeing_groups pb.net a) else raise (Fault "upper proof: an attack is not allowed") in
+      let arity a = if attack_ok pb.net a then List.length (seeing_groups pb.net a) else raise (Fault "upper proof: an attack is not allowed") in
       let groups = Array.of_list (List.map arity listed) in
       let zero = { man = Big.zero; sc = Big.zero } in
       let low, high =
@@ -233,7 +238,7 @@ let proofs pb prior_range upper lower =
         | Trace, [] -> (zero, zero)
         | MaxEigenvalue, [ low; high ] -> (low, high)
         | _ -> format "prior_eigenvalue" "must be a list of two entries, of none for trace" in
-      { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective) (array "points" points);
+      { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
         upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups next 0);
         lower_part = lower_proof lower }

@@ -125,7 +125,7 @@ Definition as_good_as_prior (s : seq dmat) : bool :=
   dle claimed d0 && all (fun j => is_psd d (msub d (nth [::] s j) (nth [::] lows j))) (iota 0 m).
 Definition worth (s : seq dmat) : bool := as_good_as_prior s || penalty_within kind d m ws room s.
 Definition average_worth (s : seq dmat) (rest : seq nat) (r : nat) : bool :=
-  uniq rest && all (fun i => i < size rows)%N rest &&
+  uniq rest && (r <= size rest)%N &&
   let cases := [seq add_times r s i | i <- rest] in
   (all as_good_as_prior cases) ||
   (if all_some [seq penalty_up kind d m ws room c | c <- cases] is Some ys then
