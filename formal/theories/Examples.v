@@ -8,12 +8,12 @@ Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 Import Order.Theory GRing.Theory Num.Theory.
 
-Definition whole (k : Z) : dyadic := Dyadic k 0.
+Definition whole (k : nat) : dyadic := dnat k.
 
 Local Open Scope nat_scope.
 
 (** One target with one coordinate, prior 1 and weight 1; elements with the given information. *)
-Definition line_problem (infos : seq Z) (w : network) : problem :=
+Definition line_problem (infos : seq nat) (w : network) : problem :=
   Problem Trace 1 [:: [:: whole 1]] [:: whole 1] [seq [:: [:: whole k]] | k <- infos] w.
 
 (** One linear bound at the posterior 1/8 on the first group of one attack. *)
@@ -21,7 +21,7 @@ Definition one_leaf (a : listed_attack) (t : attack_tree) : proofs :=
   Proofs d0 d0 [:: a] [:: TracePoint [:: [:: Dyadic 1 3]]] [:: (0, 0, 0)%N] (Leaf [:: (0%N, whole 1)]) (AttackTree t).
 
 (** ** A blinded robot relays: robots in a line, one of them blinded, no link cut. *)
-Definition relay_infos : seq Z := 4%Z :: 1%Z :: 3%Z :: 4%Z :: [::].
+Definition relay_infos : seq nat := [:: 4; 1; 3; 4].
 Definition relay_net : network := Network 2 [:: 0; 1; 1; 2] [:: (0, 1); (1, 2)] 1 0 [::] [::].
 Definition relay_plan : seq nat := [:: 0; 2; 3].
 Definition relay_value : dyadic := Dyadic 7 3.
@@ -30,7 +30,7 @@ Definition relay_group : seq nat := [:: 0; 1; 2].
 Definition relay_sees : seq nat := [:: 0; 2].
 
 (** ** Protected robots and links: a triangle, one robot blinded, two links cut. *)
-Definition safe_infos : seq Z := 4%Z :: 1%Z :: 3%Z :: 1%Z :: [::].
+Definition safe_infos : seq nat := [:: 4; 1; 3; 1].
 Definition safe_net : network := Network 2 [:: 0; 1; 1; 2] [:: (0, 1); (0, 2); (1, 2)] 1 2 [:: 0; 1] [:: (0, 1)].
 Definition safe_plan : seq nat := [:: 0; 2; 3].
 Definition safe_value : dyadic := Dyadic 7 3.
@@ -39,7 +39,7 @@ Definition safe_group : seq nat := [:: 0; 1].
 Definition safe_sees : seq nat := [:: 0; 1].
 
 (** ** Two groups: a line of four robots, one link cut. *)
-Definition split_infos : seq Z := 3%Z :: 1%Z :: 4%Z :: 4%Z :: 3%Z :: [::].
+Definition split_infos : seq nat := [:: 3; 1; 4; 4; 3].
 Definition split_net : network := Network 3 [:: 0; 0; 1; 2; 3] [:: (0, 1); (1, 2); (2, 3)] 0 1 [::] [::].
 Definition split_plan : seq nat := [:: 0; 2; 3; 4].
 Definition split_value : dyadic := Dyadic 7 3.
@@ -52,7 +52,7 @@ Local Open Scope ring_scope.
 Variable F : realFieldType.
 
 Section One.
-Variables (infos : seq Z) (w : network) (chosen : seq nat) (v : dyadic) (pr : proofs).
+Variables (infos : seq nat) (w : network) (chosen : seq nat) (v : dyadic) (pr : proofs).
 Let pb := line_problem infos w.
 Let phi := trace_value (@prior_of F pb) (@info_of F pb) (@weight_of F pb).
 Let cl := Claim chosen v v.
@@ -79,9 +79,9 @@ Lemma exact_group w a (i : 'I_(top_robot w).+1) g s : network_ok w -> attack_ok 
     & sees (team_of w) (attack_of w a) i = set_of w s].
 Proof.
 move=> ok oka eg es; have grp : group (team_of w) (attack_of w a) i = set_of w g.
-  by apply/setP => j; rewrite !inE -(mem_reach ok i j oka) -eg mem_filter mem_iota add0n ltn_ord andbT.
+  by apply/setP => j; rewrite /group /set_of !in_set -(mem_reach ok i j oka) -eg mem_filter mem_iota add0n ltn_ord leq0n !andbT.
 split=> //; first exact: attack_of_allowed.
-by rewrite /sees grp; apply/setP => j; rewrite !inE -es mem_filter.
+by rewrite /sees grp; apply/setP => j; rewrite in_setD /blinded /attack_of /set_of /= !in_set -es mem_filter.
 Qed.
 
 Theorem relay_exact : let pb := line_problem relay_infos relay_net in let cl := Claim relay_plan relay_value relay_value in
@@ -155,6 +155,8 @@ Qed.
 
 Lemma not_allowed_safe_link : ~~ allowed (team_of safe_net) (attack_of safe_net ([::], [:: (0, 1)])).
 Proof.
-apply/negP => /and5P[_ _ _ _ h]; have := disjointFr h (_ : link_of safe_net (0, 1) \in _).
-by rewrite !inE !map_f ?mem_head // => /(_ isT).
+apply/negP => /and5P[_ _ _ _ h].
+have c1 : link_of safe_net (0, 1) \in cut (attack_of safe_net ([::], [:: (0, 1)])).
+  by rewrite /cut /attack_of /links_of /= in_set mem_seq1.
+by have := disjointFr h c1; rewrite /team_of /links_of /= in_set mem_seq1 eqxx.
 Qed.

@@ -50,7 +50,7 @@ def example(name):
     graph = nx.Graph()
     graph.add_nodes_from(range(max(owners) + 1))
     graph.add_edges_from(pairs(links))
-    information = np.array([float(x) for x in re.findall(r"(\d+)%Z", defined(f"{name}_infos"))]).reshape(-1, 1, 1, 1)
+    information = np.array([float(x) for x in numbers(defined(f"{name}_infos"))]).reshape(-1, 1, 1, 1)
     problem = Problem(
         TraceObjective(np.ones((1, 1, 1)), information),
         np.array(owners),
