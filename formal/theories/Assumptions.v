@@ -1,5 +1,5 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner GroupSize Quadratic Criteria Certificate.
+From Ratt Require Import Teams Guarantees Planner GroupSize Families Quadratic Criteria Certificate Examples.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -9,6 +9,7 @@ Print Assumptions ratt_non_decreasing.
 Print Assumptions group_size_submodular.
 Print Assumptions group_size_total_curvature.
 Print Assumptions ratt_optimal.
+Print Assumptions one_minus_k_attained.
 Print Assumptions trace_fenchel.
 Print Assumptions trace_fenchel_tight.
 Print Assumptions largest_eigenvalue_fenchel.
@@ -20,3 +21,9 @@ Print Assumptions certificate_upper.
 Print Assumptions certificate_sound.
 Print Assumptions trace_certificate_sound.
 Print Assumptions certificate_bracket.
+Print Assumptions relay_exact.
+Print Assumptions relay_groups.
+Print Assumptions safe_exact.
+Print Assumptions safe_groups.
+Print Assumptions split_exact.
+Print Assumptions split_groups.
