@@ -11,12 +11,15 @@ let read path =
   close_in channel;
   text
 
+(* The claim's numbers are floats, so nothing is lost here. *)
+let shown (x : Checker.dyadic) = Float.ldexp (Z.to_float x.man) (-Z.to_int x.sc)
+
 let decide path =
   try
     let pb, cl, pr = Reader.certificate (Json.parse (read path)) in
     match Checker.check pb cl pr with
-    | Checker.Proved -> (0, "both ends proved")
-    | Checker.UpperOnly -> (3, "only the upper end proved")
+    | Checker.Proved -> (0, Printf.sprintf "both ends proved: %.17g <= optimum <= %.17g" (shown cl.lower) (shown cl.upper))
+    | Checker.UpperOnly -> (3, Printf.sprintf "only the upper end proved: optimum <= %.17g" (shown cl.upper))
     | Checker.Refused -> (1, "not proved")
   with
   | Reader.Fault text -> (1, text)

@@ -2,7 +2,7 @@
     library from the same data by tests/formal/test_definitions.py, which reads them in this file. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
-From Ratt Require Import Extrema Teams Criteria Dyadic Graph UpperTree LowerTree Checker Soundness Certificate.
+From Ratt Require Import Extrema Teams Quadratic Criteria Dyadic Graph UpperTree LowerTree Checker Soundness Certificate.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -159,4 +159,14 @@ apply/negP => /and5P[_ _ _ _ h].
 have c1 : link_of safe_net (0, 1) \in cut (attack_of safe_net ([::], [:: (0, 1)])).
   by rewrite /cut /attack_of /links_of /= in_set mem_seq1.
 by have := disjointFr h c1; rewrite /team_of /links_of /= in_set mem_seq1 eqxx.
+Qed.
+
+(** The hypothesis about the largest eigenvalue can be met: with one coordinate it is the entry, over any ordered field. *)
+Lemma largest_eigenvalue_one (F : realFieldType) : largest_eigenvalue (fun A : 'M[F]_1 => A 0%R 0%R).
+Proof.
+move=> A _ x; have f v : form (x%:M - A)%R v v = ((x - A 0 0) * v 0 0 ^+ 2)%R.
+  rewrite formBm form_scalar mulrBl; congr (_ - _)%R; first by rewrite dot_sum big_ord1.
+  by rewrite /form mxE big_ord1 mxE big_ord1 mxE expr2 mulrCA mulrA.
+split=> [le v|h]; first by rewrite f mulr_ge0 ?subr_ge0 ?sqr_ge0.
+by have := h (const_mx 1%R); rewrite f mxE expr1n mulr1 subr_ge0.
 Qed.
