@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from ratt_opt._values import Shown, plain
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Attack
@@ -13,7 +15,7 @@ __all__ = ["AttackResult"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AttackResult:
+class AttackResult(Shown):
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
     ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is
@@ -27,6 +29,12 @@ class AttackResult:
     stop: Stop
     evaluations: int
     nodes: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data: unknown numbers are ``None``."""
+        ends = {"lower": plain(self.lower), "upper": plain(self.upper)}
+        cost = {"evaluations": self.evaluations, "nodes": self.nodes}
+        return {**ends, **self.attack.to_dict(), "stop": self.stop.value, **cost}
 
     def __repr__(self) -> str:
         attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"

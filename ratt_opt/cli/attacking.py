@@ -15,7 +15,7 @@ __all__ = ["attack"]
 
 def attack(
     file: InputFile,
-    plan: Annotated[Path, typer.Option("--plan", help='JSON: {"elements": [...]} or {"controls": [...]}.')],
+    plan: Annotated[Path, typer.Option("--plan", help='JSON: {"elements": [...]}, {"controls": [...]} or a report.')],
     objective: ObjectiveOption = "trace",
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for the exact attack.")] = TIME_LIMIT,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the random attack.")] = 0,

@@ -5,16 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.report.map import Picture
+from ratt_opt.scenario.model import Scenario
 
 if TYPE_CHECKING:
     from ratt_opt.main_job.result import BoundReport
-    from ratt_opt.scenario.model import Scenario
 
 __all__ = ["picture_of"]
 
 
-def picture_of(scenario: Scenario, report: BoundReport) -> Picture:
-    """Put together positions, covariances and the worst attack's groups for :func:`draw_map`."""
+def picture_of(scenario: object, report: BoundReport) -> Picture | None:
+    """Put together positions, covariances and the worst attack's groups for :func:`draw_map`; ``None`` without any."""
+    if not isinstance(scenario, Scenario):
+        return None
     plan = report.recommended
     assert plan.posterior is not None  # a scenario's problem has a criterion of information matrices
     return Picture(

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "attack_tables",
     "audit_table",
+    "bracket_text",
     "report_tables",
     "share_text",
 ]
@@ -68,7 +69,7 @@ def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
     return table
 
 
-def _bracket_text(lower: float, upper: float) -> str:
+def bracket_text(lower: float, upper: float) -> str:
     """The bracket as text: one number where both ends agree to eight digits, with up to ten of them."""
     for digits in (10, 9, 8):
         if f"{lower:.{digits}g}" == f"{upper:.{digits}g}":
@@ -87,7 +88,7 @@ def _attacks(results: Mapping[str, AttackResult]) -> Table:
     """One row an attacker: the value its attack leaves, and the attack."""
     table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
     for name, result in results.items():
-        proved = _bracket_text(result.lower, result.upper) if name == "exact" else ""
+        proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
         table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
     return table
 
@@ -97,7 +98,7 @@ def _critical(ranking: Iterable[Criticality]) -> Table:
     table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
     for row in ranking:
         name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
-        table.add_row(name, _bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
+        table.add_row(name, bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
     return table
 
 
@@ -116,7 +117,7 @@ def _planners(report: BoundReport) -> Table:
     for plan in report.plans:
         share = share_text(report.share(plan))
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
-        table.add_row(name, _bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
+        table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
     table.caption = "* recommended: the best proved worst case"
     return table
 
@@ -136,7 +137,7 @@ def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
 def _bracket(report: BoundReport) -> Table:
     table = _table("how good that is", "quantity", "value")
     optimum, problem = report.optimum, report.problem
-    table.add_row("best possible worst-case value", _bracket_text(optimum.lower, report.upper))
+    table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
     table.add_row("search stopped because", optimum.stop.value)
@@ -155,7 +156,7 @@ def _verdict(given: Certification) -> str:
     if given.certificate is None:
         return f"none: {given.why_not}"
     found = given.certificate.verified
-    bracket = _bracket_text(found.lower, found.upper)
+    bracket = bracket_text(found.lower, found.upper)
     if found.lower_proved:
         return f"verified, both ends proved in {found.arithmetic}: {bracket}"
     return f"verified, upper end proved in {found.arithmetic}, lower end searched in floating point: {bracket}"
@@ -174,7 +175,7 @@ def _guarantees(report: BoundReport) -> Table:
 
 
 def _curvature(bracket: Curvature) -> str:
-    return _bracket_text(bracket.lower, bracket.upper)
+    return bracket_text(bracket.lower, bracket.upper)
 
 
 def _robots(attack: Attack) -> str:
