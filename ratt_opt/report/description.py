@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -60,14 +63,20 @@ def describe(problem: Problem, source: object = None) -> Description:
             poses_after=source.predicted_poses,
             targets=source.predicted_targets,
         )
-    given: Any = source
     n_targets = getattr(problem.objective, "n_targets", None)
+    unnamed = (("",) * problem.n_robots, None if n_targets is None else ("",) * n_targets)
+    if not isinstance(source, InformationInput):
+        return Description(robot_names=unnamed[0], target_names=unnamed[1], weights=weights, labels=None)
     return Description(
-        robot_names=getattr(given, "robot_names", None) or ("",) * problem.n_robots,
-        target_names=getattr(given, "target_names", None) or (None if n_targets is None else ("",) * n_targets),
+        robot_names=source.robot_names or unnamed[0],
+        target_names=source.target_names or unnamed[1],
         weights=weights,
-        labels=getattr(given, "labels", None),
-        poses=getattr(given, "poses", None),
-        poses_after=getattr(given, "poses_after", None),
-        targets=getattr(given, "target_places", None),
+        labels=source.labels,
+        poses=_array(source.robot_positions),
+        poses_after=_array(source.element_positions),
+        targets=_array(source.target_positions),
     )
+
+
+def _array(places: tuple[tuple[float, float], ...] | None) -> FloatArray | None:
+    return None if places is None else np.array(places)

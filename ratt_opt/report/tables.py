@@ -69,12 +69,12 @@ def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
     return table
 
 
-def bracket_text(lower: float, upper: float) -> str:
-    """The bracket as text: one number where both ends agree to eight digits, with up to ten of them."""
-    for digits in (10, 9, 8):
-        if f"{lower:.{digits}g}" == f"{upper:.{digits}g}":
-            return f"{upper:.{digits}g}"
-    return f"[{lower:.8g}, {upper:.8g}]"
+def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
+    """The bracket as text: one number where both ends agree to ``digits`` digits or up to two less."""
+    for shown in (digits, digits - 1, digits - 2):
+        if f"{lower:.{shown}g}" == f"{upper:.{shown}g}":
+            return f"{upper:.{shown}g}"
+    return f"[{lower:.{digits - 2}g}, {upper:.{digits - 2}g}]"
 
 
 def share_text(share: float) -> str:
