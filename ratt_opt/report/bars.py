@@ -12,12 +12,26 @@ if TYPE_CHECKING:
 
     from ratt_opt.main_job.result import BoundReport
 
-__all__ = ["draw_bars"]
+__all__ = ["bar_ends", "draw_bars"]
 
 CLOSE = 0.5
 """From this share of the bound on, what is missing is drawn, not what is kept: one per cent stays visible."""
 ROOM = 2.1
 """The axis ends at so many times the longest bar, so that the numbers beside the bars have room."""
+
+
+NOTHING = 1e-9
+"""Less than this share of the bound is rounding: no whisker shows it, and it must not fill the axis."""
+
+
+def bar_ends(report: BoundReport) -> tuple[bool, list[tuple[float, float]], float]:
+    """Return whether bars show what is missing to the bound, the ends of each planner's bar, and the full length."""
+    ends = [(plan.worst_case.lower, plan.worst_case.upper) for plan in report.plans]
+    missing = min(low for low, _ in ends) >= CLOSE * report.upper > 0
+    if missing:
+        ends = [(max(report.upper - high, 0.0), max(report.upper - low, 0.0)) for low, high in ends]
+    longest = max([high for _, high in ends] + ([] if missing else [report.upper]))
+    return missing, ends, longest if longest > NOTHING * report.upper else max(report.upper, 1.0)
 
 
 def draw_bars(axes: Axes, report: BoundReport) -> None:
@@ -26,13 +40,8 @@ def draw_bars(axes: Axes, report: BoundReport) -> None:
     A whisker spans what is not decided of it, so a search that ran out of time shows a whisker, never a value.
     """
     plans = report.plans
-    missing = min(plan.worst_case.lower for plan in plans) >= CLOSE * report.upper > 0
-    ends = [(plan.worst_case.lower, plan.worst_case.upper) for plan in plans]
-    if missing:
-        ends = [(max(report.upper - high, 0.0), max(report.upper - low, 0.0)) for low, high in ends]
-    longest = max([high for _, high in ends] + ([] if missing else [report.upper]))
-    least = 1e-9 * report.upper  # all plans may be optimal: then rounding must not fill the axis
-    longest = longest if longest > least else max(report.upper, 1.0)
+    missing, ends, longest = bar_ends(report)
+    least = NOTHING * report.upper
     for row, (plan, (low, high)) in enumerate(zip(plans, ends, strict=True)):
         look, chosen = look_of(plan.name), plan.name == report.recommended.name
         axes.barh(row, low, color=look.colour, hatch=look.hatch, height=0.62, edgecolor="white", linewidth=0)

@@ -25,6 +25,7 @@ __all__ = [
     "bracket_text",
     "report_tables",
     "share_text",
+    "verdict_text",
 ]
 
 PROVED_OPTIMAL = 1e-9
@@ -141,7 +142,7 @@ def _bracket(report: BoundReport) -> Table:
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
     table.add_row("search stopped because", optimum.stop.value)
-    table.add_row("certificate", _verdict(report.certificate))
+    table.add_row("certificate", verdict_text(report.certificate))
     table.add_row("certified ratio of RATT", share_text(report.certified_ratio))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
     table.add_row("smallest largest group, n_max", str(report.n_max))
@@ -152,7 +153,8 @@ def _bracket(report: BoundReport) -> Table:
     return table
 
 
-def _verdict(given: Certification) -> str:
+def verdict_text(given: Certification) -> str:
+    """What the verifier proved, or why there is no certificate."""
     if given.certificate is None:
         return f"none: {given.why_not}"
     found = given.certificate.verified

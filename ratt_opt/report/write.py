@@ -7,23 +7,21 @@ import shutil
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json
-from ratt_opt.report.description import describe
 from ratt_opt.report.figure import plan_figure, save_figure
+from ratt_opt.report.page.page import report_page
 from ratt_opt.report.picture import picture_of
+from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from ratt_opt.main_job.result import BoundReport
 
-__all__ = ["plan_rows", "write_report"]
-
-PLAN_COLUMNS = ("robot", "name", "element", "control", "x", "y", "heading", "bait", "under attack", "group")
+__all__ = ["write_report"]
 
 
 def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
-    """Write ``report.json``, ``plan.csv``, ``plan.png``, ``plan.svg`` and return the files.
+    """Write ``report.json``, ``report.html``, ``plan.csv``, ``plan.png``, ``plan.svg`` and return the files.
 
     The certificate, where there is one, is copied beside them.
 
@@ -37,6 +35,8 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
         write_json(out / "report.json", report.to_dict()),
         write_atomically(out / "plan.csv", lambda file: _write_plan(report, file)),
     ]
+    page = report_page(report)
+    files.append(write_atomically(out / "report.html", lambda file: file.write_text(page, encoding="utf-8")))
     for name in ("plan.png", "plan.svg"):
         save_figure(figure, out / name)
         files.append(out / name)
@@ -47,20 +47,6 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
             write_atomically(copy, lambda file: shutil.copyfile(proof.path, file))
         files.append(copy)
     return files
-
-
-def plan_rows(report: BoundReport) -> Iterator[tuple[object, ...]]:
-    """Yield one row of ``PLAN_COLUMNS`` a robot: the recommended plan, and its role under the worst attack.
-
-    Positions [m] and headings [rad] are those after the control; empty where the source does not tell.
-    """
-    plan, known = report.recommended, describe(report.problem, report.source)
-    home = {i: k for k, group in enumerate(plan.groups) for i in group}
-    for i, element in enumerate(plan.elements.tolist()):
-        given = known.pose_after(element) or []
-        pose: list[object] = [*given, *[""] * (3 - len(given))]
-        role = "blinded" if i in plan.worst_case.attack.sensing else "sees" if i in plan.best_group else "cut off"
-        yield i, known.robot_names[i], element, known.label(element), *pose, int(i in plan.bait), role, home[i]
 
 
 def _write_plan(report: BoundReport, path: Path) -> None:
