@@ -13,11 +13,13 @@ from .audit.ledger import Ledger as Ledger, run_audit as run_audit
 from .audit.worst_ratio.ratio import WorstCaseRatio as WorstCaseRatio, worst_case_ratio as worst_case_ratio
 from .audit.worst_ratio.witness import RatioWitness as RatioWitness
 from .bounds.group_size import group_size_bound as group_size_bound
+from .bounds.applicable import (
+    all_guarantees as all_guarantees,
+    inapplicable_guarantees as inapplicable_guarantees,
+)
 from .bounds.guarantees import (
     Guarantee as Guarantee,
     all_bait_group_bound as all_bait_group_bound,
-    all_guarantees as all_guarantees,
-    inapplicable_guarantees as inapplicable_guarantees,
     pattern_free_bound as pattern_free_bound,
     remark1_bound as remark1_bound,
     sensing_only_bound as sensing_only_bound,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
-from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
+from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.write import certify_if_possible

@@ -43,7 +43,6 @@ OPTIONAL_PARTS = (
     "cut_values",
     "fenchel_point",
     "is_submodular",
-    "is_worst_axis",
     "marginal_ends",
     "marginal_minorant",
     "name",
@@ -75,9 +74,6 @@ class CriterionParts(ProofParts):
     name: ClassVar[str] = ""
     """What files, tables and the command line call it; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
-    is_worst_axis: ClassVar[bool] = False
-    """Whether the team's criterion is ``max_j w_j v' Lambda_j^{-1} v`` over targets and unit vectors ``v``: one axis of
-    one target decides. Otherwise it is a sum over targets."""
     compiled_code: ClassVar[int | None] = None
     """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
 
