@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.result import AttackResult
+from ratt_opt.attackers.task import AttackResult
 from ratt_opt.main_job.result import PlanAssessment
 from ratt_opt.problem import Attack, Plan, Problem
 from ratt_opt.setfunctions.information import InformationObjective

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from time import monotonic
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
@@ -16,14 +19,11 @@ from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
-from ratt_opt.main_job.steps import Steps
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, random_plan
-from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
-from ratt_opt.solvers.nonrobust import nonrobust_search
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
+from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -32,9 +32,39 @@ if TYPE_CHECKING:
 
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["bound"]
+__all__ = ["Steps", "bound"]
+
+SECONDS_BETWEEN_LINES = 1.0
+"""A search tells where it stands at most so often: about as fast as a person reads a line."""
+
+
+@dataclass(slots=True)
+class Steps:
+    """``tell`` : called with one line of text, or ``None``; ``seconds`` : wall time of each step that has ended."""
+
+    tell: Callable[[str], None] | None
+    seconds: dict[str, float] = field(default_factory=dict)
+    _last_line: float = -SECONDS_BETWEEN_LINES
+
+    @contextmanager
+    def __call__(self, step: str) -> Iterator[None]:
+        """Tell that a step begins, and keep how long it takes."""
+        self._say(step)
+        began = monotonic()
+        yield
+        self.seconds[step] = monotonic() - began
+
+    def search_line(self, nodes: int, lower: float, upper: float) -> None:
+        """Tell where a search stands, unless that was told just now."""
+        if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
+            self._last_line = monotonic()
+            self._say(f"  {nodes} nodes: between {lower:.8g} and {upper:.8g}")
+
+    def _say(self, line: str) -> None:
+        if self.tell is not None:
+            self.tell(line)
+
 
 ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
@@ -95,7 +125,8 @@ def bound(
     with steps("the best possible plan"):
         part = budget.part(OPTIMUM_SHARE)
         optimum = solve_maxmin(problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, budget=part)
-        best = _assess_optimum(problem, optimum, budget.part(ATTACK_SHARE))
+        found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
+        best = assess(problem, "maxmin", found, budget.part(ATTACK_SHARE), known=optimum.worst_case)
     with steps("other attacks on the recommended plan"):
         views = views_of(problem, recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE))
     with steps("curvature and guarantees"):
@@ -144,11 +175,6 @@ def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
 
 
-def _assess_optimum(problem: Problem, optimum: MaxMinResult, budget: Budget) -> PlanAssessment:
-    plan = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-    return assess(problem, "maxmin", plan, budget, known=optimum.worst_case)
-
-
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
     """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
     f, owners = problem.objective, problem.robot
@@ -164,13 +190,7 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
 
 
 def _guarantees(
-    problem: Problem,
-    robust: PlanAssessment,
-    alpha_cs: int,
-    budget: Budget,
-    *,
-    k: Curvature | None,
-    c: Curvature | None,
+    problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
     found = all_guarantees(problem, alpha_cs, k=k, c=c)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
