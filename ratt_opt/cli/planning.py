@@ -40,7 +40,7 @@ def bound(
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
 ) -> None:
-    """Plan, find the worst attack, bracket the best plan; write report.json, plan.png, plan.svg, certificate.json."""
+    """Plan, find the worst attack, bracket the best plan; write the report, plan and certificate."""
     from ratt_opt.scenario.files import load_input
 
     source = load_input(file)
@@ -60,18 +60,15 @@ def _bound(
     from ratt_opt._files import output_directory
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.tables import report_tables
-    from ratt_opt.report.write import write_report
 
     proof = output_directory(out) / "certificate.json"
     path = proof if certificate else None
     with progress() as tell:
         report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, certificate=path, progress=tell)
         tell("report and figure")
-        files = write_report(report, out, source)
+        files = report.save(out)
     if report.certificate.certificate is None:
         proof.unlink(missing_ok=True)  # an earlier run's: it is not about this report
-    else:
-        files.append(report.certificate.certificate.path)
     if as_json:
         print_json(report.to_dict())
         return

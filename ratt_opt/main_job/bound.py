@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
-from ratt_opt._validation import readonly
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
@@ -18,6 +17,7 @@ from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
+from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
 
@@ -114,6 +113,7 @@ def bound(
     ProofError : the verifier finds a fault in the search's own proof.
     """
     check_limits(gap, time_limit)
+    began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
     budget, steps = Budget(time_limit), Steps(progress)
     with steps("RATT and the baselines"):
@@ -127,6 +127,8 @@ def bound(
         optimum = solve_maxmin(problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, budget=part)
         found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
         best = assess(problem, "maxmin", found, budget.part(ATTACK_SHARE), known=optimum.worst_case)
+    with steps("other attacks on the recommended plan"):
+        views = views_of(problem, recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE))
     with steps("curvature and guarantees"):
         k, c = _curvatures(problem, budget.part(CURVATURE_SHARE))
         guarantees = _guarantees(problem, robust, alpha_cs, budget.part(CURVATURE_SHARE), k=k, c=c)
@@ -145,29 +147,10 @@ def bound(
         inapplicable=inapplicable_guarantees(problem, alpha_cs),
         certificate=proof,
         seconds=steps.seconds,
-    )
-
-
-def assess(
-    problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
-) -> PlanAssessment:
-    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
-    elements = plan.elements
-    worst = known or worst_case_attack(problem, elements, budget=budget)
-    seeing, f = problem.best_group(elements, worst.attack), problem.objective
-    posterior = None
-    if isinstance(f, InformationObjective):
-        posterior = readonly(np.linalg.inv(f.posterior_information(elements[sorted(seeing)])))
-    return PlanAssessment(
-        name=name,
-        elements=elements,
-        controls=tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True)),
-        bait=plan.bait,
-        worst_case=worst,
-        evaluations=plan.evaluations,
-        groups=problem.communication.groups(worst.attack.links),
-        best_group=seeing,
-        posterior=posterior,
+        created=began.isoformat(timespec="seconds"),
+        source=None if isinstance(scenario_or_problem, Problem) else scenario_or_problem,
+        views=views,
+        seeds={"random": RANDOM_SEED},
     )
 
 

@@ -1,13 +1,16 @@
-"""Write a bound report to a folder: ``report.json``, ``plan.png``, ``plan.svg``."""
+"""Write a bound report to a folder: for programs, for readers, for robots."""
 
 from __future__ import annotations
 
+import csv
+import shutil
 from typing import TYPE_CHECKING
 
-from ratt_opt._files import output_directory, write_json
+from ratt_opt._files import output_directory, write_atomically, write_json
 from ratt_opt.report.figure import plan_figure, save_figure
+from ratt_opt.report.page.page import report_page
 from ratt_opt.report.picture import picture_of
-from ratt_opt.scenario.model import Scenario
+from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,17 +20,37 @@ if TYPE_CHECKING:
 __all__ = ["write_report"]
 
 
-def write_report(report: BoundReport, folder: str | Path, source: object = None) -> list[Path]:
-    """Write the report and return the files; ``source`` is the scenario, if there is one to draw.
+def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
+    """Write ``report.json``, ``report.html``, ``plan.csv``, ``plan.png``, ``plan.svg`` and return the files.
+
+    The certificate, where there is one, is copied beside them.
 
     Raises
     ------
     InputError : the folder cannot be written.
     """
     out = output_directory(folder)
-    picture = picture_of(source, report) if isinstance(source, Scenario) else None
-    figure = plan_figure(report, picture)
+    figure = plan_figure(report, picture_of(report.source, report))
+    files = [
+        write_json(out / "report.json", report.to_dict()),
+        write_atomically(out / "plan.csv", lambda file: _write_plan(report, file)),
+    ]
+    page = report_page(report)
+    files.append(write_atomically(out / "report.html", lambda file: file.write_text(page, encoding="utf-8")))
     for name in ("plan.png", "plan.svg"):
         save_figure(figure, out / name)
-    write_json(out / "report.json", report.to_dict())
-    return [out / "report.json", out / "plan.png", out / "plan.svg"]
+        files.append(out / name)
+    proof = report.certificate.certificate
+    if proof is not None:
+        copy = out / "certificate.json"
+        if not (copy.exists() and copy.samefile(proof.path)):
+            write_atomically(copy, lambda file: shutil.copyfile(proof.path, file))
+        files.append(copy)
+    return files
+
+
+def _write_plan(report: BoundReport, path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(PLAN_COLUMNS)
+        table.writerows(plan_rows(report))
