@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from functools import partial
+from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import certify_if_possible
+from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["bound"]
+
+T = TypeVar("T")
 
 ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
@@ -68,6 +71,8 @@ def bound(
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
+    An interrupt (Ctrl-C) once RATT has planned ends every search; the report holds what is proved so far.
+
     Parameters
     ----------
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
@@ -80,7 +85,7 @@ def bound(
 
     Raises
     ------
-    InputError : an argument breaks its rule, or the certificate cannot be written.
+    InputError : an argument breaks its rule. A certificate that cannot be written is a reason in the report.
     ProofError : the verifier finds a fault in the search's own proof.
     """
     check_limits(gap, time_limit)
@@ -90,17 +95,19 @@ def bound(
         plan = ratt(problem)
         alpha_cs = plan.alpha_cs
         assert alpha_cs is not None  # RATT's own plan says what it took the link attacks to be worth
-        robust = assess(problem, "ratt", plan, budget.part(ATTACK_SHARE))
-        baselines = tuple(_baselines(problem, budget))
+        robust = _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+        baselines = _kept(budget, lambda: tuple(_baselines(problem, budget)))
     with steps("the best possible plan"):
-        part = budget.part(OPTIMUM_SHARE)
-        optimum = solve_maxmin(problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, budget=part)
-        best = _assess_optimum(problem, optimum, budget.part(ATTACK_SHARE))
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
+        optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
+        best = _kept(budget, lambda: _assess_optimum(problem, optimum, budget.part(ATTACK_SHARE)))
     with steps("curvature and guarantees"):
-        k, c = _curvatures(problem, budget.part(CURVATURE_SHARE))
-        guarantees = _guarantees(problem, robust, alpha_cs, budget.part(CURVATURE_SHARE), k=k, c=c)
+        k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
+        part = budget.part(CURVATURE_SHARE)
+        guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
-        proof = certify_if_possible(problem, optimum, certificate)
+        interrupted = budget.stop() is Stop.INTERRUPTED
+        proof = INTERRUPTED if interrupted else certify_if_possible(problem, optimum, certificate)
     return BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -114,7 +121,17 @@ def bound(
         inapplicable=inapplicable_guarantees(problem, alpha_cs),
         certificate=proof,
         seconds=steps.seconds,
+        interrupted=interrupted,
     )
+
+
+def _kept(budget: Budget, step: Callable[[], T]) -> T:
+    """What a step returns; interrupted outside its own searches, what it can say at once."""
+    try:
+        return step()
+    except KeyboardInterrupt:
+        budget.interrupt()
+        return step()
 
 
 def assess(

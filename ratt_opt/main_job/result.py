@@ -68,7 +68,7 @@ class BoundReport:
     ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
     ``inapplicable`` : the guarantees that do not apply here, and why.
     ``certificate`` : the verified proof file of ``optimum``, or why there is none.
-    ``seconds`` : wall time of each step.
+    ``seconds`` : wall time of each step. ``interrupted`` : the user ended the searches; the brackets hold all the same.
 
     Two reports are equal when they say the same, whatever time it took.
     """
@@ -85,6 +85,7 @@ class BoundReport:
     inapplicable: Mapping[str, str]
     certificate: Certification
     seconds: Mapping[str, float]
+    interrupted: bool = False
 
     @property
     def objective(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt._files import output_directory, write_json
+from ratt_opt._files import output_directory, write_json, write_together
 from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.picture import picture_of
 from ratt_opt.scenario.model import Scenario
@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
     from ratt_opt.main_job.result import BoundReport
 
-__all__ = ["write_report"]
+__all__ = ["FILES", "write_report"]
+
+FILES = ("report.json", "plan.png", "plan.svg")
+"""All that :func:`write_report` writes."""
 
 
 def write_report(report: BoundReport, folder: str | Path, source: object = None) -> list[Path]:
@@ -27,7 +30,9 @@ def write_report(report: BoundReport, folder: str | Path, source: object = None)
     out = output_directory(folder)
     picture = picture_of(source, report) if isinstance(source, Scenario) else None
     figure = plan_figure(report, picture)
-    for name in ("plan.png", "plan.svg"):
-        save_figure(figure, out / name)
-    write_json(out / "report.json", report.to_dict())
-    return [out / "report.json", out / "plan.png", out / "plan.svg"]
+    writers = (
+        lambda file: write_json(file, report.to_dict()),
+        lambda file: save_figure(figure, file),
+        lambda file: save_figure(figure, file),
+    )
+    return write_together(out, dict(zip(FILES, writers, strict=True)))

@@ -115,7 +115,7 @@ def test_a_bound_comes_with_a_certificate_that_verifies(
     assert found["elements"] == report["optimum"]["elements"]
 
 
-def test_no_certificate_is_left_from_an_earlier_run(
+def test_an_earlier_runs_certificate_is_kept_under_another_name(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     command = ["bound", str(scenario_file), "--out", str(tmp_path / "o")]
@@ -129,7 +129,7 @@ def test_no_certificate_is_left_from_an_earlier_run(
 def test_a_bound_whose_proof_has_a_fault_fails(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A solver that claims too much: its proof is refused, nothing is printed as a result, no file is left."""
+    """A solver that claims too much: its proof is refused, nothing is printed as a result, the report says so."""
     real = write.upper_record
 
     def without_last_leaf(*arguments: Any) -> Any:
@@ -142,7 +142,9 @@ def test_a_bound_whose_proof_has_a_fault_fails(
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "error: upper proof: a case has no leaf" in shown.err
-    assert os.listdir(tmp_path / "o") == []
+    report = _strict((tmp_path / "o" / "report.json").read_text())
+    assert "a case has no leaf" in report["certificate"]["reason"]
+    assert not (tmp_path / "o" / "certificate.json").exists()
 
 
 @pytest.mark.parametrize(
