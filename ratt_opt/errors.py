@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["FileFormatError", "InputError", "ProofError", "printable"]
+__all__ = ["FileFormatError", "InputError", "ProofError", "UndecidedError", "printable"]
 
 _LONGEST_VALUE = 80
 
@@ -46,3 +46,7 @@ class FileFormatError(InputError):
 
 class ProofError(Exception):
     """A certificate does not prove its claim; the text names the first fault."""
+
+
+class UndecidedError(ProofError):
+    """A certificate is neither proved nor refuted within the verifier's limits; the text names the limit."""

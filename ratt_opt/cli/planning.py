@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
-from ratt_opt.cli.terminal import fail, print_json, print_tables, progress
+from ratt_opt.cli.terminal import fail, print_json, print_lines, print_tables, progress
 from ratt_opt.errors import ProofError, printable
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def _bound(
         print_json(report.to_dict())
     else:
         print_tables(report_tables(report, source.element_labels))
-        print("written: " + ", ".join(printable(str(file)) for file in files))
+        print_lines(["written: " + ", ".join(printable(str(file)) for file in files)])
     return fail(f"interrupted; {folder} holds what was proved until then", 130) if report.interrupted else 0
 
 

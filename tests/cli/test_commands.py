@@ -148,23 +148,24 @@ def test_a_bound_whose_proof_has_a_fault_fails(
 
 
 @pytest.mark.parametrize(
-    ("edit", "text"),
+    "case",
     [
-        (lambda text: text[:-30], "complete JSON"),
-        (lambda text: text.replace('"version":1', '"version":2'), "version must be 1"),
-        (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper"),
-        (lambda text: text[:0], "complete JSON"),
+        (lambda text: text[:-30], "complete JSON", 2),
+        (lambda text: text.replace('"version":1', '"version":2'), "version must be 1", 2),
+        (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper", 1),
+        (lambda text: text[:0], "complete JSON", 2),
     ],
 )
 def test_verify_names_the_first_fault_in_one_line(
-    edit: Any, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    case: tuple[Any, str, int], scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    edit, text, code = case
     path = tmp_path / "o" / "certificate.json"
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
     path.write_text(edit(path.read_text()))
     capsys.readouterr()
     for arguments in (["verify", str(path)], ["verify", str(path), "--json"]):
-        assert run(arguments) == 1
+        assert run(arguments) == code
         shown = capsys.readouterr()
         assert shown.out == ""
         assert shown.err.startswith("error: ")
@@ -175,7 +176,7 @@ def test_verify_names_the_first_fault_in_one_line(
 def test_verify_refuses_a_missing_file_and_another_problem(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["verify", str(tmp_path / "none.json")]) == 1
+    assert run(["verify", str(tmp_path / "none.json")]) == 2
     assert "none.json" in capsys.readouterr().err
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
     certificate = str(tmp_path / "o" / "certificate.json")

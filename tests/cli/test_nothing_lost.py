@@ -30,7 +30,7 @@ def _raise(error: BaseException) -> Callable[..., Any]:
 
 
 @pytest.mark.parametrize(
-    ("error", "code", "reason"),
+    "case",
     [
         (InputError("out", "must be a path that can be written", "x (No space left on device)"), 0, "No space left"),
         (MemoryError(), 0, "not enough memory"),
@@ -38,9 +38,10 @@ def _raise(error: BaseException) -> Callable[..., Any]:
     ],
 )
 def test_a_certificate_that_cannot_be_made_is_a_reason_in_the_report(
-    error: BaseException, code: int, reason: str, scenario_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    case: tuple[BaseException, int, str], scenario_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The report and figures of this run are there; the certificate of an earlier run is still the whole earlier one."""
+    """This run's report and figures are there; the certificate of an earlier run is still the whole earlier one."""
+    error, code, reason = case
     out = tmp_path / "o"
     command = ["bound", str(scenario_file), "--out", str(out)]
     assert run(command) == 0
