@@ -69,7 +69,7 @@ def output_file(path: str | Path) -> Path:
         raise InputError("out", "must be a path that can be written", f"{target} ({_reason(error)})") from None
     if not stat.S_ISREG(mode):
         kind = next((name for is_kind, name in _KINDS if is_kind(mode)), "no regular file")
-        raise InputError("out", "must be a new or a regular file", f"{target} ({kind})")
+        raise InputError("out", f"must be a new or a regular file, not {kind}", target)
     return target
 
 

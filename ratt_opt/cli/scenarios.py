@@ -35,8 +35,10 @@ def new(
     ] = True,
 ) -> None:
     """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time)."""
+    from ratt_opt._files import output_file
     from ratt_opt.scenario.files import save_scenario
 
+    output_file(out)
     budgets = (sensing_attacks, link_attacks)
     drawn = {"robots": robots, "targets": targets, "seed": seed}
     if mrclam is None:
