@@ -192,9 +192,14 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
         submodular = False
     else:
         return None, None
-    if submodular:
-        return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
-    return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+    try:
+        if submodular:
+            return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
+        return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+    except InputError:
+        if not isinstance(f, InformationObjective):
+            raise
+        return None, None  # non-decreasing by its formula, not in floating point: nothing can be said about ratios
 
 
 def _guarantees(
