@@ -35,10 +35,10 @@ def verify(
 
     expected = None
     if problem is not None:
-        from ratt_opt.certificates.write import problem_document
+        from ratt_opt.certificates.agreement import same_problem
         from ratt_opt.scenario.files import load_input
 
-        expected = problem_document(load_input(problem).problem(objective))
+        expected = same_problem(load_input(problem), objective)
     verified = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
     if as_json:
         print_json(asdict(verified))

@@ -34,7 +34,8 @@ def verify_certificate(
     Parameters
     ----------
     time_limit : seconds; no limit when ``None``
-    expected_problem : the problem record it must be about (``problem_document(problem)``); any when ``None``
+    expected_problem : the problem record it must be about (``problem_document(problem)``), or a test of the record
+        (``same_problem``); any when ``None``
 
     Raises
     ------
@@ -51,7 +52,8 @@ def verify_certificate(
 def _decide(path: str | Path, expected_problem: object) -> Verified:
     names = "format version problem plan claim prior_eigenvalue upper lower"
     _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", reading.load(path), names)
-    need(expected_problem in (None, problem), "the certificate is about a different problem than the one given")
+    same = expected_problem(problem) if callable(expected_problem) else expected_problem in (None, problem)
+    need(same, "the certificate is about a different problem than the one given")
     low, high = fields("claim", claim, "lower upper")
     lower, upper = exact("claim lower", low), exact("claim upper", high)
     need(lower <= upper, "claim: lower is above upper")
