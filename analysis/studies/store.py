@@ -32,7 +32,7 @@ __all__ = ["Journal", "open_journal", "read_table"]
 
 FORMAT = 2
 CHECKSUM = "checksum"
-"""Last column of the journal; the table does not have it."""
+"""Last column of the journal, with the header's own after its name; the table does not have it."""
 MANIFEST, JOURNAL, TABLE = "study.json", "journal.csv", "table.csv"
 
 
@@ -56,7 +56,7 @@ class Journal:
         assert not any("\n" in cell or "\r" in cell for cell in cells.values())
         if not self._columns:
             self._columns = tuple(cells)
-            self._stream.write(_line((*self._columns, CHECKSUM)))
+            self._stream.write(_line((*self._columns, _last_of_header(self._columns))))
         assert tuple(cells) == self._columns, "every trial of a study has the same columns"
         self._stream.write(_line((*cells.values(), _checksum(cells.values()))))
         self._stream.flush()
@@ -120,6 +120,10 @@ def _opened(path: Path) -> TextIO:
 def _checksum(cells: Iterable[str]) -> str:
     """CRC-32 of the cells, as eight hexadecimal digits."""
     return f"{zlib.crc32(_line(cells).encode()):08x}"
+
+
+def _last_of_header(columns: Iterable[str]) -> str:
+    return f"{CHECKSUM} {_checksum(columns)}"
 
 
 def _line(cells: object) -> str:
@@ -210,7 +214,7 @@ def _read(path: Path, study: Study) -> list[dict[str, str]]:
     if not lines:
         return []
     *header, last = lines[0]
-    if last != CHECKSUM or len(set(header)) < len(header) or not {"case", "trial"} <= set(header):
+    if last != _last_of_header(header) or len(set(header)) < len(header):
         raise InputError(f"{path} line 1", f"must name the columns, last {CHECKSUM}", ",".join(lines[0]))
     names = {case.name for case in study.cases}
     rows = []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
-from ratt_opt.cli.terminal import fail, print_json, print_lines, print_tables, progress
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, progress
 from ratt_opt.errors import ProofError, printable
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ PROOF, EARLIER_PROOF = "certificate.json", "certificate.earlier.json"
 """The certificate of a folder's report, and that of an earlier report when a later one has none."""
 
 
-def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> int:
+def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> None:
     """Plan, attack and bound the paper's small scenario (4 robots, 4 targets), end to end."""
     from ratt_opt._files import output_directory
     from ratt_opt.scenario.files import save_scenario
@@ -32,7 +32,7 @@ def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_
 
     scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=DEMO_SEED)
     save_scenario(scenario, output_directory(out) / "scenario.json")
-    return _bound(scenario, out, certificate=certificate, as_json=as_json)
+    _bound(scenario, out, certificate=certificate, as_json=as_json)
 
 
 def bound(
@@ -45,7 +45,7 @@ def bound(
     gap: Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")] = GAP,
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
-) -> int:
+) -> None:
     """Plan, find the worst attack, bracket the best plan; write report.json, plan.png, plan.svg, certificate.json.
 
     An interrupt (Ctrl-C) leaves a report of what is proved so far, marked so, and exits with 130.
@@ -53,7 +53,7 @@ def bound(
     from ratt_opt.scenario.files import load_input
 
     source = load_input(file)
-    return _bound(source, out, objective, time_limit, gap, certificate=certificate, as_json=as_json)
+    _bound(source, out, objective, time_limit, gap, certificate=certificate, as_json=as_json)
 
 
 def _bound(
@@ -65,7 +65,7 @@ def _bound(
     *,
     certificate: bool,
     as_json: bool,
-) -> int:
+) -> None:
     from ratt_opt._files import output_directory
     from ratt_opt.certificates.write import PENDING
     from ratt_opt.main_job.bound import bound as main_job
@@ -89,7 +89,8 @@ def _bound(
     else:
         print_tables(report_tables(report, source.element_labels))
         print_lines(["written: " + ", ".join(printable(str(file)) for file in files)])
-    return fail(f"interrupted; {folder} holds what was proved until then", 130) if report.interrupted else 0
+    if report.interrupted:
+        raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then")
 
 
 def _certified(report: "BoundReport", folder: Path) -> "BoundReport":

@@ -17,7 +17,7 @@ from ratt_opt.cli.faults import Interrupts, keep_traceback
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
 from ratt_opt.cli.scenarios import new, schema
-from ratt_opt.cli.terminal import OutputError, encode_anything, fail, flush, print_lines
+from ratt_opt.cli.terminal import OutputError, WorkInterrupted, encode_anything, fail, flush, print_lines
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 
 __all__ = ["app", "run"]
@@ -53,6 +53,8 @@ def run(arguments: list[str]) -> int:
         try:
             code = app(arguments, standalone_mode=False)
             flush()
+            if code == INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
+                raise KeyboardInterrupt
         except (KeyboardInterrupt, typer.Abort):
             return fail("interrupted", INTERRUPTED)
         except Exception as error:  # noqa: BLE001  (the last line of defence)
@@ -65,7 +67,13 @@ def _failed(error: Exception, arguments: list[str]) -> int:
     """Say in one line what went wrong, and return the exit code."""
     if isinstance(error, _UsageError):
         return fail(_usage_text(error, arguments), BAD_INPUT)
-    codes = ((InputError, BAD_INPUT), (UndecidedError, UNDECIDED), (ProofError, REFUTED), (OutputError, NO_OUTPUT))
+    codes = (
+        (InputError, BAD_INPUT),
+        (UndecidedError, UNDECIDED),
+        (ProofError, REFUTED),
+        (OutputError, NO_OUTPUT),
+        (WorkInterrupted, INTERRUPTED),
+    )
     code = next((code for kind, code in codes if isinstance(error, kind)), None)
     return fail(keep_traceback(error, arguments), FAULT) if code is None else fail(str(error), code)
 

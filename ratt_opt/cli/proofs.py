@@ -8,7 +8,7 @@ import typer
 
 from ratt_opt.certificates.verifier.work import SECONDS
 from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
-from ratt_opt.cli.terminal import fail, print_json, print_lines, print_tables, progress
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, progress
 from ratt_opt.errors import printable
 
 __all__ = ["audit", "verify"]
@@ -51,7 +51,7 @@ def audit(
     out: OutFolder,
     quick: Annotated[bool, typer.Option("--quick", help="Only the sizes that take seconds.")] = False,
     as_json: JsonFlag = False,
-) -> int:
+) -> None:
     """Decide the paper's proof line by line; write audit.json, audit.html and audit.md.
 
     An interrupt (Ctrl-C) writes what is decided so far, marked incomplete, and exits with 130.
@@ -68,4 +68,5 @@ def audit(
         found = (f"{part.heading} {' '.join(part.sentences)}" for part in ledger.findings() if part.sentences)
         names = ", ".join(printable(str(out / name)) for name in ("audit.json", "audit.html", "audit.md"))
         print_lines([*found, f"written: {names}"])
-    return 0 if ledger.complete else fail(f"interrupted after {len(ledger.records)} entries, which were written", 130)
+    if not ledger.complete:
+        raise WorkInterrupted(f"interrupted after {len(ledger.records)} entries, which were written")

@@ -14,7 +14,21 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-__all__ = ["OutputError", "encode_anything", "fail", "flush", "print_json", "print_lines", "print_tables", "progress"]
+__all__ = [
+    "OutputError",
+    "WorkInterrupted",
+    "encode_anything",
+    "fail",
+    "flush",
+    "print_json",
+    "print_lines",
+    "print_tables",
+    "progress",
+]
+
+
+class WorkInterrupted(Exception):  # noqa: N818  (not an error: what is finished is kept)
+    """The user ended a command that kept what was finished; the text says what."""
 
 
 class OutputError(Exception):
