@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import pytest
 
-from analysis import faults
+from analysis.faults import campaign as faults
+from analysis.faults import kinds
+from analysis.faults.kinds import KINDS
 
-KINDS = ("certificate", "input", "flags", "journal", "full disk", "interrupt", "closed stream")
+SAMPLED = ("certificate", "input", "flags", "journal", "full disk", "interrupt", "closed stream")
+
+
+def _only(kind: str) -> dict[str, tuple[float, faults.Kind]]:
+    return {kind: (1.0, KINDS[kind][1])}
 
 
 @pytest.fixture(scope="module")
@@ -19,13 +26,10 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> faults.Campaign:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # what interrupts leave to be collected
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_sample_of_the_campaign_finds_nothing(
-    kind: str, campaign: faults.Campaign, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(faults, "KINDS", {kind: (1.0, faults.KINDS[kind][1])})
+@pytest.mark.parametrize("kind", SAMPLED)
+def test_a_sample_of_the_campaign_finds_nothing(kind: str, campaign: faults.Campaign) -> None:
     for number in range(20):
-        campaign.run_case(number)
+        campaign.run_case(number, _only(kind))
     assert campaign.faults == {}
     assert sum(count for name, count in campaign.counts.items() if name.startswith(f"{kind}: ")) == 20
 
@@ -44,26 +48,24 @@ def test_the_campaign_sees_a_faulty_program(
 ) -> None:
     def run(arguments: list[str]) -> int:
         del arguments
-        faults.sys.stderr.write(said)
+        sys.stderr.write(said)
         return code
 
     monkeypatch.setattr(faults, "run", run)
-    monkeypatch.setattr(faults, "KINDS", {"flags": (1.0, faults.KINDS["flags"][1])})
     campaign.faults.clear()
-    campaign.run_case(0)
+    campaign.run_case(0, _only("flags"))
     assert found in campaign.faults.pop(0)
 
 
 def test_the_campaign_sees_a_false_certificate(campaign: faults.Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
     """A verifier that believes twice what was proved."""
-    real: Any = faults._truth
+    real: Any = kinds.truth
 
     def twice(document: Any, elements: list[int]) -> tuple[float, float]:
         lower, upper = real(document, elements)
         return lower, 2 * upper
 
-    monkeypatch.setattr(faults, "_truth", twice)
-    monkeypatch.setattr(faults, "_damaged", lambda data, _: data)
-    monkeypatch.setattr(faults, "KINDS", {"certificate": (1.0, faults.KINDS["certificate"][1])})
-    campaign.run_case(0)
+    monkeypatch.setattr(kinds, "truth", twice)
+    monkeypatch.setattr(kinds, "damaged", lambda data, _: data)
+    campaign.run_case(0, _only("certificate"))
     assert "false upper end" in campaign.faults.pop(0)
