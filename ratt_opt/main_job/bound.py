@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import partial
+from time import monotonic
 from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
+from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
@@ -17,26 +20,53 @@ from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
-from ratt_opt.main_job.steps import Steps
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, random_plan
-from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
-from ratt_opt.solvers.nonrobust import nonrobust_search
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
+from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["bound"]
+__all__ = ["Steps", "bound"]
+
+SECONDS_BETWEEN_LINES = 1.0
+"""A search tells where it stands at most so often: about as fast as a person reads a line."""
+
+
+@dataclass(slots=True)
+class Steps:
+    """``tell`` : called with one line of text, or ``None``; ``seconds`` : wall time of each step that has ended."""
+
+    tell: Callable[[str], None] | None
+    seconds: dict[str, float] = field(default_factory=dict)
+    _last_line: float = -SECONDS_BETWEEN_LINES
+
+    @contextmanager
+    def __call__(self, step: str) -> Iterator[None]:
+        """Tell that a step begins, and keep how long it takes."""
+        self._say(step)
+        began = monotonic()
+        yield
+        self.seconds[step] = monotonic() - began
+
+    def search_line(self, nodes: int, lower: float, upper: float) -> None:
+        """Tell where a search stands, unless that was told just now."""
+        if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
+            self._last_line = monotonic()
+            self._say(f"  {nodes} nodes: between {lower:.8g} and {upper:.8g}")
+
+    def _say(self, line: str) -> None:
+        if self.tell is not None:
+            self.tell(line)
+
 
 T = TypeVar("T")
 
@@ -100,7 +130,9 @@ def bound(
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
         optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
-        best = _kept(budget, lambda: _assess_optimum(problem, optimum, budget.part(ATTACK_SHARE)))
+        found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
+        known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
+        best = _kept(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
     with steps("curvature and guarantees"):
         k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
         part = budget.part(CURVATURE_SHARE)
@@ -178,11 +210,6 @@ def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
 
 
-def _assess_optimum(problem: Problem, optimum: MaxMinResult, budget: Budget) -> PlanAssessment:
-    plan = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-    return assess(problem, "maxmin", plan, budget, known=optimum.worst_case)
-
-
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
     """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
     f, owners = problem.objective, problem.robot
@@ -203,13 +230,7 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
 
 
 def _guarantees(
-    problem: Problem,
-    robust: PlanAssessment,
-    alpha_cs: int,
-    budget: Budget,
-    *,
-    k: Curvature | None,
-    c: Curvature | None,
+    problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
     found = all_guarantees(problem, alpha_cs, k=k, c=c)

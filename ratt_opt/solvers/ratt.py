@@ -1,4 +1,4 @@
-"""Robust active target tracking: bait for the attacked robots, greedy for the others."""
+"""Robust active target tracking: bait for the attacked robots, greedy for the others; and what it is compared with."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.problem import Plan, Problem
 
-__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
-
+__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "greedy", "myopic", "random_plan", "ratt"]
 
 MILP_NODES = 1_000
 """Nodes of the integer program for ``n_max`` on large graphs that are not complete; keeps RATT deterministic."""
@@ -85,3 +84,23 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
         chosen = np.append(chosen, pick)
         candidates = candidates[problem.robot[candidates] != problem.robot[pick]]
     return evaluations
+
+
+def greedy(problem: Problem) -> Plan:
+    """Standard greedy plan that ignores attacks: RATT with ``alpha = 0``.
+
+    Source: Fisher, Nemhauser, Wolsey 1978; the algorithm Greedy of ratt.tex, Section VI.
+    """
+    return bait_and_greedy(problem, 0)
+
+
+def myopic(problem: Problem) -> Plan:
+    """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
+    return bait_and_greedy(problem, problem.n_robots)
+
+
+def random_plan(problem: Problem, *, seed: int) -> Plan:
+    """Uniformly random element of every robot. Source: the algorithm Random of ratt.tex, Section VI."""
+    rng = np.random.default_rng(check_integer("seed", seed, low=0))
+    elements = np.array([choice[rng.integers(len(choice))] for choice in problem.choices])
+    return Plan(elements=readonly(elements), evaluations=0)
