@@ -58,12 +58,11 @@ def run(arguments: list[str]) -> int:
         except (KeyboardInterrupt, typer.Abort):
             return fail("interrupted", INTERRUPTED)
         except Exception as error:  # noqa: BLE001  (the last line of defence)
-            # Compiled code and imports turn an interrupt into errors of their own.
-            return fail("interrupted", INTERRUPTED) if interrupts.happened else _failed(error, arguments)
+            return _failed(error, arguments, interrupted=interrupts.happened)
     return code if isinstance(code, int) else 0
 
 
-def _failed(error: Exception, arguments: list[str]) -> int:
+def _failed(error: Exception, arguments: list[str], *, interrupted: bool) -> int:
     """Say in one line what went wrong, and return the exit code."""
     if isinstance(error, _UsageError):
         return fail(_usage_text(error, arguments), BAD_INPUT)
@@ -75,7 +74,10 @@ def _failed(error: Exception, arguments: list[str]) -> int:
         (WorkInterrupted, INTERRUPTED),
     )
     code = next((code for kind, code in codes if isinstance(error, kind)), None)
-    return fail(keep_traceback(error, arguments), FAULT) if code is None else fail(str(error), code)
+    if code is not None:
+        return fail(str(error), code)
+    # Compiled code and imports turn an interrupt into errors of their own.
+    return fail("interrupted", INTERRUPTED) if interrupted else fail(keep_traceback(error, arguments), FAULT)
 
 
 def _usage_text(error: Any, arguments: list[str]) -> str:
