@@ -57,6 +57,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
             "stop": optimum.stop.value,
             **_shared(report, report.best),
         },
+        "interrupted": report.interrupted,
         "certificate": _certificate(report.certificate),
         "certified_ratio": _number(report.certified_ratio),
         "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},

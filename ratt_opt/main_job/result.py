@@ -83,6 +83,7 @@ class BoundReport:
     ``views`` : the recommended plan under other attacks too, for maps: its ``worst`` case; the worst found that spares
     one of the robots or links which that attacks (``next worst``, where the worst attacks anything); and ``none``.
     ``seeds`` : of everything drawn at random.
+    ``interrupted`` : the user ended the searches; the brackets hold all the same.
 
     Two reports are equal when they say the same, whenever that was and whatever time it took.
     """
@@ -103,6 +104,7 @@ class BoundReport:
     source: object = None
     views: Mapping[str, PlanAssessment] = field(default_factory=dict)
     seeds: Mapping[str, int] = field(default_factory=dict)
+    interrupted: bool = False
 
     @property
     def objective(self) -> str:

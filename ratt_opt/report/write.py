@@ -6,7 +6,7 @@ import csv
 import shutil
 from typing import TYPE_CHECKING
 
-from ratt_opt._files import output_directory, write_atomically, write_json
+from ratt_opt._files import output_directory, write_atomically, write_json, write_together
 from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.page.page import report_page
 from ratt_opt.report.picture import picture_of
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
     from ratt_opt.main_job.result import BoundReport
 
-__all__ = ["write_report"]
+__all__ = ["FILES", "write_report", "write_verdict"]
+
+FILES = ("report.json", "report.html", "plan.csv", "plan.png", "plan.svg")
+"""All that :func:`write_report` writes beside the certificate."""
 
 
 def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
@@ -31,15 +34,15 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
     """
     out = output_directory(folder)
     figure = plan_figure(report, picture_of(report.source, report))
-    files = [
-        write_json(out / "report.json", report.to_dict()),
-        write_atomically(out / "plan.csv", lambda file: _write_plan(report, file)),
-    ]
     page = report_page(report)
-    files.append(write_atomically(out / "report.html", lambda file: file.write_text(page, encoding="utf-8")))
-    for name in ("plan.png", "plan.svg"):
-        save_figure(figure, out / name)
-        files.append(out / name)
+    writers = (
+        lambda file: write_json(file, report.to_dict()),
+        lambda file: file.write_text(page, encoding="utf-8"),
+        lambda file: _write_plan(report, file),
+        lambda file: save_figure(figure, file),
+        lambda file: save_figure(figure, file),
+    )
+    files = write_together(out, dict(zip(FILES, writers, strict=True)))
     proof = report.certificate.certificate
     if proof is not None:
         copy = out / "certificate.json"
@@ -47,6 +50,16 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
             write_atomically(copy, lambda file: shutil.copyfile(proof.path, file))
         files.append(copy)
     return files
+
+
+def write_verdict(report: BoundReport, folder: Path) -> None:
+    """Write again what shows the certificate's verdict: ``report.json`` and ``report.html``."""
+    page = report_page(report)
+    writers = (
+        lambda file: write_json(file, report.to_dict()),
+        lambda file: file.write_text(page, encoding="utf-8"),
+    )
+    write_together(folder, dict(zip(FILES[: len(writers)], writers, strict=True)))
 
 
 def _write_plan(report: BoundReport, path: Path) -> None:

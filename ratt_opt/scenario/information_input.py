@@ -64,6 +64,7 @@ class InformationInput(ProblemRecord):
         missing = next(i for i in range(len(self.robot) + 1) if i not in owners)
         if missing <= max(self.robot):
             raise InputError("robot", "must give every robot at least one element", f"none for robot {missing}")
+        self._check_sizes(len(self.robot), len(self.prior[0]))
         self._check_links()
         self._check_lengths()
         self.problem()

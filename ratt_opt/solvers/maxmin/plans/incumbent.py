@@ -33,6 +33,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
     base = objective.value(points)
     value = float(pool.outcome_values(base).min(initial=np.inf))
     unchanged, i = 0, 0
+    seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
     while unchanged < problem.n_robots:
         choice = problem.choices[i]
         rows = np.flatnonzero(pool.membership()[:, i])
@@ -48,6 +49,9 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
                 current[i], value, base = others[k], float(worst[k]), values[k]
                 points[rows] += change[k]
                 unchanged = 0
+                if (key := current.tobytes()) in seen:
+                    return current
+                seen.add(key)
         i = (i + 1) % problem.n_robots
     return current
 
