@@ -10,16 +10,19 @@ import argparse
 import json
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.findings import Finding, findings
-from ratt_opt.audit.ratio import pattern_free_bound
-from ratt_opt.audit.report_markdown import finding_lines
+from ratt_opt.audit.report.findings import Finding, findings
+from ratt_opt.audit.report.markdown_page import finding_lines
+from ratt_opt.audit.report.words import title
+from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from ratt_opt.audit.report.document import LedgerDocument, WorstRecord
 
 __all__ = ["CASES", "page", "ratio_table", "realistic_table"]
 
@@ -60,7 +63,7 @@ python -m analysis.audit_page --ledger ledger --figure worst_ratio.png --out doc
 """
 
 
-def page(document: dict[str, Any], ratios: Finding, figure: str = "") -> str:
+def page(document: LedgerDocument, ratios: Finding, figure: str = "") -> str:
     """Return the page as Markdown."""
     counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
     lines = [OPENING, f"The ledger has {len(document['entries'])} entries: {counts}.", ""]
@@ -71,18 +74,15 @@ def page(document: dict[str, Any], ratios: Finding, figure: str = "") -> str:
     return "\n".join(lines)
 
 
-def realistic_table(document: dict[str, Any]) -> Finding:
+def realistic_table(document: LedgerDocument) -> Finding:
     """Refuted statements on EKF objectives."""
     table = [("refuted", "criterion", "Section VI scenarios that break it", "worst geometry found")]
     for record in document["entries"]:
         found = record.get("realistic")
         if record["verdict"] != "refuted" or not found:
             continue
-        reading = f" ({record['reading']})" if record["reading"] else ""
         seen = f"{found['section_vi_violations']} of {found['section_vi_instances']}"
-        table.append(
-            (f"{record['label']}, {record['kind']}{reading}", found["objective"], seen, _worst(found["worst"]))
-        )
+        table.append((title(record), found["objective"], seen, _worst(found["worst"])))
     text = (
         "A counterexample may be far from any robot. So each refuted statement was tried on the trace (non-decreasing) "
         "or log-det (submodular) objectives of Section VI, and on geometries moved to break it; violations are "
@@ -91,7 +91,7 @@ def realistic_table(document: dict[str, Any]) -> Finding:
     return Finding(heading="Do real objectives break them?", sentences=(text,), table=tuple(table))
 
 
-def _worst(worst: dict[str, Any] | None) -> str:
+def _worst(worst: WorstRecord | None) -> str:
     if worst is None:
         return "-"
     size = worst["relative_violation"]
@@ -120,7 +120,7 @@ def _ratio_rows(cases: Sequence[tuple[str, int, int, int]]) -> Iterator[tuple[st
         ]
         ends = [(str(b.exact_lower), str(b.exact_upper)) for b in brackets]
         exact = [low if low == high else f"[{low}, {high}]" for low, high in ends]
-        bounds = (theorem1(family, CURVATURE, caa(n, alpha_c).alpha_cs), pattern_free_bound(CURVATURE, family))
+        bounds = (theorem1(family, CURVATURE, caa(n, alpha_c).alpha_cs), pattern_free_ratio(CURVATURE, family))
         yield (family, str(n), str(alpha_s), str(alpha_c), *exact, *map(str, bounds))
 
 

@@ -22,9 +22,10 @@ from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_atta
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.solvers.ratt import ratt
 
 if TYPE_CHECKING:
@@ -41,7 +42,6 @@ LARGE = ((20, 20, 6, 47), (20, 20, 10, 63), (30, 25, 10, 108), (30, 25, 15, 145)
 SPARSE = ((10, 15, 2, 5, 4.0), (10, 15, 3, 8, 4.0), (30, 25, 5, 10, 6.0), (30, 25, 10, 20, 6.0))
 """As above, and the mean number of links a robot has: robots within a range are linked."""
 
-OBJECTIVES = ("trace", "logdet", "maxeig")
 LARGEST_SPLIT = 12
 """Most robots for which the attacks that minimise the largest group are searched."""
 
@@ -173,7 +173,7 @@ def main() -> None:
         name: [
             one_run(setting, objective, seed, degree)
             for setting, degree, seeds in cases
-            for objective in OBJECTIVES
+            for objective in CRITERIA
             for seed in range(seeds)
         ]
         for name, cases in parts.items()

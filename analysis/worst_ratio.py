@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.ratio import pattern_free_bound
+from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -93,7 +93,7 @@ def sweep(
                     stop=found.stop.value,
                     lower_from=found.lower_from,
                     theorem1=float(theorem1(family, k, caa(n, alpha_c).alpha_cs)),
-                    pattern_free=float(pattern_free_bound(k, family)),
+                    pattern_free=float(pattern_free_ratio(k, family)),
                 )
                 points.append(point)
     return points

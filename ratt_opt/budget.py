@@ -94,6 +94,11 @@ class Budget:
             return Stop.NODES
         return None
 
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is up or the user interrupted; nodes are not asked."""
+        return self.stop() not in {None, Stop.NODES}
+
     def check(self) -> None:
         """Raise :class:`OutOfBudget` when the time is up or the user interrupted; nodes are not asked."""
         if (stop := self.stop()) not in {None, Stop.NODES}:

@@ -27,6 +27,8 @@ class Rows:
     """``lower <= A x <= upper`` with A by rows: row ``i`` has ``values[starts[i]:starts[i+1]]`` in those ``columns``.
 
     ``lower``, ``upper`` : (m,); ``starts`` : (m + 1,); ``columns``, ``values`` : (entries,)
+    ``by_columns`` : A is given the other way round, ``starts`` (n + 1,) and ``columns`` the row of each entry; among
+    several optima HiGHS's choice depends on the order of the entries, which it keeps in this form only
     """
 
     lower: FloatArray
@@ -34,6 +36,7 @@ class Rows:
     starts: IntArray
     columns: IntArray
     values: FloatArray
+    by_columns: bool = False
 
 
 def rows_of(entries: Sequence[tuple[Sequence[int], Sequence[float]]], lower: ArrayLike, upper: ArrayLike = inf) -> Rows:
@@ -105,7 +108,8 @@ class LinearProgram:
         if rows is not None:
             model.num_row_ = len(rows.lower)
             model.row_lower_, model.row_upper_ = rows.lower, rows.upper
-            model.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
+            order = highspy.MatrixFormat
+            model.a_matrix_.format_ = order.kColwise if rows.by_columns else order.kRowwise
             model.a_matrix_.start_ = rows.starts
             model.a_matrix_.index_ = rows.columns
             model.a_matrix_.value_ = rows.values

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._validation import IntArray, check_integer, readonly
+from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
@@ -39,18 +40,20 @@ class Attack:
                 raise InputError("attack link", "must be (i, j) with i < j", link)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Plan:
-    """One element per robot.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Plan(ByValue):
+    """One element per robot; two plans are equal when all their fields are.
 
     ``elements`` : (N,) flat element indices, robot by robot.
     ``evaluations`` : set-function values the planner asked for.
     ``bait`` : robots that RATT gave their individually best element, ascending; empty for other planners.
+    ``alpha_cs`` : sensing attacks that RATT took the link attacks to be worth; ``None`` for other planners.
     """
 
     elements: IntArray
     evaluations: int
     bait: tuple[int, ...] = ()
+    alpha_cs: int | None = None
 
 
 def _of_threat(name: str) -> Any:
@@ -212,8 +215,11 @@ class Problem:
         """
         plan = self.check_plan(elements)
         self.check_attack(attack)
-        groups = [group - attack.sensing for group in self.communication.groups(attack.links)]
-        return max(groups, key=lambda group: self.objective(plan[sorted(group)]))
+        return max(self.groups_left(attack), key=lambda group: self.objective(plan[sorted(group)]))
+
+    def groups_left(self, attack: Attack) -> list[frozenset[int]]:
+        """Non-blinded robots of every group, by the group's lowest robot; empty where all of one are blinded."""
+        return [group - attack.sensing for group in self.communication.groups(attack.links)]
 
 
 def _check_owners(robot: ArrayLike, n_elements: int) -> IntArray:

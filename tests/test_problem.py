@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, InputError, Problem, TableFunction
+from ratt_opt import Attack, InputError, Plan, Problem, TableFunction
 
 MODULAR = TableFunction([bin(mask).count("1") for mask in range(16)])
 WEIGHTED = TableFunction([sum(10.0**i for i in range(4) if mask >> i & 1) for mask in range(16)])
@@ -123,3 +127,21 @@ def test_attacks_outside_the_threat_are_refused(attack: Attack, text: str) -> No
 def test_a_link_is_given_lowest_first() -> None:
     with pytest.raises(InputError, match="i < j"):
         Attack(links=frozenset({(2, 1)}))
+
+
+def test_plans_are_values() -> None:
+    plan = Plan(elements=np.array([0, 3]), evaluations=4, bait=(1,), alpha_cs=1)
+    other = pickle.loads(pickle.dumps(plan))
+    assert plan == other
+    assert len({plan, other, copy.deepcopy(plan)}) == 1
+    assert plan != replace(plan, elements=np.array([0, 2]))
+    assert plan != replace(plan, alpha_cs=None)
+    assert repr(plan) == "Plan(elements=[0, 3], evaluations=4, bait=(1,), alpha_cs=1)"
+    assert repr(replace(plan, elements=np.arange(20))).startswith(
+        "Plan(elements=[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, ... 8 more], "
+    )
+
+
+def test_groups_left_are_the_non_blinded_robots_of_each_component() -> None:
+    problem = Problem(MODULAR, [0, 0, 1, 2], nx.path_graph(3), 1, 1)
+    assert problem.groups_left(Attack(frozenset({0}), frozenset({(0, 1)}))) == [frozenset(), frozenset({1, 2})]

@@ -20,13 +20,15 @@ import numpy as np
 
 from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
-from ratt_opt.attackers.bracket import Bracket, Budget
+from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.weakest_set.compact import CompactTeam
-from ratt_opt.attackers.weakest_set.forced_group import forced_group_bound
-from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.budget import Budget
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.ratt import ratt
@@ -187,10 +189,10 @@ def sparse_attacks(seeds: int, seconds: float) -> list[dict[str, object]]:
 
 def _gap_by_sizes(problem: Problem, plan: np.ndarray) -> float:
     """Relative width of the bracket that the forced group size and simple heuristics give."""
-    values = PlanValues(problem, plan)
     first = greedy_attack(problem, plan)
-    bracket = Bracket(first.attack, first.upper, 0.0)
-    forced_group_bound(problem, values, CompactTeam.of(problem.objective, plan), bracket, Budget(None, None))
+    bracket = AttackBracket(first.attack, first.upper, 0.0)
+    task = AttackTask(problem, PlanValues(problem, plan), bracket, Budget())
+    forced_group_bound(task, PlanarTeam.of(problem.objective, plan))
     return (bracket.upper - bracket.lower) / bracket.upper
 
 

@@ -19,12 +19,12 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
 from ratt_opt import caa, run_audit, worst_case_ratio
-from ratt_opt.audit.ratio_roles import roles
+from ratt_opt.audit.worst_ratio.skeleton import skeleton
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ratt_opt.audit.ratio_roles import Groups, Roles
+    from ratt_opt.audit.worst_ratio.skeleton import Groups, Skeleton
 
 CURVATURE = Fraction(1, 2)
 SMALL = ((3, 1, 0), (3, 0, 2), (4, 1, 0), (4, 0, 3))
@@ -67,14 +67,14 @@ def _ratio_line(family: str, n: int, alpha_s: int, alpha_c: int, *, with_plain: 
 
 def plain_ratio(family: str, n_robots: int, alpha_s: int, alpha_c: int) -> float:
     """The same number by one integer program for every attack, in floating point."""
-    parts = roles(n_robots, alpha_s, alpha_c, min(n_robots, alpha_s + caa(n_robots, alpha_c).alpha_cs))
+    parts = skeleton(n_robots, alpha_s, alpha_c, min(n_robots, alpha_s + caa(n_robots, alpha_c).alpha_cs))
     return min(_program(parts, family, attack) for attack in parts.outcomes)
 
 
-def _program(parts: Roles, family: str, attack: Groups) -> float:
+def _program(parts: Skeleton, family: str, attack: Groups) -> float:
     """Columns: the ratio, every value, every largest marginal, one binary a group ("the optimum reaches 1 here")."""
     n = 2 * parts.n_robots
-    groups = sorted({group for outcome in parts.outcomes for group in outcome})
+    groups = parts.groups
     marginal, binary = 1 << n, (1 << n) + n
     rows = [*_class_rows(family, n, marginal)]
     rows += [_difference(a, b) for a, b in parts.comparisons]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from analysis.benchmarks.attack import SETTINGS, processor_seconds
 from analysis.tables import print_table
-from ratt_opt.certificates.verify import verify_certificate
+from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.write import certify
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.maxmin.solve import solve_maxmin

@@ -28,7 +28,6 @@ from ratt_opt import (
     random_scenario,
     total_curvature,
 )
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.information import InformationObjective
 
 SEEDS = range(5)
@@ -93,7 +92,7 @@ def bracket(robots: int, targets: int, kind: str, seed: int, *, stretched: bool,
     assert isinstance(f, InformationObjective)
     if stretched:
         f = anisotropic(f, seed)
-    measure = curvature if isinstance(f, LogDetObjective) else total_curvature
+    measure = curvature if f.is_submodular else total_curvature
     busy, began = time.process_time(), time.perf_counter()
     found = measure(f, problem.robot, gap=gap, time_limit=NO_LIMIT)
     busy, wall = time.process_time() - busy, time.perf_counter() - began

@@ -76,16 +76,15 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     for case, name in zip(STUDY.cases, FIGURES, strict=True):
         kept = select(rows, case=case.name)
         shown = next((row for row in kept if row["ratt/exact/value"] != row["nonrobust_optimum/exact/value"]), kept[0])
-        cells = [f"{planner}/{attacker}" for attacker in STUDY.attackers for planner in STUDY.planners]
-        pictures = [json.loads(shown[f"{cell}/picture"]) for cell in cells]
+        cells = [(planner, attacker) for attacker in STUDY.attackers for planner in STUDY.planners]
+        pictures = [json.loads(shown[f"{planner}/{attacker}/picture"]) for planner, attacker in cells]
         window = common_limits(pictures)
         (left, right), (bottom, top) = window["xlim"], window["ylim"]
         figure = new_figure(11, 2.4 + 2 * min(4.6, 4.9 * (top - bottom) / (right - left)))
-        for axes, cell, picture in zip(figure.subplots(2, 2).flat, cells, pictures, strict=True):
+        for axes, (planner, attacker), picture in zip(figure.subplots(2, 2).flat, cells, pictures, strict=True):
             draw_scene(axes, picture)
             axes.set(**window)
-            planner, attacker = cell.split("/")
-            trace, error = float(shown[f"{cell}/trace"]), squared_error(picture)
+            trace, error = float(shown[f"{planner}/{attacker}/trace"]), squared_error(picture)
             numbers = f"trace {trace:.3g} m², squared error {error:.3g} m² per target"
             axes.set_title(f"{LABELS[planner]}, {'no attack' if attacker == 'none' else 'worst attack'}\n{numbers}")
         figure.legend(handles=legend(), loc="outside lower center", ncols=4, frameon=False)

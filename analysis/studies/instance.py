@@ -18,9 +18,10 @@ from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, nonrobust_optimum, random_plan
+from ratt_opt.solvers.baselines import greedy, myopic, random_plan
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
+from ratt_opt.solvers.nonrobust import nonrobust_optimum
 from ratt_opt.solvers.ratt import ratt
 from ratt_opt.stopping import Stop
 
@@ -98,7 +99,7 @@ class Instance:
         """Hash of everything the planners see: equal for equal scenarios, budgets and objectives."""
         problem = self.problem
         parts = [array.tobytes() for array in (problem.robot, self.objective.prior, self.objective.information)]
-        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {type(self.objective)}"
+        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {self.objective.name}"
         return hashlib.sha256(b"".join([*parts, threat.encode()])).hexdigest()[:16]
 
     def trace(self, plan: IntArray, attack: Attack) -> float:

@@ -1,1 +1,6 @@
-"""The inner minimisation: attacks on a given plan."""
+"""The inner minimisation: the attack that leaves a plan least, exactly or with a bracket.
+
+Open ``exact.py`` first: it chooses between the searches of ``by_size`` (complete graphs), ``by_partition`` (others) and
+the bound of ``forced_group.py``; ``weakest_set`` answers what they ask about one group, and ``heuristics`` finds first
+attacks. ``survey.py``, ``criticality.py`` and ``breaking_budgets.py`` ask the exact attacker many questions.
+"""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_finite
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.budget import Budget
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -39,6 +40,7 @@ def breaking_budgets(
     *,
     max_nodes: int | None = None,
     time_limit: float | None = None,
+    budget: Budget | None = None,
 ) -> tuple[BreakingBudget, ...]:
     """Smallest attack budgets that push a plan strictly below ``value``: none in the list contains another.
 
@@ -50,6 +52,8 @@ def breaking_budgets(
     ----------
     value : [unit of the objective]
     max_nodes, time_limit : for each exact attack
+    budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
+        the attacks left are bounded without a search
 
     Raises
     ------
@@ -58,10 +62,11 @@ def breaking_budgets(
     plan = problem.check_plan(elements)
     goal = float(check_finite("value", value, ndim=0))
     n_links = len(problem.communication.links)
+    whole = Budget.inside(budget)
 
     def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
         asked = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
-        return worst_case_attack(asked, plan, max_nodes=max_nodes, time_limit=time_limit)
+        return worst_case_attack(asked, plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
 
     found: list[BreakingBudget] = []
     most_links = n_links

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
 from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.budget import Budget
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike
 
@@ -43,6 +44,7 @@ def criticality_ranking(
     links: Iterable[Link] | None = None,
     max_nodes: int | None = None,
     time_limit: float | None = None,
+    budget: Budget | None = None,
 ) -> tuple[Criticality, ...]:
     """Rank robots and links: largest certain gain from protection first, then largest loss, then robots by index.
 
@@ -53,13 +55,20 @@ def criticality_ranking(
     ----------
     links : links to rank; all by default
     max_nodes, time_limit : for each exact attack
+    budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
+        the attacks left are bounded without a search
 
     Raises
     ------
     InputError : the plan is not one element per robot, a link does not exist, or a budget is not a number >= 0.
     """
     values = PlanValues(problem, elements)
-    base = worst_case_attack(problem, values.plan, max_nodes=max_nodes, time_limit=time_limit)
+    whole = Budget.inside(budget)
+
+    def attacked(asked: Problem) -> AttackResult:
+        return worst_case_attack(asked, values.plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
+
+    base = attacked(problem)
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
     targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
@@ -70,7 +79,7 @@ def criticality_ranking(
     worth = team_values(values, [untouched, *single])
     rows = []
     for target, left in zip(targets, worth[1:].tolist(), strict=True):
-        after = _protected(problem, values, base, target, max_nodes, time_limit)
+        after = _protected(problem, target, base, attacked)
         gain_lower, gain_upper = max(after.lower - base.upper, 0.0), max(after.upper - base.lower, 0.0)
         if after is base:
             gain_lower = gain_upper = 0.0
@@ -80,21 +89,12 @@ def criticality_ranking(
     return tuple(rows[k] for k in order)
 
 
-def _protected(  # noqa: PLR0917
-    problem: Problem,
-    values: PlanValues,
-    base: AttackResult,
-    target: int | Link,
-    max_nodes: int | None,
-    time_limit: float | None,
+def _protected(
+    problem: Problem, target: int | Link, base: AttackResult, attacked: Callable[[Problem], AttackResult]
 ) -> AttackResult:
     """The worst case once ``target`` is protected; ``base`` itself where its attack stays possible."""
+    if target not in (base.attack.sensing if isinstance(target, int) else base.attack.links):
+        return base
     if isinstance(target, int):
-        if target not in base.attack.sensing:
-            return base
-        safer = replace(problem, protected_robots=problem.protected_robots | {target})
-    else:
-        if target not in base.attack.links:
-            return base
-        safer = replace(problem, protected_links=problem.protected_links | {target})
-    return worst_case_attack(safer, values.plan, max_nodes=max_nodes, time_limit=time_limit)
+        return attacked(replace(problem, protected_robots=problem.protected_robots | {target}))
+    return attacked(replace(problem, protected_links=problem.protected_links | {target}))

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
-from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, LARGEST_THRESHOLD_SEARCH, threshold_search
+from ratt_opt.attackers.bracket import AttackBracket
+from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
 from ratt_opt.attackers.by_size.unprotected_links import unprotected_bound
+from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.weakest_set.compact import CompactTeam
-from ratt_opt.attackers.weakest_set.forced_group import forced_group_bound
+from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
@@ -24,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["worst_case_attack"]
 
-LARGEST_TABULATED = 15
+THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
 
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
@@ -32,7 +35,12 @@ FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 
 
 def worst_case_attack(
-    problem: Problem, elements: ArrayLike, *, max_nodes: int | None = None, time_limit: float | None = None
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    max_nodes: int | None = None,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -40,10 +48,10 @@ def worst_case_attack(
       objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
       threshold). The result relies on nothing.
     - Larger teams with two-dimensional targets on a complete graph without protected links: branch
-      and bound (``large_team.py``; a node is a branch or a partial set). Relies on a non-decreasing
+      and bound (``by_size``; a node is a branch or a partial set). Relies on a non-decreasing
       objective, which the three criteria are.
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
-      partitions into groups and who is blinded in each (``split_search.py``; a node is a group tried or a
+      partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_links.py``). Relies on a non-decreasing objective, as above.
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
@@ -59,6 +67,7 @@ def worst_case_attack(
     elements : (N,) element chosen for each robot
     max_nodes : nodes that may be explored; unlimited by default
     time_limit : seconds, checked between nodes; unlimited by default
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
@@ -66,18 +75,18 @@ def worst_case_attack(
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
-    budget = Budget(max_nodes, time_limit)
+    own = Budget.inside(budget, time_limit, max_nodes)
     values = PlanValues(problem, elements)
     bracket = None
     try:
         first = bounded_rational_attack(problem, values.plan)
-        bracket = Bracket(first.attack, first.upper, first.lower)
+        bracket = AttackBracket(first.attack, first.upper, first.lower)
         values.evaluations = first.evaluations
-        stop = _search(problem, values, bracket, budget)
+        stop = _search(AttackTask(problem, values, bracket, own))
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
-        stop = Stop.INTERRUPTED
+        stop = own.interrupt()
     bracket = bracket or _without_attack(problem, values)
     return AttackResult(
         attack=bracket.attack,
@@ -85,44 +94,46 @@ def worst_case_attack(
         upper=bracket.upper,
         stop=stop,
         evaluations=values.evaluations,
-        nodes=budget.nodes,
+        nodes=own.nodes,
     )
 
 
-def _without_attack(problem: Problem, values: PlanValues) -> Bracket:
+def _without_attack(problem: Problem, values: PlanValues) -> AttackBracket:
     """The bracket that no attack at all gives."""
     values.evaluations += len(problem.communication.groups())
-    return Bracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
+    return AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
 
 
-def _search(problem: Problem, values: PlanValues, bracket: Bracket, budget: Budget) -> Stop:
+def _search(task: AttackTask) -> Stop:
+    problem, plan = task.problem, task.values.plan
     if problem.n_robots <= LARGEST_PLAIN:
-        return threshold_search(problem, values, bracket, budget)
-    team = CompactTeam.of(problem.objective, values.plan)
+        return threshold_search(task)
+    team = PlanarTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
-        from ratt_opt.attackers.by_size.large_team import LargeTeamSearch  # compiles
+        from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
 
-        return LargeTeamSearch(problem, team, values, bracket, budget).run()
-    better = greedy_attack(problem, values.plan)
-    bracket.offer(better.attack, better.upper)
+        return SizeVectorSearch(task, team).run()
+    better = greedy_attack(problem, plan)
+    task.bracket.offer(better.attack, better.upper)
+    task.budget.check()
     groups = _few_groups(problem, team)
-    if problem.n_robots <= LARGEST_THRESHOLD_SEARCH and groups is None:
-        return threshold_search(problem, values, bracket, budget)
+    if problem.n_robots <= LARGEST_COMPILED and groups is None:
+        return threshold_search(task)
     if team is not None and problem.communication.is_complete:
-        unprotected_bound(problem, team, values, bracket, budget)
-    stop = forced_group_bound(problem, values, team, bracket, budget)
+        unprotected_bound(task, team)
+    stop = forced_group_bound(task, team)
     if team is None or groups is None or stop is Stop.CLOSED:
         return stop
     from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
-    return SplitSearch(problem, team, groups, values, bracket, budget).run()
+    return SplitSearch(task, team, groups).run()
 
 
-def _few_groups(problem: Problem, team: CompactTeam | None) -> SeparableGroups | None:
+def _few_groups(problem: Problem, team: PlanarTeam | None) -> SeparableGroups | None:
     """The groups an attack may leave, where they are few enough to search partitions of the team."""
-    if team is None or problem.n_robots <= LARGEST_TABULATED:
+    if team is None or problem.n_robots <= THRESHOLDS_FASTER:
         return None
     from ratt_opt.graph.separable_groups import separable_groups  # compiles
 
-    few = FEW_GROUPS if problem.n_robots <= LARGEST_THRESHOLD_SEARCH else MANY_GROUPS
+    few = FEW_GROUPS if problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
     return separable_groups(problem.threat, few)

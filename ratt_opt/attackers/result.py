@@ -18,6 +18,7 @@ class AttackResult:
 
     ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is
     ``EXHAUSTED`` or ``CLOSED``; it is 0 (the value of no measurement) for a heuristic.
+    Results are equal when all their fields are.
     """
 
     attack: Attack
@@ -26,3 +27,8 @@ class AttackResult:
     stop: Stop
     evaluations: int
     nodes: int = 0
+
+    def __repr__(self) -> str:
+        attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"
+        cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
+        return f"AttackResult([{self.lower:.6g}, {self.upper:.6g}], {attack}, {self.stop.value}, {cost})"

@@ -13,22 +13,34 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
 __all__ = ["attack_survey"]
 
 
 def attack_survey(
-    problem: Problem, elements: ArrayLike, *, time_limit: float | None = None, seed: int = 0
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    time_limit: float | None = None,
+    seed: int = 0,
+    budget: Budget | None = None,
 ) -> dict[str, AttackResult]:
     """Attack one plan exactly and with every heuristic: name -> result.
+
+    Parameters
+    ----------
+    time_limit : seconds for the exact attack; unlimited by default
+    seed : of the random attack
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
     InputError : the plan is not one element per robot.
     """
     return {
-        "exact": worst_case_attack(problem, elements, time_limit=time_limit),
+        "exact": worst_case_attack(problem, elements, time_limit=time_limit, budget=budget),
         "bounded rational": bounded_rational_attack(problem, elements),
         "greedy": greedy_attack(problem, elements),
         "random": random_attack(problem, elements, seed=seed),

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["GroupCut", "combined_bound", "tangent_cut"]
 
@@ -47,13 +46,7 @@ class GroupCut:
     target: int | None = None
 
 
-def tangent_cut(
-    problem: Problem,
-    objective: InformationObjective,
-    group: Iterable[int],
-    point: FloatArray,
-    target: int | None = None,
-) -> GroupCut:
+def tangent_cut(problem: Problem, group: Iterable[int], point: FloatArray, target: int | None = None) -> GroupCut:
     """Bound the value of one group by the tangent at the posterior information ``point`` (M, d, d).
 
     ``target`` : for the max-eigenvalue criterion, the target to use; the worst one where ``None``.
@@ -61,7 +54,7 @@ def tangent_cut(
     The criterion's own tangent: a Fenchel form that holds for any ``Y`` (``setfunctions/criteria``), so that an
     inexact point costs strength, never validity; for a criterion without one, value and supergradient there.
     """
-    members = tuple(sorted(group))
+    members, objective = tuple(sorted(group)), problem.information_objective
     if target is None:
         target = objective.tangent_targets(point, -np.inf, 1)[0]
     if not members:  # the value of no measurement is known exactly

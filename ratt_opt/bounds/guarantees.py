@@ -7,7 +7,8 @@ end is then used. The curvature must be taken over a domain that holds every set
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, Self, runtime_checkable
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
@@ -32,7 +33,7 @@ SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
 @runtime_checkable
-class Bracket(Protocol):
+class HasUpper(Protocol):
     """Anything with a proved upper end."""
 
     @property
@@ -40,21 +41,39 @@ class Bracket(Protocol):
         """Proved upper end."""
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Guarantee(float):
-    """A share of the optimum that is guaranteed, with what it needs and where it comes from."""
+    """A share of the optimum that is guaranteed, with what it needs and where it comes from.
 
+    A number wherever one is wanted: equal, as numbers are, to what has its ``value``.
+    """
+
+    value: float
     hypotheses: tuple[str, ...]
     source: str
 
-    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str) -> Self:
-        """Make the number carry its hypotheses."""
-        self = super().__new__(cls, value)
-        self.hypotheses = hypotheses
-        self.source = source
-        return self
+    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str) -> Self:  # noqa: ARG004  (see the fields)
+        """Make the number; the fields follow."""
+        return super().__new__(cls, value)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", float(self.value))
+
+    # Copies are made by ``__new__``, which needs all fields.
+    def __getnewargs__(self) -> tuple[float, tuple[str, ...], str]:  # type: ignore[override]
+        return self.value, self.hypotheses, self.source
+
+    __str__ = float.__repr__
+
+    def __repr__(self) -> str:
+        return f"Guarantee({self.value!r}, {self.source!r})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        return {"value": self.value, "hypotheses": list(self.hypotheses), "source": self.source}
 
 
-Curvatures = float | Bracket | None
+Curvatures = float | HasUpper | None
 
 
 def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, all_bait: bool = False) -> Guarantee:
@@ -72,7 +91,7 @@ def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None,
     Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof is by patterns and leaves some out.
     """
     alpha_cs = check_integer("alpha_cs", alpha_cs, low=0)
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     keep = 1 - value
     if kind == "k":
         bound = keep if all_bait else min(keep / (1 + value), keep / max(alpha_cs, 1))
@@ -90,7 +109,7 @@ def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
 
     Source: ratt.tex, Remark 1.
     """
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     return Guarantee(
         1 - value if kind == "k" else (1 - value) ** 2, _needs(kind, "the myopic plan"), "ratt.tex, Remark 1"
     )
@@ -105,7 +124,7 @@ def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
 
     Source: Tzoumas, Jadbabaie, Pappas 2018, Theorem 1, as ratt.tex quotes it after its Theorem 2.
     """
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     bound = (1 - value) / (1 + value) if kind == "k" else (1 - value) ** 3
     needs = (*_needs(kind, "RATT's plan"), "no link attacks (alpha_c = 0)")
     return Guarantee(bound, needs, "Tzoumas et al. 2018, Theorem 1")
@@ -136,7 +155,7 @@ def pattern_free_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
 
     Source: this library. The bound ``1-k`` is attained (N = 4, alpha_s = 0, alpha_c = 3, k = 0.3).
     """
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     bound = 1 - value if kind == "k" else (1 - value) ** 2
     return Guarantee(
         bound, _needs(kind, "each robot is bait or chosen greedily"), "pattern-free bound (proof in its docstring)"
@@ -161,7 +180,7 @@ def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = Non
     Source: this library.
     """
     g = check_integer("size", size, low=1)
-    kind, value = _one_curvature(k, c)
+    kind, value = one_curvature(k, c)
     keep = 1 - value
     if kind == "k":
         bound = (1 + (g - 1) * keep) / g
@@ -212,11 +231,11 @@ def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
     return found
 
 
-def _one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
+def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
     if (k is None) == (c is None):
         raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
     name, given = ("k", k) if k is not None else ("c", c)
-    value = float(given.upper if isinstance(given, Bracket) else given)  # type: ignore[arg-type]
+    value = float(given.upper if isinstance(given, HasUpper) else given)  # type: ignore[arg-type]
     if not 0 <= value <= 1:
         raise InputError(name, "must be in [0, 1]", value)
     return name, value

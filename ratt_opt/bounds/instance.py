@@ -9,7 +9,6 @@ import numpy as np
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
 from ratt_opt.curvatures.curvature import SECONDS, total_curvature
 from ratt_opt.curvatures.domains import domain_of
-from ratt_opt.curvatures.marginals import domain_values, groups_of
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -105,7 +104,7 @@ def _smallest_within(problem: Problem, plan: IntArray, time_limit: float | None)
         return lambda _, robot: float(lower[robot])
     domain = domain_of(f, None, plan)
     position = {int(name): axis for axis, name in enumerate(domain.names)}
-    values = domain_values(domain.restricted, groups_of(domain.owners))
+    values = domain.values()
     tables = [_running_minimum(np.diff(values, axis=position[int(e)]).squeeze(position[int(e)])) for e in plan]
 
     def within(before: IntArray, robot: int) -> float:

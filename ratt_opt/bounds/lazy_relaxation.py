@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.bounds.relaxation import relaxation_bound, uniform_selection
+from ratt_opt.bounds.relaxation import relaxation_bound
+from ratt_opt.bounds.relaxed_plans import mixed_information, uniform_selection
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
 from ratt_opt.problem import Attack
-from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,9 +35,7 @@ def relaxation_bounds(problem: Problem, *, tolerance: float = 1e-7) -> Iterator[
     ------
     InputError : the objective is no information criterion, or the team is too large to list its outcomes.
     """
-    objective = problem.objective
-    if not isinstance(objective, InformationObjective):
-        raise InputError("objective", "must be an information criterion for the relaxation", type(objective).__name__)
+    objective = problem.information_objective
     outcomes = []
     for outcome in non_dominated_outcomes(problem.threat):
         outcomes.append(outcome)
@@ -49,7 +47,9 @@ def relaxation_bounds(problem: Problem, *, tolerance: float = 1e-7) -> Iterator[
     entered: list[int] = []
     selection, level = uniform_selection(problem), np.inf
     while True:
-        left = np.maximum.reduceat(_group_values(problem, objective, rows, selection), starts)
+        sums = rows @ mixed_information(problem, selection).reshape(problem.n_robots, -1)
+        points = sums.reshape(-1, *objective.prior.shape) + objective.prior_information
+        left = np.maximum.reduceat(objective.value(points), starts)
         worst = int(left.argmin())
         if worst in entered or left[worst] >= level - tolerance * abs(level):
             return
@@ -57,16 +57,6 @@ def relaxation_bounds(problem: Problem, *, tolerance: float = 1e-7) -> Iterator[
         bound = relaxation_bound(problem, [Attack(*realise(problem.threat, outcomes[k])) for k in entered])
         yield bound
         selection, level = bound.selection, bound.claimed
-
-
-def _group_values(
-    problem: Problem, objective: InformationObjective, rows: FloatArray, selection: FloatArray
-) -> FloatArray:
-    """(G,) values of the groups, whose robots are the ones in ``rows`` (G, N), under a relaxed selection."""
-    of_robot = np.zeros((problem.n_robots, objective.prior.size))
-    np.add.at(of_robot, problem.robot, selection[:, None] * objective.information.reshape(objective.n, -1))
-    points = (rows @ of_robot).reshape(-1, *objective.prior.shape) + objective.prior_information
-    return objective.value(points)
 
 
 def _mask(group: frozenset[int], n_robots: int) -> FloatArray:

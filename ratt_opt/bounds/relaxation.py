@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt._values import ByValue
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
+from ratt_opt.bounds.relaxed_plans import uniform_selection
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,14 +18,14 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack, Problem
 
-__all__ = ["RelaxationBound", "relaxation_bound", "uniform_selection"]
+__all__ = ["RelaxationBound", "relaxation_bound"]
 
 TARGETS_A_GROUP = 6
 AVERAGING_STEPS = 12
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RelaxationBound:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RelaxationBound(ByValue):
     """Claim: ``Phi* <= upper``, derived from the problem's matrices by tangent cuts at ``selection``.
 
     ``claimed`` : what the conic solver reports as its optimum, for comparison only.
@@ -54,23 +53,20 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
 
     Raises
     ------
-    InputError : no attack, one outside the budgets, or another kind of set function.
+    InputError : no attack, one outside the budgets, another kind of set function, or a criterion without conic form.
 
     Source: concavity of the three criteria in the posterior information; Boyd and Vandenberghe 2004, Section 7.5.
     """
-    objective = problem.objective
-    if not isinstance(objective, InformationObjective):
-        raise InputError("objective", "must be an information criterion for the relaxation", type(objective).__name__)
+    objective = problem.information_objective
     if not attacks:
         raise InputError("attacks", "must hold at least one attack", "none")
     largest, others = _groups(problem, attacks)
     if () in largest:
-        return RelaxationBound(
-            upper=0.0, claimed=0.0, selection=uniform_selection(problem), status="an attack leaves nobody"
-        )
-    claimed, selection, status = _solve(problem, objective, largest)
-    cuts = [cut for group in largest for cut in _cuts_at(problem, objective, group, selection)]
-    upper = max([_best_combination(problem, cuts), *(_group_bound(problem, objective, group) for group in others)])
+        nothing, selection = objective([]), uniform_selection(problem)
+        return RelaxationBound(upper=nothing, claimed=nothing, selection=selection, status="an attack leaves nobody")
+    claimed, selection, status = _solve(problem, largest)
+    cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection)]
+    upper = max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)])
     return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
 
 
@@ -80,22 +76,20 @@ def _groups(problem: Problem, attacks: Sequence[Attack]) -> tuple[list[tuple[int
     others: dict[tuple[int, ...], None] = {}
     for attack in attacks:
         problem.check_attack(attack)
-        parts = problem.communication.groups(attack.links)
-        left = sorted((tuple(sorted(part - attack.sensing)) for part in parts), key=lambda g: (-len(g), g))
+        left = sorted((tuple(sorted(group)) for group in problem.groups_left(attack)), key=lambda g: (-len(g), g))
         largest[left[0]] = None
         others.update(dict.fromkeys(group for group in left[1:] if group))
     return list(largest), list(others)
 
 
-def _solve(
-    problem: Problem, objective: InformationObjective, groups: Sequence[tuple[int, ...]]
-) -> tuple[float, FloatArray, str]:
+def _solve(problem: Problem, groups: Sequence[tuple[int, ...]]) -> tuple[float, FloatArray, str]:
     import cvxpy as cp
 
+    objective = problem.information_objective
     z = cp.Variable(objective.n, nonneg=True)
     t = cp.Variable()
     constraints = [cp.sum(z[choice]) == 1 for choice in problem.choices]
-    constraints += [_value_constraint(objective, _posterior(problem, objective, group, z), t) for group in groups]
+    constraints += [t <= objective.conic_value(_posterior(problem, group, z)) for group in groups]
     program = cp.Problem(cp.Maximize(t), constraints)
     selection = uniform_selection(problem)
     try:
@@ -109,16 +103,9 @@ def _solve(
     return float(program.value), selection, str(program.status)
 
 
-def uniform_selection(problem: Problem) -> FloatArray:
-    """(E,) every robot mixes its elements equally."""
-    selection = np.empty(problem.objective.n)
-    for choice in problem.choices:
-        selection[choice] = 1 / len(choice)
-    return selection
-
-
-def _posterior(problem: Problem, objective: InformationObjective, group: tuple[int, ...], z: Any) -> list[Any]:
+def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:
     """One affine (d, d) expression per target."""
+    objective = problem.information_objective
     inside = np.flatnonzero(np.isin(problem.robot, group))
     d = objective.dimension
     matrices = []
@@ -130,27 +117,12 @@ def _posterior(problem: Problem, objective: InformationObjective, group: tuple[i
     return matrices
 
 
-def _value_constraint(objective: InformationObjective, posterior: list[Any], t: Any) -> Any:
-    """``t <= value`` as a convex constraint."""
-    import cvxpy as cp
-
-    baseline = objective.criterion(objective.prior_information)
-    weights = objective.weights
-    if isinstance(objective, TraceObjective):
-        return t + sum(w * cp.tr_inv(L) for w, L in zip(weights, posterior, strict=True)) <= baseline.sum()
-    if isinstance(objective, LogDetObjective):
-        return t <= baseline.sum() + sum(w * cp.log_det(L) for w, L in zip(weights, posterior, strict=True))
-    worst = cp.max(cp.hstack([w * cp.inv_pos(cp.lambda_min(L)) for w, L in zip(weights, posterior, strict=True)]))
-    return t + worst <= baseline.max()
-
-
-def _cuts_at(
-    problem: Problem, objective: InformationObjective, group: tuple[int, ...], selection: FloatArray
-) -> list[GroupCut]:
+def _cuts_at(problem: Problem, group: tuple[int, ...], selection: FloatArray) -> list[GroupCut]:
+    objective = problem.information_objective
     inside = np.isin(problem.robot, group)
     point = objective.prior_information + np.einsum("e,ejkl->jkl", selection[inside], objective.information[inside])
     targets = objective.tangent_targets(point, np.inf, TARGETS_A_GROUP)
-    return [tangent_cut(problem, objective, group, point, target) for target in targets]
+    return [tangent_cut(problem, group, point, target) for target in targets]
 
 
 def _best_combination(problem: Problem, cuts: Sequence[GroupCut]) -> float:
@@ -174,18 +146,18 @@ def _best_combination(problem: Problem, cuts: Sequence[GroupCut]) -> float:
     return min(combined_bound(constants, scores, weights, problem.choices)[0] for weights in candidates)
 
 
-def _group_bound(problem: Problem, objective: InformationObjective, group: tuple[int, ...]) -> float:
+def _group_bound(problem: Problem, group: tuple[int, ...]) -> float:
     """Upper bound on one group's value for every plan: tangents along conditional-gradient averaging steps."""
-    single = objective.singletons()
+    single = problem.objective.singletons()
     best = np.array([choice[single[choice].argmax()] for choice in problem.choices])
-    selection = np.zeros(objective.n)
+    selection = np.zeros(problem.objective.n)
     selection[best] = 1.0
     upper = np.inf
     for step in range(AVERAGING_STEPS):
-        cut = _cuts_at(problem, objective, group, selection)[0]
+        cut = _cuts_at(problem, group, selection)[0]
         bound, combined = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), problem.choices)
         upper = min(upper, bound)
-        vertex = np.zeros(objective.n)
+        vertex = np.zeros(problem.objective.n)
         vertex[[choice[combined[choice].argmax()] for choice in problem.choices]] = 1.0
         selection += 2 / (step + 2) * (vertex - selection) if step else 0.5 * (vertex - selection)
     return upper

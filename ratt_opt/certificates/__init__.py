@@ -1,1 +1,5 @@
-"""Proof files and the independent verifier."""
+"""Proof files, and the verifier that shares nothing with their authors.
+
+Open ``write.py`` first: ``upper.py`` and ``lower.py`` make the two proofs of a file. Then ``verifier/verify.py``, which
+decides in exact arithmetic whether a file proves its claim.
+"""

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.graph.survivor_sizes import forced_group_size
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -79,8 +78,7 @@ class _Cases:
 
     @property
     def objective(self) -> InformationObjective:
-        objective: Any = self.problem.objective
-        return objective  # type: ignore[no-any-return]
+        return self.problem.information_objective
 
     def order(self) -> list[int]:
         return [int(i) for i in np.argsort(-self.objective.singletons()[self.elements], kind="stable")]
@@ -99,8 +97,8 @@ class _Cases:
         """Whether the ``missing`` smallest values are worth it on average (see the verifier's leaf -3)."""
         self._count(len(posteriors))
         values = np.sort(self.objective.value(posteriors))
-        each = isinstance(self.objective, MaxEigenvalueObjective) and self.objective.dimension != 2
-        return bool((values[0] if each else values[:missing].mean()) >= self.threshold)
+        worth = values[:missing].mean() if self.objective.verifier_averages else values[0]
+        return bool(worth >= self.threshold)
 
     def _count(self, sets: int) -> None:
         self.looked_at += sets * self.objective.n_targets

@@ -7,31 +7,37 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from flint import arb, ctx, fmpq
 
 from ratt_opt._files import write_atomically
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof
-from ratt_opt.certificates.reading import FORMAT, VERSION
 from ratt_opt.certificates.upper import upper_record
-from ratt_opt.certificates.verify import Checker, verify_certificate
+from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
+from ratt_opt.certificates.verifier.statement import Statement
+from ratt_opt.certificates.verifier.upper import UpperCheck
+from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.errors import InputError, ProofError
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.criteria.packed import packed
+from ratt_opt.setfunctions.criteria.registry import CRITERIA
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.certificates.verified import Verified
+    from ratt_opt._validation import IntArray
+    from ratt_opt.certificates.verifier.verified import Verified
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["Certificate", "certify", "pack", "problem_document", "why_not_certifiable", "write_certificate"]
+__all__ = [
+    "Certificate",
+    "Certification",
+    "certify",
+    "certify_if_possible",
+    "problem_document",
+    "write_certificate",
+]
 
-NAMES = {TraceObjective: "trace", LogDetObjective: "logdet", MaxEigenvalueObjective: "maxeig"}
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
 """How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
 LARGEST_SHAVE = SHAVES[-1]
@@ -52,11 +58,12 @@ class Certificate:
     size: int
 
 
-def pack(matrices: FloatArray) -> list[Any]:
-    """Lower triangles, row by row: (..., d, d) -> nested lists of shape (..., d (d + 1) / 2)."""
-    rows, columns = np.tril_indices(matrices.shape[-1])
-    packed: list[Any] = matrices[..., rows, columns].tolist()
-    return packed
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certification:
+    """Whether a result has a certificate: it, or (``None``) ``why_not`` in words."""
+
+    certificate: Certificate | None = None
+    why_not: str = ""
 
 
 def problem_document(problem: Problem) -> dict[str, Any]:
@@ -64,17 +71,17 @@ def problem_document(problem: Problem) -> dict[str, Any]:
 
     Raises
     ------
-    InputError : the objective is not a criterion of information matrices.
+    InputError : the objective is none of the criteria that the verifier knows.
     """
-    objective = problem.objective
-    if type(objective) not in NAMES:
-        raise InputError("objective", "must be trace, logdet or maxeig to be certified", type(objective).__name__)
-    assert isinstance(objective, (TraceObjective, LogDetObjective, MaxEigenvalueObjective))
+    objective = problem.information_objective
+    if not _is_known(problem):
+        *names, last = CRITERIA
+        raise InputError("objective", f"must be {', '.join(names)} or {last} to be certified", type(objective).__name__)
     return {
-        "objective": NAMES[type(objective)],
+        "objective": objective.name,
         "dimension": objective.dimension,
-        "prior": pack(objective.prior),
-        "information": pack(objective.information),
+        "prior": packed(objective.prior),
+        "information": packed(objective.information),
         "weights": objective.weights.tolist(),
         "owners": problem.robot.tolist(),
         "links": [list(link) for link in sorted(problem.communication.links)],
@@ -85,11 +92,26 @@ def problem_document(problem: Problem) -> dict[str, Any]:
     }
 
 
-def why_not_certifiable(problem: Problem, result: MaxMinResult) -> str | None:
-    """Return why ``certify`` would refuse this result, or ``None`` where it would not."""
-    if type(problem.objective) not in NAMES:
-        return "only the trace, log-det and max-eigenvalue criteria have certificates"
-    return "the search stopped before it proved a bound" if result.proof is None else None
+def _is_known(problem: Problem) -> bool:
+    """Whether the objective is a registered criterion itself: a subclass may have another formula."""
+    return type(problem.objective) in CRITERIA.values()
+
+
+def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path | None) -> Certification:
+    """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` where no certificate is wanted.
+
+    Raises
+    ------
+    InputError : the file cannot be written.
+    ProofError : the result's proof has a fault.
+    """
+    if path is None:
+        return Certification(why_not="not asked for")
+    if not _is_known(problem):
+        return Certification(why_not="only the trace, log-det and max-eigenvalue criteria have certificates")
+    if result.proof is None:
+        return Certification(why_not="the search stopped before it proved a bound")
+    return Certification(certificate=certify(problem, result, path))
 
 
 def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:
@@ -138,8 +160,8 @@ def write_certificate(
     """
     record, plan = problem_document(problem), problem.check_plan(elements).tolist()
     prior_range = _prior_range(problem, record, plan)
-    checker = Checker(record, plan, prior_range)
-    high = max(float(upper), _proved_upper(checker, upper_part), 0.0)
+    check = UpperCheck(Statement(record, plan, prior_range))
+    high = max(float(upper), _proved_upper(check, upper_part), 0.0)
     for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
         document = {
             "format": FORMAT,
@@ -184,24 +206,23 @@ def _compact(value: object) -> str:
 
 def _prior_range(problem: Problem, record: dict[str, Any], plan: list[int]) -> list[float]:
     """Floats around the largest weighted eigenvalue of the priors, as narrow as the verifier can check."""
-    objective = problem.objective
-    if not isinstance(objective, MaxEigenvalueObjective):
+    middle = problem.information_objective.prior_eigenvalue
+    if middle is None:
         return []
-    middle = float((objective.weights * np.linalg.eigvalsh(objective.prior)[:, -1]).max())
     for shave in (1e-15, 1e-14, 1e-13, 1e-12):
         found = [middle * (1 - shave), middle * (1 + shave)]
         try:
-            Checker(record, plan, found)
+            Statement(record, plan, found)
         except ProofError:
             continue
         return found
     return [middle * (1 - 1e-9), middle * (1 + 1e-9)]
 
 
-def _proved_upper(checker: Checker, upper_part: dict[str, Any]) -> float:
+def _proved_upper(check: UpperCheck, upper_part: dict[str, Any]) -> float:
     """Smallest float that the verifier can prove as an upper bound from this proof."""
     with ctx.workprec(256):
-        return max((_round_up(bound) for bound in checker.upper_bounds(upper_part)), default=0.0)
+        return max((_round_up(bound) for bound in check.bounds(upper_part)), default=0.0)
 
 
 def _round_up(bound: fmpq | arb) -> float:

@@ -1,4 +1,4 @@
-"""Over which sets the marginals of a curvature range."""
+"""Over which sets the marginals of a curvature range, and the values of all of them."""
 
 from __future__ import annotations
 
@@ -9,22 +9,27 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_subset
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.setfunctions.base import check_table_size, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.table import TableFunction
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of"]
+__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "values_over"]
 
 LARGEST_ENUMERATION = 2**24
 """Most sets of a domain that are enumerated (128 MiB of values)."""
+BLOCK = 2**14
+"""Sets whose values are computed at once: their matrices stay in cache, larger blocks are no faster (measured)."""
+ROUNDING = 1e-13
+"""Error of a marginal relative to the values it is a difference of: several hundred units in the last place."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Domain:
     """``restricted`` is the function on the elements that take part; a set holds at most one of each owner's.
 
@@ -43,6 +48,15 @@ class Domain:
         """Number of sets in the domain."""
         return float(np.prod(np.bincount(self.owners) + 1.0))
 
+    @property
+    def groups(self) -> list[IntArray]:
+        """Elements of each owner."""
+        return [np.flatnonzero(self.owners == i) for i in range(int(self.owners.max(initial=-1)) + 1)]
+
+    def values(self) -> FloatArray:
+        """Values of all sets: one axis an owner, index 0 for none of its elements."""
+        return finite_values(values_over(self.restricted, self.groups))
+
     def element(self, x: int | np.int64) -> int:
         """The original index of one element."""
         return int(self.names[x])
@@ -59,28 +73,63 @@ def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) 
     ------
     InputError : owners of the wrong shape, or a plan that repeats or exceeds the elements.
     """
-    error = _rounding(f)
+    error, everything = _rounding(f), np.arange(f.n)
     if plan is not None:
         chosen = check_subset("plan", np.asarray(plan).tolist(), f.n)
         alone = np.arange(len(chosen))
-        return Domain(
-            name="robots", restricted=_restriction(f, chosen), owners=alone, names=chosen, rounding=_rounding(f)
-        )
-    everything = np.arange(f.n)
+        return Domain(name="robots", restricted=_restriction(f, chosen), owners=alone, names=chosen, rounding=error)
     if owners is None:
         return Domain(name="elements", restricted=f, owners=everything, names=everything, rounding=error)
     given = np.asarray(owners)
     if given.shape != (f.n,) or given.dtype.kind not in "iu":
         raise InputError("owners", f"must hold {f.n} integers, one per element", f"shape {given.shape}, {given.dtype}")
-    _, compact = np.unique(given, return_inverse=True)
-    return Domain(
-        name="feasible", restricted=f, owners=compact.astype(np.int64), names=everything, rounding=_rounding(f)
-    )
+    _, numbered = np.unique(given, return_inverse=True)
+    return Domain(name="feasible", restricted=f, owners=numbered.astype(np.int64), names=everything, rounding=error)
+
+
+def values_over(f: SetFunction, groups: list[IntArray]) -> FloatArray:
+    """Values of all sets with at most one element of each group: one axis a group, index 0 for none of it."""
+    shape = tuple(len(group) + 1 for group in groups)
+    if isinstance(f, InformationObjective):
+        return _information_values(f, groups).reshape(shape)
+    size = int(np.prod(shape))
+    values = np.empty(size)
+    for start in range(0, size, BLOCK):
+        index = np.arange(start, min(start + BLOCK, size))
+        membership = np.zeros((len(index), f.n), dtype=np.bool_)
+        for group, picks in zip(groups, np.unravel_index(index, shape), strict=True):
+            rows = np.flatnonzero(picks)
+            membership[rows, group[picks[rows] - 1]] = True
+        values[index] = f.evaluate(membership)
+    return values.reshape(shape)
+
+
+def _information_values(f: InformationObjective, groups: list[IntArray]) -> FloatArray:
+    """Flat values in C order; the last groups' sums are shared by all choices of the first ones."""
+    shape = [len(group) + 1 for group in groups]
+    split = len(groups)
+    block = 1
+    while split > 0 and block * shape[split - 1] <= BLOCK:
+        split -= 1
+        block *= shape[split]
+    low = _sums(f, groups[split:], f.prior_information)
+    high = _sums(f, groups[:split], np.zeros_like(f.prior_information))
+    return np.concatenate([f.value(low + offset) for offset in high])
+
+
+def _sums(f: InformationObjective, groups: list[IntArray], start: FloatArray) -> FloatArray:
+    """(product of (len + 1), M, d, d) sums of one element or none of each group, in C order, plus ``start``."""
+    sums = start[None]
+    for group in groups:
+        options = np.concatenate([np.zeros((1, *start.shape)), f.information[group]])
+        sums = (sums[:, None] + options[None]).reshape(-1, *start.shape)
+    return sums
 
 
 def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
     if isinstance(f, InformationObjective):
-        return type(f)(f.prior, f.information[chosen], f.weights)
+        return f.restricted_to(chosen)
+    check_table_size(len(chosen))
     masks = np.arange(2 ** len(chosen))
     membership = np.zeros((len(masks), f.n), dtype=np.bool_)
     membership[:, chosen] = masks[:, None] >> np.arange(len(chosen)) & 1
@@ -88,10 +137,9 @@ def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
 
 
 def _rounding(f: SetFunction) -> float:
-    """Several hundred units in the last place of the numbers that a marginal is the difference of."""
     if isinstance(f, TableFunction):
         return 0.0
     size = abs(float(finite_values(np.array([f(range(f.n))]))[0]))
     if isinstance(f, InformationObjective):
-        size += float(np.abs(f.criterion(f.prior_information)).sum())
-    return 1e-13 * size
+        size += f.prior_magnitude
+    return ROUNDING * size

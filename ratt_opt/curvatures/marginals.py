@@ -1,4 +1,4 @@
-"""Smallest and largest marginals of every element over an enumerated domain."""
+"""Smallest and largest marginals of every element: what is known of them, and all of them where sets can be listed."""
 
 from __future__ import annotations
 
@@ -8,21 +8,22 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.table import TableFunction
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import FloatArray
     from ratt_opt.curvatures.domains import Domain
-    from ratt_opt.setfunctions.base import SetFunction
+    from ratt_opt.stopping import Stop
 
-__all__ = ["Marginals", "domain_values", "enumerate_marginals", "groups_of"]
+__all__ = ["Marginals", "MeasuredMarginals", "check_monotone", "enumerate_marginals"]
 
 Context = tuple[int, ...]
+FALL = 1e-9
+"""A marginal below minus this, relative to the largest one, is no rounding: the function falls."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Marginals:
     """Per element, brackets ``[lower, upper]`` of its smallest and of its largest marginal, and contexts.
 
@@ -36,21 +37,59 @@ class Marginals:
     smallest_context: Sequence[Context]
     largest_context: Sequence[Context]
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Marginals):
+            return NotImplemented
+        ends = ("smallest_lower", "smallest_upper", "largest_lower", "largest_upper")
+        return (
+            all(np.array_equal(getattr(self, end), getattr(other, end)) for end in ends)
+            and list(self.smallest_context) == list(other.smallest_context)
+            and list(self.largest_context) == list(other.largest_context)
+        )
 
-def groups_of(owners: IntArray) -> list[IntArray]:
-    """Elements of each owner."""
-    return [np.flatnonzero(owners == i) for i in range(int(owners.max(initial=-1)) + 1)]
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredMarginals:
+    """Marginals, ``how`` they are known, why the search for them stopped, and the ``nodes`` (parts) it bounded."""
+
+    marginals: Marginals
+    how: str
+    stop: Stop
+    nodes: int
 
 
 def enumerate_marginals(domain: Domain, values: FloatArray | None = None) -> Marginals:
-    """Exact smallest and largest marginals, O(n) passes over the domain (``values`` : its table, if known)."""
+    """Exact smallest and largest marginals, O(n) passes over the domain (``values`` : its table, if known).
+
+    Raises
+    ------
+    InputError : the function is not non-decreasing; the text shows where.
+    """
     alone = len(np.unique(domain.owners)) == domain.restricted.n
     if values is None and alone and isinstance(domain.restricted, TableFunction):
-        return _table_marginals(domain.restricted)
-    groups = groups_of(domain.owners)
-    if values is None:
-        values = finite_values(domain_values(domain.restricted, groups))
-    n = domain.restricted.n
+        found = _table_marginals(domain.restricted)
+    else:
+        found = _all_marginals(domain, domain.values() if values is None else values)
+    check_monotone(domain, found)
+    return found
+
+
+def check_monotone(domain: Domain, found: Marginals) -> None:
+    """Refuse a function with a negative marginal (beyond rounding), showing it."""
+    if len(found.smallest_lower) == 0:
+        return
+    scale = max(float(np.abs(found.largest_upper).max(initial=0.0)), 1e-300)
+    worst = int(found.smallest_lower.argmin())
+    if found.smallest_lower[worst] < -FALL * scale:
+        context = domain.named(found.smallest_context[worst])
+        shown = f"adding {domain.element(worst)} to {list(context)} changes it by {found.smallest_lower[worst]:.6g}"
+        raise InputError("f", "must be non-decreasing", shown)
+
+
+def _all_marginals(domain: Domain, values: FloatArray) -> Marginals:
+    n, groups = domain.restricted.n, domain.groups
     ends = np.empty((2, n))
     contexts: tuple[list[Context], list[Context]] = ([()] * n, [()] * n)
     for axis, own in enumerate(groups):
@@ -70,10 +109,10 @@ def _table_marginals(f: TableFunction) -> Marginals:
     from ratt_opt.setfunctions.lattice import marginal_ends
 
     ends = marginal_ends(f.values, f.n)
-    return Marginals(ends[0], ends[0], ends[1], ends[1], _Attaining(f, 1.0), _Attaining(f, -1.0))
+    return Marginals(ends[0], ends[0], ends[1], ends[1], _TableContexts(f, 1.0), _TableContexts(f, -1.0))
 
 
-class _Attaining(Sequence[Context]):
+class _TableContexts(Sequence[Context]):
     """Contexts of the smallest marginals (largest: ``sign`` -1) of a table, looked for when asked for."""
 
     def __init__(self, f: TableFunction, sign: float) -> None:
@@ -89,47 +128,9 @@ class _Attaining(Sequence[Context]):
     def __getitem__(self, x: int | slice) -> Context | Sequence[Context]:
         if isinstance(x, slice):
             return [self[k] for k in range(*x.indices(len(self)))]
+        x = range(len(self))[x]  # an IndexError past the end, which ends a loop over the contexts
         halves = self._f.values.reshape(-1, 2, 1 << x)
         where = int((self._sign * (halves[:, 1] - halves[:, 0])).argmin())
         low = where & ((1 << x) - 1)
         mask = (where ^ low) << 1 | low
         return tuple(e for e in range(self._f.n) if mask >> e & 1)
-
-
-def domain_values(f: SetFunction, groups: list[IntArray]) -> FloatArray:
-    """Values of all sets with at most one element of each group: one axis a group, index 0 for none of it."""
-    shape = tuple(len(group) + 1 for group in groups)
-    if isinstance(f, InformationObjective):
-        return _information_values(f, groups).reshape(shape)
-    size = int(np.prod(shape))
-    values = np.empty(size)
-    for start in range(0, size, 2**14):
-        index = np.arange(start, min(start + 2**14, size))
-        membership = np.zeros((len(index), f.n), dtype=np.bool_)
-        for group, picks in zip(groups, np.unravel_index(index, shape), strict=True):
-            rows = np.flatnonzero(picks)
-            membership[rows, group[picks[rows] - 1]] = True
-        values[index] = f.evaluate(membership)
-    return values.reshape(shape)
-
-
-def _information_values(f: InformationObjective, groups: list[IntArray]) -> FloatArray:
-    """Flat values in C order; the last groups' sums are shared by all choices of the first ones."""
-    shape = [len(group) + 1 for group in groups]
-    split = len(groups)
-    block = 1
-    while split > 0 and block * shape[split - 1] <= 2**14:
-        split -= 1
-        block *= shape[split]
-    low = _sums(f, groups[split:], f.prior_information)
-    high = _sums(f, groups[:split], np.zeros_like(f.prior_information))
-    return np.concatenate([f.value(low + offset) for offset in high])
-
-
-def _sums(f: InformationObjective, groups: list[IntArray], start: FloatArray) -> FloatArray:
-    """(product of (len + 1), M, d, d) sums of one element or none of each group, in C order, plus ``start``."""
-    sums = start[None]
-    for group in groups:
-        options = np.concatenate([np.zeros((1, *start.shape)), f.information[group]])
-        sums = (sums[:, None] + options[None]).reshape(-1, *start.shape)
-    return sums

@@ -18,13 +18,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.curvatures.curvature import check_monotone, curvature, total_curvature
-from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
-from ratt_opt.curvatures.marginals import domain_values, enumerate_marginals, groups_of
+from ratt_opt.budget import Budget
+from ratt_opt.curvatures.curvature import GAP, SECONDS, curvature_over
+from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, values_over
+from ratt_opt.curvatures.marginals import enumerate_marginals
 from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import FloatArray, IntArray
@@ -38,6 +41,7 @@ LARGEST_PAIRS = 1.5e8
 SAMPLES = 200
 """Random sets whose subsets are all looked at, where the domain is too large."""
 SAMPLED_SIZE = 8
+"""Elements of each: 3**8 nested pairs take 0.1 ms compiled, so that all samples take a fraction of a second."""
 
 Context = tuple[int, ...]
 
@@ -52,6 +56,7 @@ class SubmodularityRatio:
     base: Context
     added: Context
     how: str
+    stop: Stop
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,21 +73,28 @@ class GeneralisedCurvature:
     small: Context
     large: Context
     how: str
+    stop: Stop
 
 
 def submodularity_ratio(
-    f: SetFunction, owners: ArrayLike | None = None, *, plan: ArrayLike | None = None, seed: int = 0
+    f: SetFunction,
+    owners: ArrayLike | None = None,
+    *,
+    plan: ArrayLike | None = None,
+    seed: int = 0,
+    budget: Budget | None = None,
 ) -> SubmodularityRatio:
     """Bracket the submodularity ratio ``gamma`` of a non-decreasing function.
 
     Exact by all nested pairs up to 1.5e8 of them (17 elements; 4 robots with 12 controls over ``"feasible"``). Beyond,
     but with an enumerable domain: ``rho(W | S) <= sum of the largest later marginals``, so ``gamma`` is at least the
     smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``. Beyond that, for information
-    criteria: 1 for log-det, else at least ``1 - total curvature``. The upper end is attained, by a seeded search.
+    criteria: 1 where theory proves submodularity (log-det), else at least ``1 - total curvature``. The upper end is
+    attained, by a seeded search.
 
     Parameters
     ----------
-    f, owners, plan : see :func:`ratt_opt.total_curvature`; seed : of the search beyond enumeration
+    f, owners, plan, budget : see :func:`ratt_opt.total_curvature`; seed : of the search beyond enumeration
 
     Raises
     ------
@@ -90,30 +102,36 @@ def submodularity_ratio(
 
     Source: Bian, Buhmann, Krause, Tschiatschek 2017, Definition 1 (after Das and Kempe 2011).
     """
-    domain = domain_of(f, owners, plan)
-    groups = groups_of(domain.owners)
+    domain, inner = domain_of(f, owners, plan), Budget.inside(budget, SECONDS)
+    seed = check_integer("seed", seed, low=0)
     if domain.count > LARGEST_ENUMERATION:
-        return _ratio_from_curvature(f, owners, plan, domain, seed)
-    values = _monotone_values(domain, groups)
+        return _ratio_from_curvature(domain, seed, inner)
+    values, groups = _monotone_values(domain), domain.groups
     if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= LARGEST_PAIRS:
-        ratio, base, added = _smallest_ratio(values, groups)
-        return _ratio(min(ratio, 1.0), ratio, domain, (base, added), "every nested pair of sets")
-    lower = _later_marginals(values)
-    ratio, base, added = _sampled_ratio(domain, seed)
-    return _ratio(min(lower, 1.0, ratio), ratio, domain, (base, added), "later marginals; a searched pair")
+        found = _smallest_ratio(values, groups)
+        return _ratio(min(found[0], 1.0), found, domain, "every nested pair of sets", Stop.EXHAUSTED)
+    found = _sampled_ratio(domain, seed, inner)
+    lower = min(_later_marginals(values), 1.0, found[0])
+    return _ratio(lower, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
 def generalised_curvature(
-    f: SetFunction, owners: ArrayLike | None = None, *, plan: ArrayLike | None = None, seed: int = 0
+    f: SetFunction,
+    owners: ArrayLike | None = None,
+    *,
+    plan: ArrayLike | None = None,
+    seed: int = 0,
+    budget: Budget | None = None,
 ) -> GeneralisedCurvature:
     """Bracket the generalised curvature ``alpha`` of a non-decreasing function.
 
     Exact where the domain can be enumerated, by running maxima over subsets (O(n) passes an element). Beyond, for
-    information criteria: at most the total curvature (log-det: the curvature), at least what a seeded search attains.
+    information criteria: at most the total curvature (submodular ones: the curvature), at least what a seeded search
+    attains.
 
     Parameters
     ----------
-    f, owners, plan : see :func:`ratt_opt.total_curvature`; seed : of the search beyond enumeration
+    f, owners, plan, budget : see :func:`ratt_opt.total_curvature`; seed : of the search beyond enumeration
 
     Raises
     ------
@@ -121,16 +139,16 @@ def generalised_curvature(
 
     Source: Bian, Buhmann, Krause, Tschiatschek 2017, Definition 2.
     """
-    domain = domain_of(f, owners, plan)
+    domain, inner = domain_of(f, owners, plan), Budget.inside(budget, SECONDS)
+    seed = check_integer("seed", seed, low=0)
     if domain.count <= LARGEST_ENUMERATION:
-        groups = groups_of(domain.owners)
-        kept, element, small, large = _smallest_kept(_monotone_values(domain, groups), groups)
-        upper, how = 1.0 - kept, "every nested pair of sets"
+        kept, element, small, large = _smallest_kept(_monotone_values(domain), domain.groups)
+        upper, how, stop = 1.0 - kept, "every nested pair of sets", Stop.EXHAUSTED
     else:
         # The same total curvature compares a marginal with any other of its element, not only with earlier ones.
-        found = (curvature if isinstance(f, LogDetObjective) else total_curvature)(f, owners, plan=plan)
-        kept, element, small, large = _searched_kept(domain, found, seed)
-        upper, how = found.upper, f"at most the curvature ({found.how}); a searched pair"
+        found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner)
+        kept, element, small, large = _searched_kept(domain, found, seed, inner)
+        upper, how, stop = found.upper, f"at most the curvature ({found.how}); a searched pair", found.stop
     return GeneralisedCurvature(
         lower=max(min(1.0 - kept, upper), 0.0),
         upper=max(upper, 0.0),
@@ -139,35 +157,38 @@ def generalised_curvature(
         small=domain.named(small),
         large=domain.named(large),
         how=how,
+        stop=stop,
     )
 
 
-def _ratio_from_curvature(
-    f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None, domain: Domain, seed: int
-) -> SubmodularityRatio:
+def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget) -> SubmodularityRatio:
     """``rho(w | S)`` is at least ``1 - c`` times the largest marginal of ``w``; those add up to ``rho(W | S)``."""
-    if isinstance(f, LogDetObjective):
-        return _ratio(1.0, 1.0, domain, ((), ()), "log-det is submodular")
-    found = total_curvature(f, owners, plan=plan)
-    ratio, base, added = _sampled_ratio(domain, seed)
-    lower = max(1.0 - found.upper, 0.0)
-    return _ratio(min(lower, ratio), ratio, domain, (base, added), "1 - total curvature; a searched pair")
+    if domain.restricted.is_submodular:
+        return _ratio(1.0, (1.0, (), ()), domain, "submodular by theory", Stop.EXHAUSTED)
+    curved = curvature_over(domain, total=True, gap=GAP, budget=budget)
+    found = _sampled_ratio(domain, seed, budget)
+    lower = min(max(1.0 - curved.upper, 0.0), found[0])
+    return _ratio(lower, found, domain, "1 - total curvature; a searched pair", curved.stop)
 
 
-def _ratio(lower: float, upper: float, domain: Domain, sets: tuple[Context, Context], how: str) -> SubmodularityRatio:
+def _ratio(
+    lower: float, found: tuple[float, Context, Context], domain: Domain, how: str, stop: Stop
+) -> SubmodularityRatio:
+    ratio, base, added = found
     return SubmodularityRatio(
         lower=lower,
-        upper=min(upper, 1.0),
+        upper=min(ratio, 1.0),
         domain=domain.name,
-        base=domain.named(sets[0]),
-        added=domain.named(sets[1]),
+        base=domain.named(base),
+        added=domain.named(added),
         how=how,
+        stop=stop,
     )
 
 
-def _monotone_values(domain: Domain, groups: list[IntArray]) -> FloatArray:
-    values = finite_values(domain_values(domain.restricted, groups))
-    check_monotone(domain, enumerate_marginals(domain, values))
+def _monotone_values(domain: Domain) -> FloatArray:
+    values = domain.values()
+    enumerate_marginals(domain, values)  # refuses a function that falls
     return values
 
 
@@ -240,26 +261,31 @@ def _elements(index: tuple[int | np.intp, ...], groups: list[IntArray]) -> Conte
     return tuple(int(group[pick - 1]) for group, pick in zip(groups, index, strict=True) if pick > 0)
 
 
-def _samples(domain: Domain, seed: int) -> list[tuple[FloatArray, list[IntArray]]]:
-    """Tables of all subsets of random sets of the domain."""
-    rng = np.random.default_rng(check_integer("seed", seed, low=0))
-    groups = groups_of(domain.owners)
+def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatArray, list[IntArray]]]:
+    """Tables of all subsets of random sets of the domain, while there is time."""
+    rng = np.random.default_rng(seed)
+    groups = domain.groups
     size = min(SAMPLED_SIZE, len(groups))
-    found = []
     for _ in range(SAMPLES):
+        if budget.is_over:
+            return
         taken = np.sort(rng.choice(len(groups), size, replace=False))
         chosen = [np.array([rng.choice(groups[k])]) for k in taken]
-        found.append((finite_values(domain_values(domain.restricted, chosen)), chosen))
-    return found
+        yield finite_values(values_over(domain.restricted, chosen)), chosen
 
 
-def _sampled_ratio(domain: Domain, seed: int) -> tuple[float, Context, Context]:
-    return min(_smallest_ratio(values, groups) for values, groups in _samples(domain, seed))
+def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> tuple[float, Context, Context]:
+    nothing: tuple[float, Context, Context] = (1.0, (), ())
+    tried = (_smallest_ratio(values, groups) for values, groups in _samples(domain, seed, budget))
+    return min(tried, default=nothing)
 
 
-def _searched_kept(domain: Domain, found: Curvature, seed: int) -> tuple[float, int | None, Context, Context]:
+def _searched_kept(
+    domain: Domain, found: Curvature, seed: int, budget: Budget
+) -> tuple[float, int | None, Context, Context]:
     """The best of the sampled pairs and, if nested, of the contexts that attain the curvature (restricted names)."""
-    tried = [_smallest_kept(values, groups) for values, groups in _samples(domain, seed)]
+    tried: list[tuple[float, int | None, Context, Context]] = [(1.0, None, (), ())]
+    tried += [_smallest_kept(values, groups) for values, groups in _samples(domain, seed, budget)]
     if found.element is not None and set(found.largest_context) <= set(found.smallest_context):
         back = {domain.element(x): x for x in range(domain.restricted.n)}
         small, large = (tuple(back[e] for e in c) for c in (found.largest_context, found.smallest_context))

@@ -12,10 +12,19 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["CommunicationGraph", "Link"]
+__all__ = ["CommunicationGraph", "Link", "neighbour_masks"]
 
 Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
+
+
+def neighbour_masks(n_robots: int, links: Iterable[Link]) -> list[int]:
+    """Bit mask of the neighbours of each robot by these links."""
+    masks = [0] * n_robots
+    for i, j in links:
+        masks[i] |= 1 << j
+        masks[j] |= 1 << i
+    return masks
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +82,11 @@ class CommunicationGraph:
             return (robots,) if robots else ()
         found = nx.connected_components(self._graph.subgraph(robots))
         return tuple(sorted((frozenset(group) for group in found), key=min))
+
+    def links_between(self, groups: Iterable[Iterable[int]]) -> frozenset[Link]:
+        """Links between robots of different groups; every robot is in one group."""
+        home = {i: k for k, group in enumerate(groups) for i in group}
+        return frozenset((i, j) for i, j in self.links if home[i] != home[j])
 
     def links_of(self, robot: int) -> frozenset[Link]:
         """The links of one robot."""

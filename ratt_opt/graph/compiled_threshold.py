@@ -13,8 +13,8 @@ import numba
 import numpy as np
 
 from ratt_opt.errors import InputError
-from ratt_opt.graph.connected_partitions import neighbour_masks
-from ratt_opt.graph.threshold import GroupSplit, fewest_blinded, largest_survivors
+from ratt_opt.graph.communication import neighbour_masks
+from ratt_opt.graph.threshold import LARGEST_COMPILED, GroupSplit, fewest_blinded, largest_survivors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,10 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["LARGEST_COMPILED", "CompiledThresholdTest"]
-
-LARGEST_COMPILED = 20
-"""Most robots whose subsets are tabulated here (2**20 sets, up to 1.7e9 pairs per test)."""
+__all__ = ["CompiledThresholdTest"]
 
 FAR = 10_000
 
@@ -141,13 +138,9 @@ class CompiledThresholdTest:
         if n_robots > LARGEST_COMPILED:
             raise InputError("graph", f"must have at most {LARGEST_COMPILED} robots for a threshold test", n_robots)
         self.threat, self.values = threat, values
-        neighbours = np.array(neighbour_masks(threat), dtype=np.int64)
+        neighbours = np.array(neighbour_masks(n_robots, threat.graph.links), dtype=np.int64)
         self._inside = _links_inside(neighbours)
-        locked = np.zeros(n_robots, dtype=np.int64)
-        for i, j in threat.protected_links:
-            locked[i] |= 1 << j
-            locked[j] |= 1 << i
-        held = _links_inside(locked)
+        held = _links_inside(np.array(neighbour_masks(n_robots, threat.protected_links), dtype=np.int64))
         # Reversing a table by bit mask gives the complements.
         between = self._inside[-1] - self._inside - self._inside[::-1]
         separable = (between <= threat.alpha_c) & (held[-1] == held + held[::-1])

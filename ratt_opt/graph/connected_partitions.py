@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import neighbour_masks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,7 +54,7 @@ class SubsetLattice:
             links += (masks >> i & masks >> j) & 1
         for i, j in threat.protected_links:
             protected += (masks >> i & masks >> j) & 1
-        return cls(n_robots, links, protected, _connected(neighbour_masks(threat), masks))
+        return cls(n_robots, links, protected, _connected(neighbour_masks(n_robots, threat.graph.links), masks))
 
     def crossing(self, first: IntArray, second: IntArray) -> IntArray:
         """Links between disjoint subsets; a huge number where one of them is protected."""
@@ -61,15 +62,6 @@ class SubsetLattice:
         count = self.links[both] - self.links[first] - self.links[second]
         locked = self.protected[both] - self.protected[first] - self.protected[second]
         return np.where(locked > 0, 10**6, count)
-
-
-def neighbour_masks(threat: Threat) -> list[int]:
-    """Bit mask of the neighbours of each robot."""
-    masks = [0] * threat.graph.n_robots
-    for i, j in threat.graph.links:
-        masks[i] |= 1 << j
-        masks[j] |= 1 << i
-    return masks
 
 
 def _connected(neighbours: list[int], masks: IntArray) -> BoolArray:

@@ -153,15 +153,12 @@ def realise(threat: Threat, outcome: Outcome) -> tuple[frozenset[int], frozenset
     survivors: frozenset[int] = frozenset().union(*outcome)
     blinded = frozenset(range(threat.graph.n_robots)) - survivors
     home = {i: k for k, group in enumerate(outcome) for i in group}
-    if len(outcome) > 1:
-        if threat.links_alike:
-            largest = max(range(len(outcome)), key=lambda k: len(outcome[k]))
-            home.update(dict.fromkeys(blinded, largest))
-        else:
-            home = _place(threat, home, sorted(blinded), len(outcome))
+    if threat.links_alike or len(outcome) == 1:
+        largest = max(range(len(outcome)), key=lambda k: len(outcome[k]))
+        home.update(dict.fromkeys(blinded, largest))
     else:
-        home = dict.fromkeys(range(threat.graph.n_robots), 0)
-    cut = frozenset((i, j) for i, j in threat.graph.links if home[i] != home[j])
+        home = _place(threat, home, sorted(blinded), len(outcome))
+    cut = threat.graph.links_between([i for i in home if home[i] == k] for k in range(len(outcome)))
     assert len(cut) <= threat.alpha_c, "an outcome of this threat has an attack within its budget"
     return blinded, cut
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 
-from ratt_opt.graph.connected_partitions import neighbour_masks
+from ratt_opt.graph.communication import neighbour_masks
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -25,7 +25,6 @@ __all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "
 LARGEST_MASK = 60
 """Most robots: a group is a bit mask of 64."""
 
-FINISHED, PAUSED, FOUND = 0, 1, 2
 IMPOSSIBLE = 10_000
 """Blinded robots that no budget holds."""
 
@@ -59,11 +58,8 @@ def separable_groups(threat: Threat, most: int) -> SeparableGroups | None:
     n_robots = threat.graph.n_robots
     if n_robots > LARGEST_MASK:
         return None
-    neighbours = np.array(neighbour_masks(threat), dtype=np.int64)
-    locked = np.zeros(n_robots, dtype=np.int64)
-    for i, j in threat.protected_links:
-        locked[i] |= 1 << j
-        locked[j] |= 1 << i
+    neighbours = np.array(neighbour_masks(n_robots, threat.graph.links), dtype=np.int64)
+    locked = np.array(neighbour_masks(n_robots, threat.protected_links), dtype=np.int64)
     masks, complete = _enumerate(neighbours, locked, threat.alpha_c, most)
     if not complete:
         return None
@@ -155,14 +151,15 @@ def _still_within(need: Any, budget: int, state: Any, depth: int) -> int:
 
 
 @numba.njit(cache=True)
-def _search(  # noqa: PLR0917  (compiled code takes arrays, not records)
-    masks: Any, start: Any, neighbours: Any, need: Any, budgets: Any, limit: int, state: Any, counters: Any
-) -> int:
-    """Continue to the next partition within both budgets.
+def _search(groups: Any, need: Any, budgets: Any, limit: int, state: Any, counters: Any) -> bool:  # noqa: PLR0917
+    """Continue to the next partition within both budgets; false at the limit, or at depth -1: at the end.
 
+    ``groups`` : masks, start, neighbours of :class:`SeparableGroups`; ``need`` (G,) may have risen since the last call;
+    ``budgets`` : blinded robots, cut links;
     ``state`` : (N + 1, 5) robots left, links cut, robots blinded, next position, group chosen, at each depth;
-    ``counters`` : depth, nodes. ``need`` may have risen since the last call.
+    ``counters`` : depth, nodes
     """
+    masks, start, neighbours = groups
     depth = _still_within(need, budgets[0], state, counters[0])
     while depth >= 0:
         left = state[depth, 0]
@@ -177,7 +174,7 @@ def _search(  # noqa: PLR0917  (compiled code takes arrays, not records)
                 continue
             if counters[1] >= limit:
                 state[depth, 3], counters[0] = group, depth
-                return 1
+                return False
             counters[1] += 1
             others = left & ~mask
             links = state[depth, 1] + _links_between(mask, others, neighbours)
@@ -194,10 +191,10 @@ def _search(  # noqa: PLR0917  (compiled code takes arrays, not records)
         if others == 0:
             counters[0] = depth
             state[depth + 1, 0] = 0
-            return 2
+            return True
         depth += 1
     counters[0] = -1
-    return 0
+    return False
 
 
 class PartitionSearch:
@@ -224,11 +221,8 @@ class PartitionSearch:
 
     def next(self, limit: int) -> list[int] | None:
         """Groups of the next partition; ``None`` once ``finished`` or at ``limit`` nodes in all."""
-        groups = self._groups
-        answer = _search(
-            groups.masks, groups.start, groups.neighbours, self.need, self._budgets, limit, self._state, self._counters
-        )
-        if answer == FOUND:
+        groups = self._groups.masks, self._groups.start, self._groups.neighbours
+        if _search(groups, self.need, self._budgets, limit, self._state, self._counters):
             return [int(group) for group in self._state[: int(self._counters[0]) + 1, 4]]
-        self.finished = answer == FINISHED
+        self.finished = bool(self._counters[0] < 0)
         return None

@@ -24,9 +24,13 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["GroupSplit", "ThresholdTest", "fewest_blinded", "largest_survivors"]
+__all__ = ["LARGEST_COMPILED", "GroupSplit", "ThresholdTest", "fewest_blinded", "largest_survivors"]
+
+LARGEST_COMPILED = 20
+"""Most robots for which the compiled form of this test tabulates all sets (2**20 sets, up to 1.7e9 pairs per test)."""
 
 UNREACHABLE = np.int16(10_000)
+"""Links that no budget holds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,15 @@ class GroupSplit:
 
     groups: tuple[int, ...]
     survivors: tuple[int, ...]
+
+    def members(self) -> list[list[int]]:
+        """Robots of each group, blinded ones included."""
+        return [_robots(group) for group in self.groups]
+
+    @property
+    def blinded(self) -> list[int]:
+        """Robots that do not survive."""
+        return _robots(sum(self.groups) - sum(self.survivors))
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +115,10 @@ class ThresholdTest:
             survivors.append(largest_survivors(self.threat, self.values, group, threshold))
             rest, blinded = int(one.rest[pick]), blinded - int(need[group])
         return GroupSplit(tuple(groups), tuple(survivors))
+
+
+def _robots(mask: int) -> list[int]:
+    return [i for i in range(mask.bit_length()) if mask >> i & 1]
 
 
 def fewest_blinded(threat: Threat, values: FloatArray, threshold: float) -> IntArray:

@@ -9,14 +9,13 @@ from ratt_opt.report.tables import share_text
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ratt_opt.main_job import BoundReport
+    from ratt_opt.main_job.result import BoundReport
 
 __all__ = ["draw_bars"]
 
 PLAN = "#0b6e99"
 OTHER = "#b8c4ca"
 LIMIT = "#c1121f"
-UNITS = {"trace": "m²", "logdet": "nat", "maxeig": "m²"}
 
 
 def draw_bars(axes: Axes, report: BoundReport) -> None:
@@ -46,5 +45,6 @@ def draw_bars(axes: Axes, report: BoundReport) -> None:
     axes.set_yticks(list(rows), [plan.name for plan in plans])
     axes.invert_yaxis()
     axes.set_xlim(0, 1.06 * spread)
-    axes.set_xlabel(f"{report.objective} value kept under the worst attack [{UNITS.get(report.objective, '1')}]")
+    unit = f" [{report.unit}]" if report.unit else ""
+    axes.set_xlabel(f"{report.objective} value kept under the worst attack{unit}")
     axes.spines[["top", "right"]].set_visible(False)

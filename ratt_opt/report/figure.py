@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ratt_opt.main_job import BoundReport
+    from ratt_opt.main_job.result import BoundReport
     from ratt_opt.report.map import Picture
 
 __all__ = ["plan_figure", "save_figure"]

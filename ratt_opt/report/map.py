@@ -107,25 +107,7 @@ def _draw_targets(axes: Axes, picture: Picture) -> None:
 
 
 def _draw_robots(axes: Axes, picture: Picture) -> None:
-    axes.scatter(
-        picture.before[:, 0],
-        picture.before[:, 1],
-        s=26,
-        facecolors="none",
-        edgecolors="#555555",
-        zorder=3,
-        label="robot now",
-    )
-    moves = picture.after[:, :2] - picture.before[:, :2]
-    arrow: dict[str, Any] = {
-        "angles": "xy",
-        "scale_units": "xy",
-        "scale": 1,
-        "width": 0.003,
-        "color": "#555555",
-        "zorder": 3,
-    }
-    axes.quiver(*picture.before[:, :2].T, *moves.T, **arrow)
+    _draw_moves(axes, picture)
     sensing = picture.attack.sensing
     kinds = (
         (sorted(picture.best - sensing), SURVIVING, "robot after its move, best group"),
@@ -133,18 +115,10 @@ def _draw_robots(axes: Axes, picture: Picture) -> None:
     )
     for robots, colour, label in kinds:
         if robots:
-            axes.scatter(
-                picture.after[robots, 0],
-                picture.after[robots, 1],
-                s=110,
-                color=colour,
-                zorder=5,
-                edgecolors="white",
-                label=label,
-            )
+            x, y, _ = picture.after[robots].T
+            axes.scatter(x, y, s=110, color=colour, zorder=5, edgecolors="white", label=label)
     if sensing:
-        blinded = sorted(sensing)
-        x, y = picture.after[blinded, 0], picture.after[blinded, 1]
+        x, y, _ = picture.after[sorted(sensing)].T
         axes.scatter(x, y, s=110, color="#e9c9cb", zorder=5, edgecolors="white")
         cross: dict[str, Any] = {"marker": "x", "s": 130, "linewidths": 2.4, "color": BLINDED, "zorder": 7}
         axes.scatter(x, y, label="blinded robot", **cross)
@@ -154,6 +128,16 @@ def _draw_robots(axes: Axes, picture: Picture) -> None:
         style: dict[str, Any] = {"fontsize": 7, "weight": "bold", "zorder": 8, "color": BLINDED if beside else "white"}
         shift = (-11, 5) if beside else (0, 0)
         axes.annotate(str(i), pose[:2], shift, textcoords="offset points", ha="center", va="center", **style)
+
+
+def _draw_moves(axes: Axes, picture: Picture) -> None:
+    """A ring where each robot is now, and an arrow to where its control takes it."""
+    x, y, _ = picture.before.T
+    ring: dict[str, Any] = {"s": 26, "facecolors": "none", "edgecolors": "#555555", "zorder": 3}
+    axes.scatter(x, y, label="robot now", **ring)
+    moves = picture.after[:, :2] - picture.before[:, :2]
+    scale: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1}
+    axes.quiver(x, y, *moves.T, **scale, width=0.003, color="#555555", zorder=3)
 
 
 def _draw_headings(axes: Axes, picture: Picture) -> None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ratt_opt.bounds.guarantees import inapplicable_guarantees
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
@@ -16,17 +14,14 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.breaking_budgets import BreakingBudget
     from ratt_opt.attackers.criticality import Criticality
     from ratt_opt.attackers.result import AttackResult
-    from ratt_opt.certificates.write import Certificate
+    from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.main_job import BoundReport
+    from ratt_opt.main_job.result import BoundReport
     from ratt_opt.problem import Attack
 
 __all__ = [
-    "attack_table",
+    "attack_tables",
     "audit_table",
-    "bracket_text",
-    "budget_table",
-    "critical_table",
     "report_tables",
     "share_text",
 ]
@@ -50,32 +45,18 @@ def report_tables(report: BoundReport, labels: Sequence[str] | None = None) -> I
     yield _guarantees(report)
 
 
-def attack_table(results: Mapping[str, AttackResult]) -> Table:
-    """One row an attacker: the value its attack leaves, and the attack."""
-    table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
-    for name, result in results.items():
-        proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
-        table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
-    return table
-
-
-def critical_table(ranking: Iterable[Criticality]) -> Table:
-    """One row a robot or link: what protecting it alone gains, and what losing it alone costs."""
-    table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
-    for row in ranking:
-        name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
-        table.add_row(name, bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
-    return table
-
-
-def budget_table(budgets: Iterable[BreakingBudget], goal: str) -> Table:
-    """One row a smallest pair of budgets that pushes the plan below a value."""
-    table = _table(f"smallest budgets that leave less than {goal}", "blinded", "links cut", "value left", "proved")
-    for row in budgets:
-        table.add_row(str(row.alpha_s), str(row.alpha_c), f"{row.value:.8g}", "yes" if row.is_proved else "no")
-    if not table.row_count:
-        table.caption = "no attack on what is not protected leaves less"
-    return table
+def attack_tables(
+    results: Mapping[str, AttackResult],
+    critical: Iterable[Criticality] | None,
+    budgets: Iterable[BreakingBudget] | None,
+    below: float | None,
+) -> Iterable[Table]:
+    """Yield the attacks on a plan, and, where asked for, what to protect and what pushes it ``below`` a value."""
+    yield _attacks(results)
+    if critical is not None:
+        yield _critical(critical)
+    if budgets is not None:
+        yield _budgets(budgets, f"{below:.8g}")
 
 
 def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
@@ -87,7 +68,7 @@ def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
     return table
 
 
-def bracket_text(lower: float, upper: float) -> str:
+def _bracket_text(lower: float, upper: float) -> str:
     """The bracket as text: one number where both ends agree to eight digits, with up to ten of them."""
     for digits in (10, 9, 8):
         if f"{lower:.{digits}g}" == f"{upper:.{digits}g}":
@@ -102,12 +83,40 @@ def share_text(share: float) -> str:
     return f"at least {math.floor(share * 1e6) / 1e6:.6f}"
 
 
+def _attacks(results: Mapping[str, AttackResult]) -> Table:
+    """One row an attacker: the value its attack leaves, and the attack."""
+    table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
+    for name, result in results.items():
+        proved = _bracket_text(result.lower, result.upper) if name == "exact" else ""
+        table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
+    return table
+
+
+def _critical(ranking: Iterable[Criticality]) -> Table:
+    """One row a robot or link: what protecting it alone gains, and what losing it alone costs."""
+    table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
+    for row in ranking:
+        name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
+        table.add_row(name, _bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
+    return table
+
+
+def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
+    """One row a smallest pair of budgets that pushes the plan below a value."""
+    table = _table(f"smallest budgets that leave less than {goal}", "blinded", "links cut", "value left", "proved")
+    for row in budgets:
+        table.add_row(str(row.alpha_s), str(row.alpha_c), f"{row.value:.8g}", "yes" if row.is_proved else "no")
+    if not table.row_count:
+        table.caption = "no attack on what is not protected leaves less"
+    return table
+
+
 def _planners(report: BoundReport) -> Table:
     table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(report.share(plan))
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
-        table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
+        table.add_row(name, _bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
     table.caption = "* recommended: the best proved worst case"
     return table
 
@@ -115,11 +124,10 @@ def _planners(report: BoundReport) -> Table:
 def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
     plan = report.recommended
     table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
-    groups = report.problem.communication.groups(plan.worst_case.attack.links)
-    home = {i: k for k, group in enumerate(groups) for i in group}
+    home = {i: k for k, group in enumerate(plan.groups) for i in group}
     for i, element in enumerate(plan.elements.tolist()):
         state = "blinded" if i in plan.worst_case.attack.sensing else "sees"
-        group = f", group {home[i]} of {len(groups)}" if len(groups) > 1 else ""
+        group = f", group {home[i]} of {len(plan.groups)}" if len(plan.groups) > 1 else ""
         table.add_row(str(i), str(element), labels[element] if labels else "", state + group)
     table.caption = f"cut links: {_links(plan.worst_case.attack)}"
     return table
@@ -128,7 +136,7 @@ def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
 def _bracket(report: BoundReport) -> Table:
     table = _table("how good that is", "quantity", "value")
     optimum, problem = report.optimum, report.problem
-    table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
+    table.add_row("best possible worst-case value", _bracket_text(optimum.lower, report.upper))
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
     table.add_row("search stopped because", optimum.stop.value)
@@ -143,11 +151,11 @@ def _bracket(report: BoundReport) -> Table:
     return table
 
 
-def _verdict(proof: Certificate | str) -> str:
-    if isinstance(proof, str):
-        return f"none: {proof}"
-    found = proof.verified
-    bracket = bracket_text(found.lower, found.upper)
+def _verdict(given: Certification) -> str:
+    if given.certificate is None:
+        return f"none: {given.why_not}"
+    found = given.certificate.verified
+    bracket = _bracket_text(found.lower, found.upper)
     if found.lower_proved:
         return f"verified, both ends proved in {found.arithmetic}: {bracket}"
     return f"verified, upper end proved in {found.arithmetic}, lower end searched in floating point: {bracket}"
@@ -155,18 +163,18 @@ def _verdict(proof: Certificate | str) -> str:
 
 def _guarantees(report: BoundReport) -> Table:
     table = _table("what was guaranteed before planning", "guarantee", "value", "needs")
-    best = max((float(g) for g in report.guarantees.values()), default=0.0)
+    best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0
         table.add_row(f"{name} *" if strongest else name, f"{float(guarantee):.6g}", "; ".join(guarantee.hypotheses))
-    for name, why in inapplicable_guarantees(report.problem, report.alpha_cs).items():
+    for name, why in report.inapplicable.items():
         table.add_row(name, "none", f"does not apply: {why}")
     table.caption = "* strongest that applies" if best > 0 else "curvature 1: no guarantee says anything here"
     return table
 
 
 def _curvature(bracket: Curvature) -> str:
-    return bracket_text(bracket.lower, bracket.upper)
+    return _bracket_text(bracket.lower, bracket.upper)
 
 
 def _robots(attack: Attack) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_json
-from ratt_opt.report.document import report_document
 from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.picture import picture_of
 from ratt_opt.scenario.model import Scenario
@@ -13,7 +12,7 @@ from ratt_opt.scenario.model import Scenario
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ratt_opt.main_job import BoundReport
+    from ratt_opt.main_job.result import BoundReport
 
 __all__ = ["write_report"]
 
@@ -26,9 +25,9 @@ def write_report(report: BoundReport, folder: str | Path, source: object = None)
     InputError : the folder cannot be written.
     """
     out = output_directory(folder)
-    picture = picture_of(source, report.problem, report.recommended) if isinstance(source, Scenario) else None
+    picture = picture_of(source, report) if isinstance(source, Scenario) else None
     figure = plan_figure(report, picture)
     for name in ("plan.png", "plan.svg"):
         save_figure(figure, out / name)
-    write_json(out / "report.json", report_document(report))
+    write_json(out / "report.json", report.to_dict())
     return [out / "report.json", out / "plan.png", out / "plan.svg"]

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt._files import write_json
 from ratt_opt.errors import FileFormatError, InputError
+from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.model import Scenario
-from ratt_opt.scenario.model_free import InformationInput
 
 if TYPE_CHECKING:
     from ratt_opt.scenario.record import Record

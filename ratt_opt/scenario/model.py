@@ -5,19 +5,19 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-import networkx as nx
 import numpy as np
 from pydantic import Field, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
-from ratt_opt.problem import Problem
 from ratt_opt.scenario.motion import move_robots, predict_targets
+from ratt_opt.scenario.problem_record import Link, ProblemRecord
 from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
-from ratt_opt.scenario.threat_fields import Link, check_threat_fields, objective_class
 
 if TYPE_CHECKING:
+    import networkx as nx
+
     from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["DEFAULT_CONTROLS", "Robot", "Scenario", "Target"]
@@ -76,7 +76,7 @@ class Target(Record):
         return self
 
 
-class Scenario(Record):
+class Scenario(ProblemRecord):
     """A team, its targets and the adversary's budgets: everything one planning step needs.
 
     ``links`` : pairs of robots that can communicate, or ``None``; ``communication_range`` : robots
@@ -102,7 +102,7 @@ class Scenario(Record):
     def _check_whole(self) -> Self:
         if self.links is not None and self.communication_range is not None:
             raise InputError("communication_range", "must be absent where links are listed", self.communication_range)
-        check_threat_fields(self, self.n_robots, self.graph)
+        self._check_links()
         self._check_ranges()
         self.problem()  # every rule of the matrices too: what loads can be planned
         return self
@@ -164,40 +164,24 @@ class Scenario(Record):
     @property
     def graph(self) -> nx.Graph | None:
         """The communication graph, or ``None`` for the complete one."""
-        if self.links is None and self.communication_range is None:
-            return None
-        graph: nx.Graph = nx.Graph()
-        graph.add_nodes_from(range(self.n_robots))
-        if self.links is not None:
-            graph.add_edges_from(self.links)
-            return graph
+        if self.communication_range is None:
+            return super().graph
         apart = np.linalg.norm(self.poses[:, None, :2] - self.poses[None, :, :2], axis=-1)
         close = np.argwhere(np.triu(apart <= self.communication_range, 1))
-        graph.add_edges_from((int(i), int(j)) for i, j in close)
-        return graph
+        return self._graph_of((int(i), int(j)) for i, j in close)
 
     @cached_property
     def element_labels(self) -> tuple[str, ...]:
         """(E,) what each element is, for people."""
         return tuple(f"{speed:g} m/s, {turn:g} rad/s" for speed, turn in self.controls)
 
-    def problem(self, objective: str = "trace") -> Problem:
-        """Return the max-min problem for ``"trace"``, ``"logdet"`` or ``"maxeig"``.
+    @property
+    def _owners(self) -> IntArray:
+        return self.robot
 
-        Raises
-        ------
-        InputError : the objective is unknown.
-        """
-        weights = np.array([target.weight for target in self.targets])
-        return Problem(
-            objective_class(objective)(self.prior, self.information, weights),
-            self.robot,
-            self.graph,
-            self.alpha_s,
-            self.alpha_c,
-            frozenset(self.protected_robots),
-            frozenset(self.protected_links),
-        )
+    @property
+    def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return self.prior, self.information, np.array([target.weight for target in self.targets])
 
     def _check_ranges(self) -> None:
         apart = np.linalg.norm(self.predicted_poses[:, None, :2] - self.predicted_targets[None], axis=-1)

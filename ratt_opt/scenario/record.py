@@ -72,7 +72,12 @@ class Record(BaseModel):
         return hash(tuple(self._fields().values()))
 
     def replace(self, **changes: Any) -> Self:
-        """Return a checked copy with some fields changed."""
+        """Return a copy with some fields changed, as in ``scenario.replace(alpha_s=2)``; every rule is checked again.
+
+        Raises
+        ------
+        InputError : a field is unknown or breaks its rule.
+        """
         return type(self)(**(self._fields() | changes))
 
     def _fields(self) -> dict[str, Any]:

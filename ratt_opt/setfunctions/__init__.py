@@ -1,1 +1,7 @@
-"""Set functions, their properties with witnesses, and their curvatures."""
+"""What a set function is worth at any set, and which properties it has, each violation with its witness.
+
+Open ``base.py`` first (the interface of every set function), then ``information.py`` and ``criteria/`` (the criteria
+of posterior information). ``table.py`` and ``reference.py`` are the other functions, ``zoo.py`` draws those with known
+answers. ``properties.py`` finds violations, by whole tables (``lattice.py``) or by ``sampling.py``; ``minorants.py``
+holds the records in which a criterion bounds marginals.
+"""

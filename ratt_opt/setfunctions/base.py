@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -41,9 +41,15 @@ class SetFunction(ABC):
 
     A subclass gives ``n`` and :meth:`evaluate`; the other methods have correct,
     slower defaults that a subclass may override with the same meaning.
+    Two functions are equal only if they are the same object: nobody compares tables of 2**26 values by accident.
     """
 
     __slots__ = ()
+
+    is_non_decreasing: ClassVar[bool] = False
+    """Whether theory proves it non-decreasing for all data."""
+    is_submodular: ClassVar[bool] = False
+    """Whether theory proves it submodular for all data."""
 
     @property
     @abstractmethod
@@ -62,6 +68,17 @@ class SetFunction(ABC):
         -------
         (K,) values
         """
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(n={self.n})"
+
+    def __setstate__(self, state: Any) -> None:
+        """Restore a copy; its arrays, which come back writeable, are made read-only again."""
+        for fields in state if isinstance(state, tuple) else (state,):
+            for name, value in (fields or {}).items():
+                if isinstance(value, np.ndarray):
+                    value.setflags(write=False)
+                object.__setattr__(self, name, value)
 
     def __call__(self, subset: Iterable[int]) -> float:
         """Value of the subset with the given element indices (in any order, each once).

@@ -12,8 +12,6 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
-from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample
 
 if TYPE_CHECKING:
@@ -85,7 +83,7 @@ def find_monotonicity_violation(
     rule = "non-decreasing"
     tolerance = check_number("tolerance", tolerance, low=0)
     if f.n > LARGEST_EXACT:
-        if isinstance(f, InformationObjective):
+        if f.is_non_decreasing:
             return None
         return sample(f, rule, tolerance, trials=trials, seed=seed)
     from ratt_opt.setfunctions.lattice import marginal_ends
@@ -108,7 +106,7 @@ def find_submodularity_violation(
 
     Source: the definition by second differences, equivalent to all pairs of sets.
     """
-    if f.n > LARGEST_EXACT and isinstance(f, LogDetObjective):
+    if f.n > LARGEST_EXACT and f.is_submodular:
         return None
     return _second_order(f, "submodular", tolerance, trials, seed)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.problem import Plan, Problem
 
 __all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
@@ -27,24 +29,28 @@ def equivalent_sensing_attacks(problem: Problem) -> int:
     found = smallest_largest_group(
         problem.communication, problem.alpha_c, protected_links=problem.protected_links, max_nodes=MILP_NODES
     )
-    solved = found.claimed_lower == found.upper
-    return problem.n_robots - (found.n_max if solved else found.lower)
+    return problem.n_robots - (found.lower if found.n_max is None else found.n_max)
 
 
-def ratt(problem: Problem) -> Plan:
+def ratt(problem: Problem, *, alpha_cs: int | None = None) -> Plan:
     """Plan against ``alpha = alpha_s + alpha_cs`` sensing attacks.
 
     The ``alpha`` robots with the largest individual values get their individually best
     element (bait); the others are chosen greedily, ignoring the bait. With
     ``alpha >= N`` every robot is bait. Ties go to the lowest element, then the lowest robot.
 
+    Parameters
+    ----------
+    alpha_cs : sensing attacks that the link attacks are worth, where known; else asked for
+
     Returns
     -------
-    Plan : with ``bait``; ``evaluations`` counts the set-function values of Algorithm 1.
+    Plan : with ``bait`` and ``alpha_cs``; ``evaluations`` counts the set-function values of Algorithm 1.
 
     Source: ratt.tex, Algorithm 1 (RATT); guarantee in Theorem 1, evaluations in Theorem 2.
     """
-    return bait_and_greedy(problem, problem.alpha_s + equivalent_sensing_attacks(problem))
+    known = equivalent_sensing_attacks(problem) if alpha_cs is None else alpha_cs
+    return replace(bait_and_greedy(problem, problem.alpha_s + known), alpha_cs=known)
 
 
 def bait_and_greedy(problem: Problem, alpha: int) -> Plan:

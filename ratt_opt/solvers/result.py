@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ratt_opt._values import ByValue, shown
+
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.result import AttackResult
@@ -14,11 +16,12 @@ if TYPE_CHECKING:
 __all__ = ["MaxMinResult"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MaxMinResult:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MaxMinResult(ByValue):
     """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` keeps at least ``lower`` under any attack.
 
-    ``Phi*`` is the largest worst-case value of any plan [unit of the objective].
+    ``Phi*`` is the largest worst-case value of any plan [unit of the objective]. Two results are equal when all
+    their fields are.
     """
 
     elements: IntArray
@@ -34,3 +37,7 @@ class MaxMinResult:
     """The attack on ``elements`` that ``lower`` rests on; ``None`` where it was enumerated."""
     proof: UpperProof | None = None
     """What ``upper`` rests on; ``None`` where it was enumerated."""
+
+    def __repr__(self) -> str:
+        bracket = f"{self.lower:.9g} <= Phi* <= {self.upper:.9g}"
+        return f"MaxMinResult({bracket}, {self.stop.name}, {self.nodes} nodes, elements={shown(self.elements)})"

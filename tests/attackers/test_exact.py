@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+import pickle
+
 import networkx as nx
 import numpy as np
 import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_elements, random_problem, range_bearing
@@ -96,6 +99,36 @@ def test_budgets_are_checked_and_kept():
         worst_case_attack(problem, elements, time_limit=float("nan"))
 
 
+@pytest.mark.parametrize("n_robots", [6, 14, 24])
+@pytest.mark.parametrize("complete", [True, False])
+def test_an_outer_budget_counts_too(n_robots, complete):
+    """Its seconds are over, or its user interrupted: the attack ends at once with what the first heuristic found."""
+    rng = np.random.default_rng(n_robots)
+    graph = None if complete else nx.cycle_graph(n_robots)
+    plan = np.arange(n_robots)
+    problem = ro.Problem(ro.TraceObjective(*range_bearing(rng, n_robots, 3, 1)), plan, graph, 2, 4)
+    interrupted = Budget()
+    interrupted.interrupt()
+    for outer, stop in ((Budget(0.0), ro.Stop.TIME), (interrupted, ro.Stop.INTERRUPTED)):
+        result = worst_case_attack(problem, plan, time_limit=60.0, budget=outer)
+        assert (result.stop, result.nodes) == (stop, 0)
+        assert result.lower <= problem.team_value(plan, result.attack) == result.upper
+
+
+@pytest.mark.parametrize("n_robots", [5, 14])
+def test_results_are_plain_values(n_robots):
+    rng = np.random.default_rng(1)
+    plan = np.arange(n_robots)
+    problem = ro.Problem(ro.LogDetObjective(*range_bearing(rng, n_robots, 3, 1)), plan, None, 2, n_robots)
+    result = worst_case_attack(problem, plan)
+    assert result == worst_case_attack(problem, plan)
+    assert pickle.loads(pickle.dumps(result)) == result
+    assert result != ro.greedy_attack(problem, plan)
+    assert [type(x) for x in (result.lower, result.upper, result.nodes, result.evaluations)] == [float, float, int, int]
+    assert len(repr(result)) < 150
+    assert f"{len(result.attack.links)} links cut" in repr(result)
+
+
 class Impatient(ro.SetFunction):
     """Raises a keyboard interrupt at the k-th batch of evaluations."""
 
@@ -132,6 +165,13 @@ def test_an_interrupt_at_any_batch_returns_the_bracket(graph):
         assert 0.0 <= result.lower <= expected.upper <= result.upper
         assert problem.team_value(plan, result.attack) == result.upper
     assert worst_case_attack(interruptible(6, graph, total + 1), plan) == expected
+
+
+def test_an_interrupt_is_heard_by_the_searches_around():
+    problem = interruptible(6, None, 2)
+    outer = Budget()
+    assert worst_case_attack(problem, np.arange(6), budget=outer).stop is ro.Stop.INTERRUPTED
+    assert outer.stop() is ro.Stop.INTERRUPTED
 
 
 def test_a_search_that_is_stopped_relies_on_no_property_of_the_objective():

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.weakest_set.compact import CompactTeam
-from ratt_opt.attackers.weakest_set.forced_group import forced_survivors
+from ratt_opt.attackers.forced_group import forced_survivors
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
 
@@ -27,18 +27,19 @@ def test_fourteen_robots_on_a_sparse_graph_close(name, seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_both_large_searches_agree_on_a_complete_graph(seed):
-    """Thirteen robots: branch and bound as it is, thresholds once the class of the objective is hidden."""
+    """Thirteen robots: branch and bound as it is, thresholds for a criterion of one's own, of unknown formula."""
     rng = np.random.default_rng(seed)
     prior, information = range_bearing(rng, 13, 3, 1)
 
     class Hidden(ro.TraceObjective):
-        pass
+        def criterion(self, posterior_information):
+            return super().criterion(posterior_information)
 
     budgets = int(rng.integers(1, 6)), int(rng.integers(11, 40))
     plan = np.arange(13)
     shown = ro.worst_case_attack(ro.Problem(ro.TraceObjective(prior, information), plan, None, *budgets), plan)
     hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, None, *budgets), plan)
-    assert CompactTeam.of(Hidden(prior, information), plan) is None
+    assert PlanarTeam.of(Hidden(prior, information), plan) is None
     assert shown.stop is ro.Stop.CLOSED
     assert hidden.stop is ro.Stop.EXHAUSTED
     assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)

@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
-from ratt_opt.attackers.by_size.large_team import LargeTeamSearch
+from ratt_opt.attackers.bracket import AttackBracket
+from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.weakest_set import size_search
-from ratt_opt.attackers.weakest_set.compact import LOG_DET, TRACE, CompactTeam
-from ratt_opt.attackers.weakest_set.low_sets import LowSets
+from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.weakest_set import branch_and_bound, node_bounds
+from ratt_opt.attackers.weakest_set.enumeration import Enumeration
+from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
-from ratt_opt.attackers.weakest_set.outer_points import SetFamily
-from ratt_opt.attackers.weakest_set.weak_sets import weak_sets
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
+from ratt_opt.budget import Budget, OutOfBudget
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
 
 
@@ -36,10 +37,10 @@ def run_large(problem, elements, max_nodes=None):
     """The large-team search, also where ``worst_case_attack`` would use the one for small teams."""
     values = PlanValues(problem, elements)
     start = bounded_rational_attack(problem, elements)
-    bracket, budget = Bracket(start.attack, start.upper, 0.0), Budget(max_nodes, None)
-    team = CompactTeam.of(problem.objective, values.plan)
+    bracket, budget = AttackBracket(start.attack, start.upper, 0.0), Budget(max_nodes=max_nodes)
+    team = PlanarTeam.of(problem.objective, values.plan)
     try:
-        stop = LargeTeamSearch(problem, team, values, bracket, budget).run()
+        stop = SizeVectorSearch(AttackTask(problem, values, bracket, budget), team).run()
     except OutOfBudget as out:
         stop = out.stop
     return bracket, budget.nodes, stop
@@ -47,9 +48,9 @@ def run_large(problem, elements, max_nodes=None):
 
 def only_branch(monkeypatch):
     """Hardly any enumeration, so that bounds and branches decide."""
-    monkeypatch.setattr(size_search, "AT_ONCE", 0)
-    monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 1)
-    monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", 1)
+    monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
+    monkeypatch.setattr(branch_and_bound, "SHORTEST_ENUMERATION", 1)
+    monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -88,19 +89,17 @@ def test_the_bracket_is_valid_at_every_node_count(name, seed, monkeypatch):
         assert (stop is ro.Stop.NODES) == (limit < nodes)
 
 
-@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(12))
-def test_minorants_lie_below_every_set(kind, seed):
+def test_minorants_lie_below_every_set(name, seed):
     """Also where robots repeat, see nothing, or see along one line only."""
     rng = np.random.default_rng(seed)
     n_robots, size = 9, int(rng.integers(1, 9))
-    name = "trace" if kind == TRACE else "logdet"
     data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 4)
     data[1][3] = data[1][2]
     data[1][4] = 0.0
-    team = CompactTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
-    family = SetFamily(kind, team.weights, team.prior, team.prior, team.information, size)
-    minorant = affine_minorant(family, 2, np.inf)
+    team = PlanarTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    minorant = affine_minorant(team.family(np.arange(n_robots), size), 2, np.inf)
     slack = [
         team.value(chosen) - minorant.constant - minorant.scores[list(chosen)].sum()
         for chosen in combinations(range(n_robots), size)
@@ -115,14 +114,14 @@ def test_minorants_lie_below_every_set(kind, seed):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(10))
-def test_low_sets_are_all_of_them(seed, name):
+def test_all_sets_below_a_threshold_are_enumerated(seed, name):
     rng = np.random.default_rng(seed)
-    team = CompactTeam.of(OBJECTIVES[name](*information_data(rng, 8, 3)), np.arange(8))
+    team = PlanarTeam.of(OBJECTIVES[name](*information_data(rng, 8, 3)), np.arange(8))
     values = {frozenset(s): team.value(s) for s in combinations(range(8), 4)}
     threshold = float(np.median(list(values.values())))
-    low, found = LowSets(team, np.arange(8), frozenset(), 4), set()
-    while not low.finished:
-        one = low.next_below(threshold, low.nodes + 7)
+    sets, found = Enumeration(team, np.arange(8), frozenset(), 4), set()
+    while not sets.finished:
+        one = sets.next_below(threshold, sets.nodes + 7)
         if one is not None:
             found.add(one)
     assert found == {s for s, value in values.items() if value < threshold}
@@ -137,7 +136,7 @@ def test_a_team_of_twenty_closes_and_is_beaten_by_no_local_search(name):
     assert result.stop is ro.Stop.CLOSED
     assert result.upper - result.lower <= 1e-9 * result.upper
     assert result.upper <= ro.greedy_attack(problem, plan).upper
-    team = CompactTeam.of(problem.objective, plan)
+    team = PlanarTeam.of(problem.objective, plan)
     weakest = min(team.value(rng.choice(20, 7, replace=False)) for _ in range(3000))
     assert result.lower <= weakest
     again = ro.worst_case_attack(problem, plan)
@@ -156,8 +155,8 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
     rng = np.random.default_rng(seed)
     n_robots, size = 8, int(rng.integers(0, 9))
     data = range_bearing(rng, n_robots, 3, 1) if seed % 2 else information_data(rng, n_robots, 3)
-    team = CompactTeam.of(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
-    axis = weakest_axis(team, team.prior, team.information, size)
+    team = PlanarTeam.of(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
+    axis = weakest_axis(team.family(np.arange(n_robots), size))
     weakest = min(team.value(chosen) for chosen in combinations(range(n_robots), size))
     assert axis.bound <= weakest + 1e-12
     assert axis.bound == pytest.approx(weakest, rel=1e-8, abs=1e-8)
@@ -180,7 +179,7 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
             raise KeyboardInterrupt
         return affine_minorant(*arguments)
 
-    monkeypatch.setattr(size_search, "affine_minorant", interrupted)
+    monkeypatch.setattr(node_bounds, "affine_minorant", interrupted)
     result = ro.worst_case_attack(problem, np.arange(13))
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
@@ -208,15 +207,32 @@ def test_no_exchange_lowers_a_weak_set(name, seed):
     rng = np.random.default_rng(seed)
     n_robots, size = 11, int(rng.integers(1, 11))
     data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 3)
-    team = CompactTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
-    found = weak_sets(team, size)
+    team = PlanarTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    found = weak_sets_of_size(team, size)
     values = [team.value(robots) for robots in found]
     assert values == sorted(values)
-    assert found == weak_sets(team, size)
+    assert found == weak_sets_of_size(team, size)
     for robots, value in zip(found, values, strict=True):
         others = set(range(n_robots)) - robots
-        exchanged = min(team.value(robots - {i} | {e}) for i in robots for e in others)
+        lowest = min(team.value(robots - {i} | {e}) for i in robots for e in others)
         assert len(robots) == size
-        assert exchanged >= value - 1e-9 * max(abs(value), 1.0)
+        assert lowest >= value - 1e-9 * max(abs(value), 1.0)
     best = min(team.value(robots) for robots in combinations(range(n_robots), size))
     assert values[0] <= best + 0.05 * abs(best), "one of many starts comes near the weakest set"
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(8))
+def test_exchanges_keep_fixed_robots_and_stay_among_those_allowed(name, seed):
+    rng = np.random.default_rng(seed)
+    team = PlanarTeam.of(OBJECTIVES[name](*range_bearing(rng, 12, 4, 1)), np.arange(12))
+    among = frozenset(rng.permutation(12)[:9].tolist())
+    start = frozenset(sorted(among)[:5])
+    fixed = frozenset(sorted(start)[:2])
+    reached = exchanged(team, start, among=among, fixed=fixed)
+    assert fixed <= reached <= among
+    assert len(reached) == len(start)
+    assert team.value(reached) <= team.value(start) + 1e-12
+    lowest = min(team.value(reached - {i} | {e}) for i in reached - fixed for e in among - reached)
+    assert lowest >= team.value(reached) - 1e-9 * max(team.value(reached), 1.0)
+    assert exchanged(team, start, among=start) == start

@@ -8,24 +8,22 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime, linprog
 
-from ratt_opt.attackers.weakest_set.compact import LOG_DET, TRACE, CompactTeam
 from ratt_opt.attackers.weakest_set.minorant import _program, affine_minorant
-from ratt_opt.attackers.weakest_set.outer_points import SetFamily, outer_points
-from ratt_opt.attackers.weakest_set.smoothed_dual import Multipliers, _smoothed
+from ratt_opt.attackers.weakest_set.outer_polytopes import outer_polytopes
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.smoothed_dual import Multipliers
 from tests.strategies import OBJECTIVES, range_bearing
 
-NAMES = {TRACE: "trace", LOG_DET: "logdet"}
 
-
-def sensor_family(kind, seed, n_robots=9, n_targets=4, size=None):
+def sensor_family(name, seed, n_robots=9, n_targets=4, size=None):
     rng = np.random.default_rng(seed)
-    team = CompactTeam.of(OBJECTIVES[NAMES[kind]](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
+    team = PlanarTeam.of(OBJECTIVES[name](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
     size = int(rng.integers(2, n_robots - 2)) if size is None else size
-    return team, SetFamily(kind, team.weights, team.prior, team.prior, team.information, size)
+    return team, team.family(np.arange(n_robots), size)
 
 
 def dual_program(family, n_heavy):
-    points = outer_points(family, n_heavy)
+    points = outer_polytopes(family, n_heavy)
     assert points.sound.all()
     return _program(family, points)
 
@@ -57,12 +55,12 @@ def optimum(program):
     return found.fun
 
 
-@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(8))
-def test_outer_polytopes_hold_every_set(kind, seed):
-    team, family = sensor_family(kind, seed)
+def test_outer_polytopes_hold_every_set(name, seed):
+    team, family = sensor_family(name, seed)
     rng = np.random.default_rng(seed)
-    points = outer_points(family, 2)
+    points = outer_polytopes(family, 2)
     functionals = rng.normal(size=(40, 3)) / np.abs(team.information).max(axis=(0, 1))
     for chosen in combinations(range(9), family.size):
         for j, robots in enumerate(points.heavy):
@@ -73,10 +71,10 @@ def test_outer_polytopes_hold_every_set(kind, seed):
             assert ((vertices @ functionals.T).min(axis=0) <= functionals @ light + 1e-9).all()
 
 
-@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(6))
-def test_the_smoothed_bound_is_smooth_and_near(kind, seed):
-    _, family = sensor_family(kind, seed)
+def test_the_smoothed_bound_is_smooth_and_near(name, seed):
+    _, family = sensor_family(name, seed)
     program = dual_program(family, 2)
     rng = np.random.default_rng(seed)
     n_targets, n_robots = len(program.heavy), len(program.information)
@@ -85,11 +83,8 @@ def test_the_smoothed_bound_is_smooth_and_near(kind, seed):
     def evaluate(point, temperature):
         shaped = point.reshape(n_targets, 5)
         gradient, fraction = np.zeros((n_targets, 5)), np.zeros(n_robots)
-        bound, value = _smoothed(
-            program.first, program.pattern, program.values, program.light, program.patterns, program.heavy,
-            program.information, program.size, scale * shaped[:, :3], shaped[:, 3:].copy(), temperature,
-            gradient, fraction,
-        )  # fmt: skip
+        multipliers = Multipliers(scale * shaped[:, :3], shaped[:, 3:].copy())
+        bound, value = program.smoothed(multipliers, temperature, gradient, fraction)
         gradient[:, :3] *= scale
         return bound, value, gradient.ravel(), fraction
 
@@ -104,11 +99,11 @@ def test_the_smoothed_bound_is_smooth_and_near(kind, seed):
         assert bound - temperature * most - 1e-9 <= evaluate(point, temperature)[1] <= bound + 1e-9
 
 
-@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(10))
-def test_the_ascent_comes_near_the_linear_program(kind, seed):
+def test_the_ascent_comes_near_the_linear_program(name, seed):
     """And never passes it; a warm start loses nothing."""
-    _, family = sensor_family(kind, seed)
+    _, family = sensor_family(name, seed)
     program = dual_program(family, 2)
     best = optimum(program)
     start = Multipliers(np.zeros((len(program.heavy), 3)), np.zeros(program.heavy.shape))
@@ -122,17 +117,16 @@ def test_the_ascent_comes_near_the_linear_program(kind, seed):
     assert program.bound(again, program.rest(again)) >= bound
 
 
-@pytest.mark.parametrize("kind", [TRACE, LOG_DET])
+@pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(6))
-def test_a_restricted_minorant_and_its_child_hold_below_every_set_left(kind, seed):
-    team, family = sensor_family(kind, seed, size=4)
+def test_a_restricted_minorant_and_its_child_hold_below_every_set_left(name, seed):
+    team, family = sensor_family(name, seed, size=4)
     parent = affine_minorant(family, 2, np.inf)
     robot = int(np.argmax(parent.tension))
     it = np.arange(9) == robot
     others = np.flatnonzero(~it)
     for inside in (True, False):
-        start = team.prior + team.information[robot] if inside else team.prior
-        smaller = SetFamily(kind, team.weights, team.prior, start, team.information[others], 4 - inside)
+        smaller = team.family(others, 4 - inside, [robot] if inside else [])
         restricted = parent.restricted(~it, it if inside else np.zeros_like(it))
         child = affine_minorant(smaller, 3, np.inf, restricted)
         for chosen in combinations(range(8), 4 - inside):

@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bracket import Bracket, Budget, OutOfBudget
-from ratt_opt.attackers.by_partition import weak_subsets
+from ratt_opt.attackers.bracket import AttackBracket
+from ratt_opt.attackers.by_partition import group_survivors
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.weakest_set import size_search
-from ratt_opt.attackers.weakest_set.compact import CompactTeam
+from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.weakest_set import branch_and_bound
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
@@ -43,11 +45,11 @@ def run_split(problem, elements, max_nodes=None):
     """The search itself, whatever ``worst_case_attack`` would choose for this team."""
     values = PlanValues(problem, elements)
     first = bounded_rational_attack(problem, elements)
-    bracket, budget = Bracket(first.attack, first.upper, 0.0), Budget(max_nodes, None)
-    team = CompactTeam.of(problem.objective, values.plan)
+    bracket, budget = AttackBracket(first.attack, first.upper, 0.0), Budget(max_nodes=max_nodes)
+    team = PlanarTeam.of(problem.objective, values.plan)
     groups = separable_groups(problem.threat, 100_000)
     try:
-        stop = SplitSearch(problem, team, groups, values, bracket, budget).run()
+        stop = SplitSearch(AttackTask(problem, values, bracket, budget), team, groups).run()
     except OutOfBudget as out:
         stop = out.stop
     return bracket, budget.nodes, stop
@@ -73,11 +75,11 @@ def test_value_is_the_definition_s(seed):
 )
 def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
     """Nine and ten robots: subsets found by plain enumeration, then all by branch and bound."""
-    monkeypatch.setattr(weak_subsets, "PLAIN_NODES", plain)
+    monkeypatch.setattr(group_survivors, "PLAIN_NODES", plain)
     if not plain:
-        monkeypatch.setattr(size_search, "AT_ONCE", 0)
-        monkeypatch.setattr(size_search, "SHORTEST_ENUMERATION", 1)
-        monkeypatch.setattr(size_search, "LONGEST_ENUMERATION", 1)
+        monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
+        monkeypatch.setattr(branch_and_bound, "SHORTEST_ENUMERATION", 1)
+        monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
     bracket, _, stop = run_split(problem, elements)
     check(problem, elements, bracket, stop, ro.worst_case_attack(problem, elements).upper)
@@ -85,7 +87,7 @@ def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_bracket_is_valid_at_every_node_count(seed, monkeypatch):
-    monkeypatch.setattr(weak_subsets, "PLAIN_NODES", 20)
+    monkeypatch.setattr(group_survivors, "PLAIN_NODES", 20)
     problem, elements = team_problem(seed, 7, density=0.4)
     problem = ro.Problem(problem.objective, problem.robot, problem.graph, 2, min(5, len(problem.communication.links)))
     expected = ro.worst_case_attack(problem, elements).upper
@@ -181,12 +183,13 @@ def test_a_protected_link_of_a_complete_graph_only_helps(name):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_both_exact_ways_agree_at_sixteen_robots(seed):
-    """Partitions into groups as it is, thresholds once the class of the objective is hidden."""
+    """Partitions into groups as it is, thresholds for a criterion of one's own, of which no formula is known."""
     rng = np.random.default_rng(seed)
     prior, information = range_bearing(rng, 16, 4, 1)
 
     class Hidden(ro.TraceObjective):
-        pass
+        def criterion(self, posterior_information):
+            return super().criterion(posterior_information)
 
     plan, graph = np.arange(16), disk_graph(seed, 16, 4)
     budgets, held = (3, 7), (frozenset({seed}), frozenset(sorted((min(e), max(e)) for e in graph.edges)[:seed]))

@@ -8,6 +8,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.breaking_budgets import breaking_budgets
+from ratt_opt.attackers.by_partition.threshold_search import threshold_search
 from ratt_opt.attackers.criticality import criticality_ranking
 from ratt_opt.errors import InputError
 from tests.oracles import brute_force_worst_case
@@ -81,3 +82,29 @@ def test_a_value_that_is_not_a_number_is_refused():
     problem = random_problem(np.random.default_rng(0), 3)
     with pytest.raises(InputError, match="value"):
         breaking_budgets(problem, [c[0] for c in problem.choices], float("nan"))
+
+
+def test_after_an_interrupt_nothing_more_is_searched(monkeypatch):
+    """Brackets and budgets stay valid; what was not decided is not called proved."""
+    problem = random_problem(np.random.default_rng(2), 5, kind="trace", complete=True, protect=False)
+    problem = replace(problem, alpha_s=1, alpha_c=3)
+    plan = random_elements(np.random.default_rng(2), problem)
+    exact = {row.target: row for row in criticality_ranking(problem, plan)}
+    goal = ro.worst_case_attack(problem, plan).upper * 1.01
+    tasks = []
+
+    def interrupted_once(task):
+        tasks.append(task)
+        if len(tasks) == 1:
+            raise KeyboardInterrupt
+        return threshold_search(task)
+
+    monkeypatch.setattr("ratt_opt.attackers.exact.threshold_search", interrupted_once)
+    for row in criticality_ranking(problem, plan):
+        assert row.gain_lower <= exact[row.target].gain_lower + 1e-12
+        assert row.gain_upper >= exact[row.target].gain_upper - 1e-12
+    tasks.clear()
+    found = breaking_budgets(problem, plan, goal)
+    assert all(one.value < goal and not (one.is_proved and one.alpha_c) for one in found)
+    assert len(tasks) > 1
+    assert [task.budget.nodes for task in tasks] == [0] * len(tasks)

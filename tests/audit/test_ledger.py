@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from ratt_opt.audit import ledger as ledger_module
-from ratt_opt.audit.entry import Entry, EnumeratedEntry
+from ratt_opt.audit.appendix.entry import ClaimEntry, Entry
 from ratt_opt.audit.ledger import all_entries, decide_entry, run_audit
-from ratt_opt.audit.report_html import html_report
-from ratt_opt.audit.report_markdown import markdown_report
+from ratt_opt.audit.report.html_page import html_report
+from ratt_opt.audit.report.markdown_page import markdown_report
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.table import TableFunction
 
@@ -25,7 +25,7 @@ LABELS = (HERE / "appendix_labels.txt").read_text(encoding="utf-8").split()
 ENTRIES = list(all_entries())
 
 
-def find(label: str, kind: str, reading: str = "") -> Entry | EnumeratedEntry:
+def find(label: str, kind: str, reading: str = "") -> Entry:
     return next(e for e in ENTRIES if e.label == label and e.kind == kind and e.reading.startswith(reading))
 
 
@@ -65,8 +65,8 @@ def test_entries_are_told_apart_by_label_kind_and_reading() -> None:
 def test_an_equality_of_the_paper_is_decided_both_ways() -> None:
     entry = find("nd_p1d1vk_3", "step as equality")
     used = find("nd_p1d1vk_3", "step")
-    assert isinstance(entry, Entry)
-    assert isinstance(used, Entry)
+    assert isinstance(entry, ClaimEntry)
+    assert isinstance(used, ClaimEntry)
     assert len(entry.claims) == 2 * len(used.claims)
 
 
@@ -98,7 +98,7 @@ def test_verdicts_that_are_known_by_hand(label: str, kind: str, reading: str, ve
 def test_what_is_left_of_the_subadditivity_step_has_the_factor_known_by_hand() -> None:
     """Two single elements: f(ab) <= f(a) + f(b)/(1-c), attained with f(a) = f(b): factor 2(1-c)/(2-c)."""
     record = decide_entry(find("nd_p1d2v1_8", "step"))
-    factors = {Fraction(item["curvature"]): item for item in record["best_factors"]}  # type: ignore[attr-defined]
+    factors = {Fraction(str(item["curvature"])): item for item in record["best_factors"]}
     for c, item in factors.items():
         assert Fraction(item["factor"]) == 2 * (1 - c) / (2 - c)
         assert item["cannot_exceed_by_1/1000"]
@@ -121,7 +121,7 @@ def test_witnesses_replay_from_the_record_alone() -> None:
 
 
 @pytest.fixture(scope="module")
-def sample() -> list[Entry | EnumeratedEntry]:
+def sample() -> list[Entry]:
     return [
         find("nd_p1d1v1_8", "step", "A* hurts RATT"),
         find("nd_p1d1vk_4", "step"),
@@ -131,9 +131,7 @@ def sample() -> list[Entry | EnumeratedEntry]:
     ]
 
 
-def test_a_deleted_ledger_is_reproduced(
-    tmp_path: Path, sample: list[Entry | EnumeratedEntry], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_deleted_ledger_is_reproduced(tmp_path: Path, sample: list[Entry], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ledger_module, "all_entries", lambda: iter(sample))
     seen: list[str] = []
     documents = []
@@ -154,7 +152,7 @@ def test_a_deleted_ledger_is_reproduced(
 
 
 def test_an_interrupt_keeps_what_is_decided(
-    tmp_path: Path, sample: list[Entry | EnumeratedEntry], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, sample: list[Entry], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ledger_module, "all_entries", lambda: iter(sample))
 

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import copy
+import json
+import pickle
+from dataclasses import FrozenInstanceError, asdict, replace
+
 import numpy as np
 import pytest
 
@@ -145,3 +150,20 @@ def test_bad_arguments_are_refused(call, text):
     c = ro.total_curvature(problem.objective, problem.robot)
     with pytest.raises(InputError, match=text):
         call(problem, c)
+
+
+def test_a_guarantee_is_a_number_and_a_value() -> None:
+    given = ro.theorem1_bound(2, k=0.5)
+    copies = [copy.copy(given), copy.deepcopy(given), pickle.loads(pickle.dumps(given)), replace(given)]
+    for other in copies:
+        assert other == given
+        assert hash(other) == hash(given)
+        assert other.to_dict() == given.to_dict() == asdict(given) | {"hypotheses": list(given.hypotheses)}
+    assert given == 0.25
+    assert 1 - given == 0.75
+    assert f"{given}" == "0.25"
+    assert json.loads(json.dumps(given)) == 0.25
+    assert repr(given) == "Guarantee(0.25, 'ratt.tex, Theorem 1')"
+    assert replace(given, source="elsewhere").source == "elsewhere"
+    with pytest.raises(FrozenInstanceError):
+        given.value = 1.0  # type: ignore[misc]

@@ -68,7 +68,7 @@ def test_a_lying_solver_gives_a_weak_bound_never_a_false_one(monkeypatch):
 def test_what_it_cannot_bound_is_refused():
     table = ro.Problem(ro.TableFunction([0, 1, 1, 2]), [0, 1], None, 1, 0)
     nobody = ro.Attack(frozenset(), frozenset())
-    with pytest.raises(InputError, match="information criterion"):
+    with pytest.raises(InputError, match="criterion of information matrices"):
         relaxation.relaxation_bound(table, [nobody])
     prior, information = information_data(np.random.default_rng(0), 3, 1)
     problem = ro.Problem(ro.TraceObjective(prior, information), [0, 1, 2], nx.path_graph(3), 1, 1)
@@ -96,5 +96,5 @@ def test_relaxing_over_all_attacks_is_the_root_of_the_search(kind, seed):
 def test_relaxing_over_all_attacks_needs_a_list_of_them():
     with pytest.raises(InputError, match="at most 20000 outcomes"):
         next(ro.relaxation_bounds(ro.random_scenario(30, 2, alpha_s=10, alpha_c=108, seed=0).problem()))
-    with pytest.raises(InputError, match="information criterion"):
+    with pytest.raises(InputError, match="criterion of information matrices"):
         next(ro.relaxation_bounds(ro.Problem(ro.TableFunction([0, 1]), [0], None, 0, 0)))

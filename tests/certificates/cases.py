@@ -20,26 +20,26 @@ def one_leaf_per_plan(problem: Problem) -> UpperProof:
     attacks, cuts = [], []
     f = problem.objective
 
-    def leaf(plan):
+    def tree(plan):
+        i = len(plan)
+        if i < problem.n_robots:
+            own = problem.choices[i].tolist()
+            branch = ElementBranch(robot=i, parts=tuple((e,) for e in own))
+            return [branch, *(node for e in own for node in tree([*plan, e]))]
         attack = worst_case_attack(problem, plan).attack
         attacks.append(attack)
-        groups = [g - attack.sensing for g in problem.communication.groups(attack.links) if g - attack.sensing]
-        children = []
-        for group in sorted(map(sorted, groups)) or [[]]:
-            point = f.posterior_information(np.array([plan[i] for i in group], dtype=np.int64))
+        left = (group - attack.sensing for group in problem.communication.groups(attack.links))
+        groups = tuple(sorted(tuple(sorted(group)) for group in left if group)) or ((),)
+        leaves = []
+        for group in groups:
+            point = f.posterior_information(np.array([plan[r] for r in group], dtype=np.int64))
             target = int(np.argmax(f.weights / np.linalg.eigvalsh(point)[:, 0]))
-            cuts.append(Cut(attack=len(attacks) - 1, group=tuple(group), point=point, target=target))
-            children.append((tuple(group), Leaf(cuts=(len(cuts) - 1,), weights=(1.0,))))
-        return children[0][1] if len(children) == 1 else WinnerBranch(attack=len(attacks) - 1, children=tuple(children))
+            cuts.append(Cut(attack=len(attacks) - 1, group=group, point=point, target=target))
+            leaves.append(Leaf(cuts=(len(cuts) - 1,), weights=(1.0,)))
+        return leaves if len(leaves) == 1 else [WinnerBranch(attack=len(attacks) - 1, parts=groups), *leaves]
 
-    def node(plan):
-        i = len(plan)
-        if i == problem.n_robots:
-            return leaf(plan)
-        return ElementBranch(robot=i, children=tuple(((int(e),), node([*plan, int(e)])) for e in problem.choices[i]))
-
-    root = node([])
-    return UpperProof(attacks=tuple(attacks), cuts=tuple(cuts), root=root)
+    nodes = tuple(tree([]))
+    return UpperProof(attacks=tuple(attacks), cuts=tuple(cuts), tree=nodes)
 
 
 def certified(problem: Problem, path):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, verify_certificate
-from ratt_opt.certificates import reading
+from ratt_opt.certificates.verifier import reading
 from tests.certificates.cases import certified
 from tests.strategies import information_data
 

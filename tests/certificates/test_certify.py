@@ -25,7 +25,8 @@ from ratt_opt import (
     verify_certificate,
 )
 from ratt_opt.certificates.lower import lower_proof
-from ratt_opt.certificates.verify import Checker, _is_forced
+from ratt_opt.certificates.verifier.lower import LowerCheck, is_forced
+from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.write import _prior_range, certify, problem_document
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
@@ -122,8 +123,8 @@ def test_the_forced_group_size_agrees_with_the_verifier_s_own_argument(n):
     for alpha_s in range(n + 1):
         for alpha_c in range(n * (n - 1) // 2 + 1):
             size = forced_group_size(n, alpha_s, alpha_c)
-            assert _is_forced(n, alpha_s, alpha_c, size)
-            assert size == n or not _is_forced(n, alpha_s, alpha_c, size + 1)
+            assert is_forced(n, alpha_s, alpha_c, size)
+            assert size == n or not is_forced(n, alpha_s, alpha_c, size + 1)
 
 
 def test_large_teams_by_forced_size(tmp_path):
@@ -145,19 +146,19 @@ def test_leaves_that_average_over_the_robots_missing_prove_no_more_than_the_wors
     assert part["kind"] == "forced_size"
     assert -3 in part["tree"]
     prior_range = _prior_range(problem, problem_document(problem), elements.tolist())
-    checker = Checker(problem_document(problem), elements.tolist(), prior_range)
-    assert checker.check_lower(part, fmpq(*float(worst * (1 - 1e-11)).as_integer_ratio())) == len(
+    checker = LowerCheck(Statement(problem_document(problem), elements.tolist(), prior_range))
+    assert checker.check(part, fmpq(*float(worst * (1 - 1e-11)).as_integer_ratio())) == len(
         [node for node in part["tree"] if node < 0]
     )
     with pytest.raises(ProofError, match="worth less"):
-        checker.check_lower(part, fmpq(*float(worst * (1 + 1e-9)).as_integer_ratio()))
+        checker.check(part, fmpq(*float(worst * (1 + 1e-9)).as_integer_ratio()))
     crude = {**part, "tree": [-3]}
     singles = problem.objective.prior_information + part["size"] * problem.objective.information[elements]
     values = np.sort(problem.objective.value(singles))[: part["size"]]
     level = values.mean()
-    assert checker.check_lower(crude, fmpq(*float(level - 1e-9 * abs(level)).as_integer_ratio())) == 1
+    assert checker.check(crude, fmpq(*float(level - 1e-9 * abs(level)).as_integer_ratio())) == 1
     with pytest.raises(ProofError, match="worth less"):
-        checker.check_lower(crude, fmpq(*float(level + 1e-9 * abs(level)).as_integer_ratio()))
+        checker.check(crude, fmpq(*float(level + 1e-9 * abs(level)).as_integer_ratio()))
     assert level <= worst
 
 

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.largest_group import smallest_largest_group
+from ratt_opt.graph.largest_group.enumeration import by_separable_groups
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from tests.strategies import random_graph, random_problem
 
@@ -31,7 +33,8 @@ def check(found, graph, alpha_c, protected=()):
     rest = graph.copy()
     rest.remove_edges_from(found.cut)
     assert rest.number_of_edges() == graph.number_of_edges() - len(found.cut)
-    assert max(map(len, nx.connected_components(rest))) == found.n_max == found.upper
+    assert max(map(len, nx.connected_components(rest))) == found.upper
+    assert found.n_max == (found.upper if found.claimed_lower == found.upper else None)
     assert found.lower <= found.claimed_lower <= found.upper
     assert found.reason
 
@@ -93,13 +96,11 @@ def test_enumeration_and_milp_agree_on_larger_graphs(seed):
 @pytest.mark.parametrize("seed", range(8))
 def test_enumeration_by_groups_agrees_with_both_others(seed):
     """Where all subsets still fit, and beyond, against the integer program."""
-    from ratt_opt.graph.largest_group_separable import by_separable_groups
-
     rng = np.random.default_rng(seed)
     threat = random_problem(rng, 9, kind="logdet", controls=1).threat
     graph = nx.Graph(sorted(threat.graph.links))
     graph.add_nodes_from(range(9))
-    found = by_separable_groups(threat, None, None)
+    found = by_separable_groups(threat, Budget())
     check(found, graph, threat.alpha_c, threat.protected_links)
     exact = smallest_largest_group(graph, threat.alpha_c, method="enumeration", protected_links=threat.protected_links)
     assert (found.n_max, found.is_exact) == (exact.n_max, True)
@@ -156,6 +157,25 @@ def test_a_method_that_does_not_apply_names_one_that_would():
 def test_time_limit_zero_still_answers():
     found = smallest_largest_group(nx.gnp_random_graph(25, 0.3, seed=1), 9, method="milp", time_limit=0)
     assert found.lower <= found.upper
+
+
+def test_n_max_is_none_where_nothing_says_what_it_is():
+    found = smallest_largest_group(nx.gnp_random_graph(25, 0.3, seed=1), 9, method="counting")
+    assert found.lower < found.upper
+    assert (found.n_max, found.is_exact) == (None, False)
+    exact = smallest_largest_group(nx.path_graph(30), 2)
+    assert (exact.n_max, exact.is_exact) == (10, True)
+    assert len(repr(smallest_largest_group(nx.complete_graph(30), 200))) < 200
+
+
+@pytest.mark.parametrize("method", ["auto", "enumeration", "milp"])
+def test_an_outer_budget_counts_too(method):
+    graph = nx.gnp_random_graph(25, 0.2, seed=3)
+    outer = Budget()
+    outer.interrupt()
+    found = smallest_largest_group(graph, 9, method=method, budget=outer)
+    check(found, graph, 9)
+    assert not found.is_exact
 
 
 @pytest.mark.parametrize("seed", range(20))

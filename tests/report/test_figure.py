@@ -17,7 +17,7 @@ from ratt_opt.report.picture import picture_of
 def drawn():
     scenario = ro.random_scenario(5, 4, alpha_s=1, alpha_c=4, seed=3)
     report = ro.bound(scenario)
-    picture = picture_of(scenario, report.problem, report.recommended)
+    picture = picture_of(scenario, report)
     return report, picture, plan_figure(report, picture)
 
 
@@ -60,7 +60,7 @@ def test_bars_are_the_planners_values(drawn):
 def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed):
     scenario = ro.random_scenario(n_robots, n_targets, alpha_s=n_robots // 4, alpha_c=n_robots - 1, seed=seed)
     report = ro.bound(scenario, time_limit=1.0)
-    figure = plan_figure(report, picture_of(scenario, report.problem, report.recommended))
+    figure = plan_figure(report, picture_of(scenario, report))
     figure.draw_without_rendering()
     texts = [figure._suptitle, figure.axes[1].title, figure.axes[1]._right_title, *figure.axes[1].texts]
     texts += [*figure.axes[1].get_yticklabels(), *figure.axes[0].get_legend().get_texts()]

@@ -1,7 +1,7 @@
 """The exact attacker of larger teams on sparse graphs: how is the team split, and who is blinded in each group?
 
 ``graph/separable_groups.py`` lists every group an attack may leave. For a threshold, a group needs so many
-blinded robots that some subset of the others is worth less (``weak_subsets.py``); the threshold is reachable
+blinded robots that some subset of the others is worth less (``group_survivors.py``); the threshold is reachable
 exactly when the team can be partitioned into groups within the link budget whose needs add up to at most the
 robots that may be blinded. Needs are bounded from below first and computed only for groups that a partition
 asks for; a group needs at least what any group inside it needs. Thresholds are bisected, which narrows the
@@ -14,63 +14,48 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_partition.weak_subsets import WeakSubsets
-from ratt_opt.attackers.weakest_set.compact import MAX_EIGENVALUE
+from ratt_opt.attackers.by_partition.group_survivors import GroupSurvivors
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
-from ratt_opt.attackers.weakest_set.outer_points import SetFamily
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
-from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.bracket import Bracket, Budget
-    from ratt_opt.attackers.plan_values import PlanValues
-    from ratt_opt.attackers.weakest_set.compact import CompactTeam
+    from ratt_opt.attackers.task import AttackTask
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.graph.separable_groups import SeparableGroups
-    from ratt_opt.problem import Problem
 
 __all__ = ["SplitSearch"]
-
-TOLERANCE = 1e-10
-"""Relative width that counts as closed."""
 
 BISECTED = 2e-3
 """Relative width below which the incumbent is tested instead of the middle."""
 
-UNINTERRUPTED = 20_000
+NODES_BETWEEN_LOOKS = 20_000
+"""Groups tried between two looks at the budget: some hundredths of a second."""
 CHUNK = 4096
+"""Groups whose values are computed at once: their matrices stay in cache."""
 
 
 class SplitSearch:
-    """Closes ``bracket`` for one plan; relies on a non-decreasing objective."""
+    """Closes the task's bracket; relies on a non-decreasing objective."""
 
-    def __init__(  # noqa: PLR0917
-        self,
-        problem: Problem,
-        team: CompactTeam,
-        groups: SeparableGroups,
-        values: PlanValues,
-        bracket: Bracket,
-        budget: Budget,
-    ) -> None:
-        self.problem, self.team, self.groups, self.values = problem, team, groups, values
-        self.bracket, self.budget = bracket, budget
-        self.n_blinded = problem.threat.n_blinded
-        self.subsets = WeakSubsets(team, problem.protected_robots)
+    def __init__(self, task: AttackTask, team: PlanarTeam, groups: SeparableGroups) -> None:
+        self.task, self.team, self.groups = task, team, groups
+        self.n_robots, self.n_blinded = task.problem.n_robots, task.problem.threat.n_blinded
+        self.survivors = GroupSurvivors(team, task.problem.protected_robots)
         self._sizes = np.bitwise_count(groups.masks).astype(np.int64)
         self._floors = np.zeros((0, 0))
         """(G, n_blinded + 1) no subset of the group with so many robots blinded is worth less."""
 
     def run(self) -> Stop:
         """Bisect the threshold; the bracket is valid whenever this stops."""
-        self.budget.spend()
+        self.task.budget.spend()
         self._floors = self._first_floors()
-        bracket = self.bracket
-        while bracket.lower < (goal := bracket.upper - TOLERANCE * abs(bracket.upper)):
+        bracket = self.task.bracket
+        while not bracket.is_closed:
             width = bracket.upper - bracket.lower
-            threshold = goal if width <= BISECTED * abs(bracket.upper) else bracket.lower + width / 2
+            threshold = bracket.goal if width <= BISECTED * abs(bracket.upper) else bracket.lower + width / 2
             if not self._reach(threshold):
                 bracket.raise_lower(threshold)
         return Stop.CLOSED
@@ -79,11 +64,11 @@ class SplitSearch:
         """Values of whole groups, and minorants over the team for those with blinded robots."""
         floors = np.full((len(self._sizes), self.n_blinded + 1), -np.inf)
         floors[:, 0] = self._whole()
-        for size in range(self.problem.n_robots - 1, 0, -1):
+        for size in range(self.n_robots - 1, 0, -1):
             blinded = self._sizes - size
             rows = np.flatnonzero((blinded >= 1) & (blinded <= self.n_blinded))
             if len(rows):
-                self.budget.check_time()
+                self.task.budget.check()
                 floors[rows, blinded[rows]] = self._size_floor(rows, size)
         # Blinding fewer robots leaves no less.
         return np.asarray(np.maximum.accumulate(floors[:, ::-1], axis=1)[:, ::-1])
@@ -100,12 +85,11 @@ class SplitSearch:
 
     def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
         """No ``size`` robots of the groups ``rows`` are worth less."""
-        team = self.team
-        if team.kind == MAX_EIGENVALUE:
-            return np.full(len(rows), weakest_axis(team, team.prior, team.information, size).bound)
-        family = SetFamily(team.kind, team.weights, team.prior, team.prior, team.information, size)
-        minorant = affine_minorant(family, 2, -np.inf, self.subsets.minorants.get(size + 1))
-        self.subsets.minorants[size] = minorant
+        family = self.team.family(np.arange(self.n_robots), size)
+        if self.team.objective.states("planar_levels"):
+            return np.full(len(rows), weakest_axis(family).bound)
+        minorant = affine_minorant(family, 2, -np.inf, self.survivors.minorants.get(size + 1))
+        self.survivors.minorants[size] = minorant
         scores = minorant.scores[self.groups.robots]
         total, taken = np.full(len(rows), minorant.constant), np.zeros(len(rows), dtype=np.int64)
         for place in np.argsort(scores, kind="stable").tolist():
@@ -122,8 +106,8 @@ class SplitSearch:
         exact: dict[int, frozenset[int]] = {}
         while not search.finished:
             before = search.nodes
-            chosen = search.next(before + self.budget.nodes_left(UNINTERRUPTED))
-            self.budget.nodes += search.nodes - before
+            chosen = search.next(before + self.task.budget.nodes_left(NODES_BETWEEN_LOOKS))
+            self.task.budget.nodes += search.nodes - before
             if chosen is not None and self._within(chosen, threshold, need, exact):
                 self._accept([(self.groups.members(group), exact[group]) for group in chosen])
                 return True
@@ -143,7 +127,7 @@ class SplitSearch:
         robots = frozenset(self.groups.members(group).tolist())
         around = (self.groups.masks & self.groups.masks[group]) == self.groups.masks[group]
         for blinded in range(int(need[group]), self.n_blinded + 1):
-            seeing = self.subsets.below(robots, len(robots) - blinded, threshold, self.budget)
+            seeing = self.survivors.below(robots, len(robots) - blinded, threshold, self.task.budget)
             if seeing is not None:
                 exact[group] = seeing
                 return
@@ -154,14 +138,10 @@ class SplitSearch:
         """Offer the attack, with the robots that may still be blinded spent on the best groups."""
         homes = [frozenset(robots.tolist()) for robots, _ in parts]
         seeing = [kept for _, kept in parts]
-        for _ in range(self.n_blinded - self.problem.n_robots + sum(map(len, seeing))):
+        for _ in range(self.n_blinded - self.n_robots + sum(map(len, seeing))):
             best = max(range(len(seeing)), key=lambda k: self.team.value(seeing[k]))
-            fewer = self.subsets.weak(homes[best], len(seeing[best]) - 1)
+            fewer = self.survivors.by_exchanges(homes[best], len(seeing[best]) - 1)
             if fewer is None:
                 break
             seeing[best] = fewer
-        home = {i: k for k, robots in enumerate(homes) for i in robots}
-        cut = frozenset((i, j) for i, j in self.problem.communication.links if home[i] != home[j])
-        blinded = frozenset(range(self.problem.n_robots)) - frozenset().union(*seeing)
-        attack = Attack(blinded, cut)
-        self.bracket.offer(attack, self.problem.team_value(self.values.plan, attack))
+        self.task.offer_split(homes, frozenset(range(self.n_robots)).difference(*seeing))

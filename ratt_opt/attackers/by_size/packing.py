@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.low_sets import LowSets
+from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.weakest_set.compact import CompactTeam
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 
 __all__ = ["Packer", "Packing"]
 
@@ -30,7 +30,7 @@ class Packing:
 class Packer:
     """Packs groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
 
-    team: CompactTeam
+    team: PlanarTeam
     must: frozenset[int]
 
     def pack(self, available: frozenset[int], sizes: tuple[int, ...], threshold: float) -> Packing:
@@ -65,12 +65,12 @@ class Packer:
 
     def _search(self, available: frozenset[int], sizes: tuple[int, ...], threshold: float) -> Packing:
         robots = np.array(sorted(available, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
-        low = LowSets(self.team, robots, frozenset(), sizes[0])
+        sets = Enumeration(self.team, robots, frozenset(), sizes[0])
         decided = True
         while True:
-            found = low.next_below(threshold, LONGEST_PACKING)
+            found = sets.next_below(threshold, LONGEST_PACKING)
             if found is None:
-                return Packing(None, decided and low.finished)
+                return Packing(None, decided and sets.finished)
             if len(sizes) == 1:
                 if self.must & available <= found:
                     return Packing((found,))

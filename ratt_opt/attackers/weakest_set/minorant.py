@@ -1,7 +1,7 @@
 """An affine minorant of the value of sets of robots of one size, from outer polytopes.
 
 Target ``j``'s criterion is concave in its information matrix, and ``Lambda_j(R)`` lies in an outer polytope
-(``outer_points.py``). An affine function of ``Lambda`` that is below the value ``phi_j`` at its vertices is below
+(``outer_polytopes.py``). An affine function of ``Lambda`` that is below the value ``phi_j`` at its vertices is below
 it for every ``R``. The concavity of ``phi_j`` comes mostly from the few robots next to the target: these "heavy"
 ones are enumerated and get scores of their own.
 
@@ -12,17 +12,17 @@ here from all vertices, so nothing depends on the ascent, nor on its end.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numba
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.compact import TRACE
-from ratt_opt.attackers.weakest_set.compiled import row_weights
-from ratt_opt.attackers.weakest_set.outer_points import RANK_ONE, OuterPoints, SetFamily, outer_points, target_values
+from ratt_opt.attackers.weakest_set.outer_polytopes import RANK_ONE, OuterPolytopes, outer_polytopes, target_values
 from ratt_opt.attackers.weakest_set.smoothed_dual import DualProgram, Multipliers
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attackers.weakest_set.planar_team import SetFamily
 
 __all__ = ["Minorant", "affine_minorant"]
 
@@ -78,7 +78,7 @@ def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minora
     goal : no better bound is needed
     parent : a minorant of a larger family, whose slopes and half-spaces are a good start
     """
-    points = outer_points(family, n_heavy, None if parent is None else parent.normals)
+    points = outer_polytopes(family, n_heavy, None if parent is None else parent.normals)
     program = _program(family, points)
     fraction = np.full(len(family.information), family.size / len(family.information))
     start = _start(family, points, fraction, parent)
@@ -93,9 +93,9 @@ def _mean(family: SetFamily, fraction: FloatArray) -> FloatArray:
     return np.asarray(family.start + np.einsum("f,fmt->mt", fraction, family.information))
 
 
-def _start(family: SetFamily, points: OuterPoints, fraction: FloatArray, parent: Minorant | None) -> Multipliers:
+def _start(family: SetFamily, points: OuterPolytopes, fraction: FloatArray, parent: Minorant | None) -> Multipliers:
     """The parent's multipliers, or the gradient where every robot has the same share."""
-    n_targets = len(family.weights)
+    n_targets = len(family.team.weights)
     slopes = _gradient(family, np.arange(n_targets), _mean(family, fraction)) if parent is None else parent.slopes
     shares = np.einsum("fmt,mt->mf", family.information, slopes)
     if parent is not None:
@@ -105,7 +105,7 @@ def _start(family: SetFamily, points: OuterPoints, fraction: FloatArray, parent:
     return Multipliers(slopes * points.sound[:, None], own * points.sound[:, None])
 
 
-def _program(family: SetFamily, points: OuterPoints) -> DualProgram:
+def _program(family: SetFamily, points: OuterPolytopes) -> DualProgram:
     information = family.information * points.sound[:, None]
     np.put_along_axis(information.transpose(1, 0, 2), points.heavy[..., None], 0.0, axis=1)
     return DualProgram(
@@ -122,16 +122,13 @@ def _program(family: SetFamily, points: OuterPoints) -> DualProgram:
 
 def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:
     """(V, 3) derivative of each target's value in (a, b, c) at information matrices (V, 3)."""
-    a, b, c = np.moveaxis(matrices, -1, 0)
-    determinant = a * c - b * b
-    p, q, r = c / determinant, -b / determinant, a / determinant
-    if family.kind == TRACE:
-        p, q, r = p * p + q * q, q * (p + r), q * q + r * r
-    return np.asarray(family.weights[target, None] * np.stack([p, 2 * q, r], axis=-1))
+    team = family.team
+    gradient = team.objective.planar_gradient(matrices[:, 0], matrices[:, 1], matrices[:, 2])
+    return np.asarray(team.weights[target, None] * gradient)
 
 
 def _normals(
-    family: SetFamily, points: OuterPoints, slopes: FloatArray, rest: FloatArray, constants: FloatArray
+    family: SetFamily, points: OuterPolytopes, slopes: FloatArray, rest: FloatArray, constants: FloatArray
 ) -> FloatArray:
     """(M, KEPT + NEW, 3) normals of the half-spaces that bind here, and of new ones.
 
@@ -140,7 +137,7 @@ def _normals(
     counts = np.diff(points.first)
     width = np.maximum(BINDING * np.abs(constants), 1e-300)
     closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(width, counts)
-    weights = row_weights(points.first, closeness, points.rows, points.normals.shape[1])
+    weights = _row_weights(points.first, closeness, points.rows, points.normals.shape[1])
     weights[:, 6 : 6 + RANK_ONE] = 0.0  # those are there anyway
     order = np.argsort(-weights, axis=1, kind="stable")[:, :KEPT, None]
     kept = np.take_along_axis(points.normals, order, axis=1)
@@ -148,7 +145,7 @@ def _normals(
     return np.concatenate([kept, _new_normals(family, points, slopes, closeness)], axis=1)
 
 
-def _new_normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
+def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
     """At vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
     target = points.target
     close = np.flatnonzero(closeness > 0)
@@ -157,14 +154,14 @@ def _new_normals(family: SetFamily, points: OuterPoints, slopes: FloatArray, clo
     starts = np.flatnonzero(np.diff(target, prepend=-1))
     rank = np.arange(len(order)) - np.repeat(starts, np.diff(np.append(starts, len(order))))
     order, target, rank = order[rank < NEW], target[rank < NEW], rank[rank < NEW]
-    fresh = np.zeros((len(family.weights), NEW, 3))
+    fresh = np.zeros((len(family.team.weights), NEW, 3))
     matrices = family.start[target] + points.base[target, points.pattern[order]] + points.light[order]
     fresh[target, rank] = _gradient(family, target, matrices) - slopes[target]
     return fresh
 
 
 def _recompute(
-    family: SetFamily, points: OuterPoints, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
+    family: SetFamily, points: OuterPolytopes, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
 ) -> Minorant:
     """The minorant with these multipliers: its constant from the vertices; targets without any get none."""
     slopes, own = multipliers.slopes * points.sound[:, None], multipliers.own * points.sound[:, None]
@@ -192,3 +189,16 @@ def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatAr
     trace = family.information[..., 0] + family.information[..., 2]
     share = trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300)
     return np.asarray(np.minimum(share, 1.0) @ np.where(np.isfinite(hidden), hidden, 0.0))
+
+
+@numba.njit(cache=True)
+def _row_weights(first: Any, closeness: Any, rows: Any, n_rows: int) -> Any:
+    """Sum of the points' ``closeness`` (V,) over each row that they lie on -> (M, n_rows)."""
+    weights = np.zeros((len(first) - 1, n_rows))
+    for j in range(len(first) - 1):
+        for v in range(first[j], first[j + 1]):
+            if closeness[v] > 0:
+                for row in range(n_rows):
+                    if rows[v] >> np.uint64(row) & np.uint64(1):
+                        weights[j, row] += closeness[v]
+    return weights

@@ -63,6 +63,19 @@ class DualProgram:
     information: FloatArray
     size: int
 
+    @property
+    def _points(self) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+        """What compiled code has of the points."""
+        return self.first, self.pattern, self.values, self.light
+
+    def smoothed(
+        self, multipliers: Multipliers, temperature: float, gradient: FloatArray, fraction: FloatArray
+    ) -> tuple[float, float]:
+        """The bound and its smoothed value; fills ``gradient`` (M, 3 + h) and ``fraction`` (F,)."""
+        program = self._points, self.patterns, self.heavy, self.information, self.size
+        bound, value = _smoothed(program, multipliers.slopes, multipliers.own, temperature, (gradient, fraction))
+        return float(bound), float(value)
+
     def ascend(self, start: Multipliers, goal: float, *, cold: bool) -> tuple[Multipliers, FloatArray]:
         """Better multipliers, and the fractions (F,) in which the smoothed weakest set holds the robots.
 
@@ -88,9 +101,7 @@ class DualProgram:
 
     def rest(self, multipliers: Multipliers) -> FloatArray:
         """(V,) value of each point minus what the multipliers say."""
-        return np.asarray(
-            _rest(self.first, self.pattern, self.values, self.light, self.patterns, multipliers.slopes, multipliers.own)
-        )
+        return np.asarray(_rest(self._points, self.patterns, multipliers.slopes, multipliers.own))
 
     def least(self, rest: FloatArray) -> FloatArray:
         """(M,) the least over each target's points; infinite where there is none."""
@@ -164,21 +175,7 @@ class _Ascent:
         """Minus the smoothed bound, and its gradient; the best point is kept by the bound itself."""
         program, multipliers = self._program, self._multipliers(point)
         gradient, fraction = np.zeros((len(program.heavy), 3 + multipliers.own.shape[1])), np.zeros(len(self._fraction))
-        bound, value = _smoothed(
-            program.first,
-            program.pattern,
-            program.values,
-            program.light,
-            program.patterns,
-            program.heavy,
-            program.information,
-            program.size,
-            multipliers.slopes,
-            multipliers.own,
-            self._temperature,
-            gradient,
-            fraction,
-        )
+        bound, value = program.smoothed(multipliers, self._temperature, gradient, fraction)
         if bound > self._bound:
             self._bound, self._best, self._fraction = bound, point.copy(), fraction
         gradient[:, :3] = np.einsum("mst,ms->mt", self._factor, gradient[:, :3])
@@ -190,9 +187,8 @@ class _Ascent:
 
 
 @numba.njit(cache=True)
-def _rest(  # noqa: PLR0917
-    first: Any, pattern: Any, values: Any, light: Any, patterns: Any, slopes: Any, own: Any
-) -> Any:
+def _rest(points: Any, patterns: Any, slopes: Any, own: Any) -> Any:
+    first, pattern, values, light = points
     rest = np.empty(len(values))
     for j in range(len(slopes)):
         of_pattern = (patterns * own[j]).sum(axis=1)
@@ -203,23 +199,12 @@ def _rest(  # noqa: PLR0917
 
 
 @numba.njit(cache=True)
-def _smoothed(  # noqa: PLR0917
-    first: Any,
-    pattern: Any,
-    values: Any,
-    light: Any,
-    patterns: Any,
-    heavy: Any,
-    information: Any,
-    size: int,
-    slopes: Any,
-    own: Any,
-    temperature: float,
-    gradient: Any,
-    fraction: Any,
-) -> Any:
-    """The bound and its smoothed value; fills ``gradient`` (M, 3 + h) and ``fraction`` (F,)."""
-    rest = _rest(first, pattern, values, light, patterns, slopes, own)
+def _smoothed(program: Any, slopes: Any, own: Any, temperature: float, results: Any) -> Any:
+    """:meth:`DualProgram.smoothed`; ``results`` are the arrays it fills."""
+    points, patterns, heavy, information, size = program
+    first, pattern, _, light = points
+    gradient, fraction = results
+    rest = _rest(points, patterns, slopes, own)
     bound, total = 0.0, 0.0
     scores = (information * slopes).sum(axis=2).sum(axis=1)
     for j in range(len(own)):

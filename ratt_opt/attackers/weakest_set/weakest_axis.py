@@ -17,7 +17,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.compact import CompactTeam
+    from ratt_opt.attackers.weakest_set.planar_team import SetFamily
 
 __all__ = ["WeakestAxis", "weakest_axis"]
 
@@ -37,15 +37,10 @@ class WeakestAxis:
     chosen: IntArray
 
 
-def weakest_axis(team: CompactTeam, start: FloatArray, information: FloatArray, size: int) -> WeakestAxis:
-    """Bound the value of ``start`` plus ``size`` of the robots with this information.
-
-    Parameters
-    ----------
-    start : (M, 3) posterior information of the robots already chosen
-    information : (F, M, 3), 0 <= size <= F
-    """
-    linear, offset = _harmonics(information), _harmonics(start)
+def weakest_axis(family: SetFamily) -> WeakestAxis:
+    """Bound the value of a family's sets, 0 <= size <= F, under a criterion that is decided by the worst axis."""
+    team, size = family.team, family.size
+    linear, offset = _harmonics(family.information), _harmonics(family.start)
 
     def smallest(target: IntArray, u: FloatArray) -> FloatArray:
         heights = np.einsum("fvt,vt->vf", linear[:, target], u)
@@ -73,7 +68,8 @@ def weakest_axis(team: CompactTeam, start: FloatArray, information: FloatArray, 
         decided = min(decided, float(corners[is_open].min(initial=np.inf)))
     heights = linear[:, where[0]] @ _direction(np.array([where[1]]), 1.0)[0]
     chosen = np.argsort(heights, kind="stable")[:size]
-    return WeakestAxis(_value(team, min(decided, best)), chosen)
+    least = min(decided, best)  # of lambda_min / w; not positive where a corner left the cone
+    return WeakestAxis(team.baseline - 1 / (least * (1 - CLOSED)) if least > 0 else -np.inf, chosen)
 
 
 def _harmonics(matrices: FloatArray) -> FloatArray:
@@ -89,13 +85,3 @@ def _corners(half: float) -> tuple[tuple[float, float], ...]:
 
 def _direction(angle: FloatArray, cosine: float) -> FloatArray:
     return np.stack([np.ones_like(angle), np.cos(angle) / cosine, np.sin(angle) / cosine], axis=-1)
-
-
-def _value(team: CompactTeam, least: float) -> float:
-    """Value at the least ``lambda_min / w``, rounded down; minus infinity where the corner left the cone."""
-    prior = team.prior
-    half = (prior[:, 0] - prior[:, 2]) / 2
-    determinant = prior[:, 0] * prior[:, 2] - prior[:, 1] ** 2
-    widest = ((prior[:, 0] + prior[:, 2]) / 2 + np.sqrt(half**2 + prior[:, 1] ** 2)) / determinant
-    baseline = float((team.weights * widest).max())
-    return baseline - 1 / (least * (1 - CLOSED)) if least > 0 else -np.inf

@@ -1,6 +1,6 @@
 """How far the smallest level of all targets can rise above one target's own: a linear program over mixtures.
 
-For contexts ``S`` (one option a robot) let ``t(S)`` be the smallest level over all targets of ``base + S``, and
+For contexts ``S`` (one option an owner) let ``t(S)`` be the smallest level over all targets of ``base + S``, and
 ``own(S)`` the level of target ``j`` of ``own_base + S``, where its weakest direction, at double angle ``a``, lies in a
 sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V >= t(S) - slope own(S)``.
 
@@ -10,7 +10,7 @@ sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V
 - In the sector ``y . v >= 0`` for the two unit vectors ``v`` at ``middle +- (pi/2 - half)``.
 
 All are linear in ``S``. Whatever multipliers the linear program has, clipped and normalised, give a valid ``V``: a sum
-over robots of their best option (``level_cuts.py``). Where the sector holds no mixture at all ``V`` is merely low, as
+over owners of their best option (``compiled.py``). Where the sector holds no mixture at all ``V`` is merely low, as
 the multipliers of its edges are capped.
 """
 
@@ -21,12 +21,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.planar.level_solver import EDGES, LevelSolver
-from ratt_opt.curvatures.planar.planar import along, levels
+from ratt_opt.curvatures.planar.mixture_program import EDGES, MixtureProgram
+from ratt_opt.curvatures.planar.options import along, levels
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.curvatures.planar.planar import Options
+    from ratt_opt.budget import Budget
+    from ratt_opt.curvatures.planar.options import Options
 
 __all__ = ["Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
 
@@ -42,7 +43,7 @@ SMALLEST_SHARE = 1e-9
 """Targets with a smaller share of the average to start from get no cut at once."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Sector:
     """Double angles within ``half`` of ``middle``, of one target."""
 
@@ -51,7 +52,7 @@ class Sector:
     half: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Cuts:
     """Directions: (C,) targets and (C,) double angles."""
 
@@ -59,7 +60,7 @@ class Cuts:
     angles: FloatArray
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Relaxed:
     """``ceiling`` is proved; ``mixture`` (K,) attains about that, with ``level`` and ``own``; ``cuts`` bind there.
 
@@ -82,7 +83,7 @@ class LevelProgram:
     Parameters
     ----------
     base, own_base : (3, M) parts of what every context is added to; without a sector ``own`` is 0
-    allowed : (K,), some option of every robot; start : (3, M) average of cuts that bounded something similar
+    allowed : (K,), some option of every owner; start : (3, M) average of cuts that bounded something similar
     """
 
     def __init__(
@@ -96,26 +97,26 @@ class LevelProgram:
         start: FloatArray | None = None,
     ) -> None:
         self._base, self._allowed = base, allowed
-        self._parts, self._robot = np.ascontiguousarray(options.parts[allowed]), options.robot[allowed]
+        self._parts, self._owners = np.ascontiguousarray(options.parts[allowed]), options.owners[allowed]
         if start is None:
-            shares = 1 / np.bincount(self._robot)[self._robot]
+            shares = 1 / np.bincount(self._owners)[self._owners]
             start = _worst(base + np.tensordot(shares, self._parts, axes=1))
         self._scores, self._constants = _sector_forms(self._parts, own_base, sector)
-        self._solver = LevelSolver(self._robot, self._scores[0], (self._scores[1:], self._constants[1:]))
+        self._program = MixtureProgram(self._owners, self._scores[0], (self._scores[1:], self._constants[1:]))
         self._cuts = Cuts(np.empty(0, dtype=np.int64), np.empty(0))
         targets = np.flatnonzero(start[0] > SMALLEST_SHARE)
         self._add(targets, np.arctan2(start[2, targets], start[1, targets]))
 
-    def bound(self, slope: float, enough: float = -np.inf) -> Relaxed:
-        """The bound with one slope; ``enough`` : a ceiling low enough to stop at."""
-        from ratt_opt.curvatures.planar.level_cuts import ceiling, violated
+    def bound(self, slope: float, budget: Budget, enough: float = -np.inf) -> Relaxed:
+        """The bound with one slope; ``enough`` : a ceiling low enough to stop at. It holds wherever it stops."""
+        from ratt_opt.curvatures.planar.compiled import ceiling, violated
 
-        self._solver.change_slope(slope)
+        self._program.change_slope(slope)
         for last in [False] * (ROUNDS - 1) + [True]:
-            z, level, weights = self._solver.solve()
-            highest = ceiling(self._scores, self._constants, np.append(-slope, weights), self._robot)
+            z, level, weights = self._program.solve()
+            highest = ceiling(self._scores, self._constants, np.append(-slope, weights), self._owners)
             own = float(self._constants[0] + self._scores[0] @ z)
-            if last or highest <= enough or not np.isfinite(level):
+            if last or highest <= enough or not np.isfinite(level) or budget.is_over:
                 break
             found = violated(self._parts, self._base, z, level - VIOLATION * abs(level - own), NEW_CUTS)
             if len(found[0]) == 0:
@@ -141,7 +142,7 @@ class LevelProgram:
         directions = along(angles)
         scores = np.einsum("kpc,cp->ck", self._parts[:, :, targets], directions)
         constants = np.einsum("pc,cp->c", self._base[:, targets], directions)
-        self._solver.add(scores, constants)
+        self._program.add(scores, constants)
         self._scores = np.concatenate([self._scores, scores])
         self._constants = np.append(self._constants, constants)
         self._cuts = Cuts(np.append(self._cuts.targets, targets), np.append(self._cuts.angles, angles))

@@ -1,8 +1,8 @@
 """Branch and bound over the contexts of one element: how small its marginal can be.
 
-A node restricts each other robot to some of its elements, or to none. Its bound is the best separable minorant
-(``minorants.py``) over conditional-gradient steps; the minorant's vertices are contexts, and
-the smallest marginal among those tried is the attained end. A node that fixes every robot is evaluated.
+A node restricts each other owner to some of its elements, or to none. Its bound is the criterion's best separable
+minorant over conditional-gradient steps; the minorant's vertices are contexts, and the smallest marginal among those
+tried is the attained end. A node that fixes every owner is evaluated.
 """
 
 from __future__ import annotations
@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.attained import Attained
-from ratt_opt.curvatures.separable.minorants import minorant, others_of
-
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.curvatures.separable.minorants import Separable
+    from ratt_opt.budget import Budget
+    from ratt_opt.curvatures.separable.best_context import BestContext
     from ratt_opt.setfunctions.information import InformationObjective
+    from ratt_opt.setfunctions.minorants import Choices, SeparableMinorant
 
 __all__ = ["ContextSearch"]
 
@@ -34,7 +33,7 @@ MARGIN = 1e-9
 
 @dataclass(order=True, slots=True)
 class _Node:
-    """A part of the contexts: ``allowed`` (K,) elements, ``absent`` (R,) robots that may contribute none."""
+    """A part of the contexts: ``allowed`` (K,) elements, ``absent`` (R,) owners that may contribute none."""
 
     bound: float
     serial: int
@@ -45,22 +44,22 @@ class _Node:
 
 
 class ContextSearch:
-    """Claim: ``lower <= smallest marginal of x over contexts <= attained.value``; see :class:`Attained`."""
+    """Claim: ``lower <= smallest marginal of x over contexts <= attained.value``; see :class:`BestContext`.
 
-    def __init__(self, f: InformationObjective, owners: IntArray, x: int) -> None:
-        self.f, self.x = f, x
-        self.others = others_of(f, owners, x)
-        self.attained = Attained(f, x, self.others)
-        self.nodes = 0
+    ``nodes`` : parts bounded so far. Once the budget is spent a part gets one tangent, which bounds it as well.
+    """
+
+    def __init__(self, f: InformationObjective, x: int, others: Choices, attained: BestContext, budget: Budget) -> None:
+        self.attained, self.nodes = attained, 0
+        self._f, self._added, self._others, self._budget = f, f.information[x], others, budget
         self._serial = 0
         self._open: list[_Node] = []
-        robots = len(self.others.first)
-        counts = np.bincount(self.others.robot, minlength=robots)
-        share = 1.0 / counts[self.others.robot]
-        root = _Node(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(robots, dtype=np.bool_), share, 0)
-        if robots and self._bound(root, FIRST_STEPS):
+        count = len(others.first)
+        share = 1.0 / np.bincount(others.owners, minlength=count)[others.owners]
+        root = _Node(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(count, dtype=np.bool_), share, 0)
+        if count and self._bound(root, FIRST_STEPS):
             self._open = [root]
-        self.attained.descend()
+        self.attained.descend(budget)
 
     @property
     def exhausted(self) -> bool:
@@ -86,9 +85,9 @@ class ContextSearch:
     def _bound(self, node: _Node, steps: int) -> bool:
         """Raise a part's bound by more tangents; whether it may still hold a smaller marginal."""
         self.nodes += 1
-        others = self.others
+        others = self._others
         for _ in range(steps):
-            separable = minorant(self.f, self.x, others, node.share)
+            separable = self._f.marginal_minorant(self._added, others, node.share)
             score = np.where(node.allowed, separable.score, -np.inf)
             best = np.maximum.reduceat(score, others.first)
             present = np.isfinite(best)
@@ -103,34 +102,36 @@ class ContextSearch:
             vertex = np.zeros(len(score))
             vertex[picks] = 1.0
             node.share = node.share + 2 / (node.steps + 2) * (vertex - node.share)
+            if self._budget.is_over:
+                break
         return not self._single(node)  # the context of a single one has been tried above
 
     def _picks(self, score: FloatArray, best: FloatArray, present: BoolArray) -> IntArray:
-        """The first element of the best score, of each robot that has one left."""
-        hits = np.flatnonzero((score == best[self.others.robot]) & np.isfinite(score))
-        _, first = np.unique(self.others.robot[hits], return_index=True)
+        """The first element of the best score, of each owner that has one left."""
+        hits = np.flatnonzero((score == best[self._others.owners]) & np.isfinite(score))
+        _, first = np.unique(self._others.owners[hits], return_index=True)
         assert len(first) == present.sum()
         return hits[first]
 
     def _single(self, node: _Node) -> bool:
-        counts = np.add.reduceat(node.allowed.astype(np.int64), self.others.first) + node.absent
+        counts = np.add.reduceat(node.allowed.astype(np.int64), self._others.first) + node.absent
         return bool((counts == 1).all())
 
     def _children(self, node: _Node) -> list[_Node]:
-        """Split off the likeliest element of the robot whose mixture is spread most, or its absence."""
-        others = self.others
+        """Split off the likeliest element of the owner whose mixture is spread most, or its absence."""
+        others = self._others
         counts = np.add.reduceat(node.allowed.astype(np.int64), others.first)
         mean = np.add.reduceat(node.share[:, None, None, None] * others.information, others.first, axis=0)
-        posterior = self.f.prior_information + mean.sum(axis=0)
-        deviation = others.information - mean[others.robot]
+        posterior = self._f.prior_information + mean.sum(axis=0)
+        deviation = others.information - mean[others.owners]
         relative = np.linalg.solve(posterior[None], deviation)
         # Each target counts as much as it contributes to the marginal.
-        weight = self.f.criterion(posterior) - self.f.criterion(posterior + self.f.information[self.x])
+        weight = self._f.criterion(posterior) - self._f.criterion(posterior + self._added)
         spread = node.share * ((relative**2).sum(axis=(-1, -2)) @ weight)
-        by_robot = np.add.reduceat(spread, others.first)
-        by_robot[(counts + node.absent) < 2] = -1.0
-        i = int(by_robot.argmax())
-        mine = others.robot == i
+        by_owner = np.add.reduceat(spread, others.first)
+        by_owner[(counts + node.absent) < 2] = -1.0
+        i = int(by_owner.argmax())
+        mine = others.owners == i
         if counts[i] < 2:
             chosen = np.zeros(len(mine), dtype=np.bool_)
             parts = [(node.allowed & ~mine, True), (node.allowed, False)]
@@ -140,19 +141,19 @@ class ContextSearch:
         return [self._child(node, allowed, i, absent) for allowed, absent in parts]
 
     def _child(self, node: _Node, allowed: BoolArray, i: int, absent: bool) -> _Node:
-        others = self.others
+        others = self._others
         left = node.absent.copy()
         left[i] = absent
         share = np.where(allowed, node.share, 0.0)
         mass = np.add.reduceat(share, others.first)
         counts = np.add.reduceat(allowed.astype(np.int64), others.first)
         empty = (mass <= 0) & (counts > 0)
-        share = np.where(empty[others.robot] & allowed, 1.0, share)
+        share = np.where(empty[others.owners] & allowed, 1.0, share)
         mass = np.add.reduceat(share, others.first)
-        share = share / np.where(mass > 0, mass, 1.0)[others.robot]
+        share = share / np.where(mass > 0, mass, 1.0)[others.owners]
         self._serial += 1
         return _Node(node.bound, self._serial, allowed, left, share, 0)
 
 
-def _magnitude(separable: Separable, worst: FloatArray) -> float:
+def _magnitude(separable: SeparableMinorant, worst: FloatArray) -> float:
     return abs(separable.constant) + float(np.abs(worst).sum())

@@ -1,6 +1,7 @@
-"""Criteria of the posterior information matrices: one file each, and one registry.
+"""What is lost when targets are known only so well: one file per criterion, and one registry.
 
 Open ``trace.py`` first: a criterion is a subclass of ``InformationObjective`` (``../information.py``) that owns its
-name, unit, value, supergradient and, optionally, a Fenchel cut, a conic form and a two-by-two kernel. ``registry.py``
-finds them by name; ``two_by_two.py`` has the formulas of planar targets, ``compiled.py`` the same ones compiled.
+name, unit, value, supergradient and, optionally, a Fenchel cut, bounds on its marginals and a two-by-two kernel.
+``registry.py`` finds them by name; ``two_by_two.py`` has the formulas of planar targets, ``compiled.py`` the same ones
+compiled; ``maxeig_marginals.py`` and ``planar_levels.py`` are the max-eigenvalue criterion's own.
 """

@@ -1,4 +1,10 @@
-"""The log-det criterion (D): the volume of the error ellipsoids."""
+"""The log-det criterion (D): the volume of the error ellipsoids.
+
+**Its marginals.** ``logdet(L + X) - logdet L`` is convex in ``L``: its second derivative along ``D`` is
+``tr(P D P D) - tr(B D B D)`` with ``P = L^{-1}`` and ``B = (L + X)^{-1} <= P``, and ``tr(ADAD) >= tr(BDBD)`` whenever
+``A >= B >= 0``. So a tangent at any ``L0`` bounds it; its slope ``(L0 + X)^{-1} - P0`` is negative semidefinite, so
+more information only lowers it.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +12,17 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.criteria.two_by_two import determinant
-from ratt_opt.setfunctions.information import InformationObjective, Tangent
+from ratt_opt.setfunctions.criteria.packed import packed_inverse
+from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
+from ratt_opt.setfunctions.criterion_parts import Tangent
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.minorants import SeparableMinorant
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt._validation import FloatArray
+    from ratt_opt.setfunctions.minorants import Choices
 
 __all__ = ["LogDetObjective"]
 
@@ -29,12 +41,16 @@ class LogDetObjective(InformationObjective):
         """(..., M) weighted log-determinants of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return LogDetObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
         return np.asarray(-self.weights * np.linalg.slogdet(posterior_information)[1])
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
         """(..., M) the same in closed form."""
         return np.asarray(-self.weights * np.log(determinant(a, b, c)))
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
+        """``Lambda^{-1}`` by its entries, the off-diagonal one twice: (..., 3)."""
+        return np.stack(gradient_of_log_determinant(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1}``: (..., M, d, d)."""
@@ -47,3 +63,22 @@ class LogDetObjective(InformationObjective):
         # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
         logdets = np.linalg.slogdet(y)[1] + self.dimension
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``sum_j w_j [logdet(prior_j) + log_det(L_j)]`` in cvxpy."""
+        import cvxpy as cp
+
+        return self._baseline.sum() + sum(w * cp.log_det(L) for w, L in zip(self.weights, posterior, strict=True))
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
+        """``Y = L^{-1}`` of every target, packed."""
+        return packed_inverse(point)
+
+    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
+        """The tangent at the relaxed context: exact there."""
+        posterior = self.prior_information + others.mixed(share)
+        both = posterior + added
+        value = float((self.weights * (np.linalg.slogdet(both)[1] - np.linalg.slogdet(posterior)[1])).sum())
+        slope = self.weights[:, None, None] * (np.linalg.inv(posterior) - np.linalg.inv(both))
+        constant = value + float((slope * (posterior - self.prior_information)).sum())
+        return SeparableMinorant(constant, np.maximum(others.scores(slope), 0.0), np.zeros(len(others.first)))

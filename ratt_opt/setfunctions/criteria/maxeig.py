@@ -6,13 +6,17 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.setfunctions.criteria import maxeig_marginals
+from ratt_opt.setfunctions.criteria.planar_levels import LARGEST_DIMENSION, PlanarLevels
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
-from ratt_opt.setfunctions.information import InformationObjective, Tangent
+from ratt_opt.setfunctions.criterion_parts import Tangent
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import FloatArray
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
 
 __all__ = ["MaxEigenvalueObjective"]
 
@@ -35,7 +39,7 @@ class MaxEigenvalueObjective(InformationObjective):
         """(..., M) weighted largest eigenvalues of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return MaxEigenvalueObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
         return np.asarray(self.weights / np.linalg.eigvalsh(posterior_information)[..., 0])
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
@@ -81,3 +85,34 @@ class MaxEigenvalueObjective(InformationObjective):
         """Minus the criterion of each point's target: (K, ..., M, d, d) -> (K, ...)."""
         criterion = self.criterion(points)
         return -np.stack([row[..., target] for row, target in zip(criterion, targets, strict=True)])
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``max_j w_j lambda_max(prior_j) - max_j w_j / lambda_min(L_j)`` in cvxpy."""
+        import cvxpy as cp
+
+        each = [w * cp.inv_pos(cp.lambda_min(L)) for w, L in zip(self.weights, posterior, strict=True)]
+        return self._baseline.max() - cp.max(cp.hstack(each))
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:
+        """The target, ``t = lambda_max(L^{-1})`` and its direction ``v``."""
+        assert target is not None
+        eigenvalues, vectors = np.linalg.eigh(point[target])
+        return [target, float(1 / eigenvalues[0]), vectors[:, 0].tolist()]
+
+    @property
+    def prior_eigenvalue(self) -> float:
+        """``max_j w_j lambda_max(prior_j)``."""
+        return float((self.weights * np.linalg.eigvalsh(self.prior)[:, -1]).max())
+
+    @property
+    def verifier_averages(self) -> bool:
+        """Eigenvalues are roots of polynomials, which it bounds for planar targets only."""
+        return self.dimension == 2
+
+    def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:
+        """Bounds by how far the smallest eigenvalue of all targets can rise, see ``maxeig_marginals.py``."""
+        return maxeig_marginals.marginal_ends(self, owners, budget)
+
+    def planar_levels(self) -> PlanarLevels | None:
+        """The data as levels, for targets with at most two coordinates."""
+        return PlanarLevels.of(self) if self.dimension <= LARGEST_DIMENSION else None

@@ -1,4 +1,22 @@
-"""The trace criterion (A): the mean square error."""
+"""The trace criterion (A): the mean square error.
+
+**Its smallest marginals.** ``m(P) = tr P - tr (P^{-1} + X)^{-1}`` is convex in ``P`` (the parallel sum is concave), so
+``m(P) >= m(P0) + <G, P - P0>`` with ``G = 1 - (1 + X P0)^{-1} (1 + P0 X)^{-1}``. Split ``G = G+ - sum_k g_k n_k n_k'``
+into its parts of each sign.
+
+- ``<G+, L^{-1}> >= 2 <G+, Y> - <Y G+ Y, L>`` for any symmetric ``Y``, since ``L^{-1} >= 2Y - Y L Y``; linear in ``L``.
+- ``n' L^{-1} n <= w_0' prior w_0 + sum_i w_i' I_i^{-1} w_i`` for any ``w`` with ``w_0 + sum_i w_i = n`` (the inverse
+  of a sum is the smallest such sum: parallel resistors), with equality for the harmonic shares used here. The share of
+  an owner that is absent, or whose information is singular, falls to the prior; by convexity of the square,
+  ``|w_0 + sum_absent w_i|^2 <= |w_0|^2 / t_0 + sum_absent |w_i|^2 / t_i`` in the prior's norm, ``t_0 + sum t_i = 1``.
+
+An inexact ``P0``, ``Y`` or ``w`` costs strength, never validity.
+
+**Its largest marginals.** ``m`` is convex in ``P``, hence largest at an extreme point of ``0 <= P <= P0``: at ``P0``
+(no context), or at a rank-one ``P = w w'`` with ``w' P0^{-1} w = 1``, where it is ``|w|^2 q / (1 + q)`` with
+``q = w' I w``, at most ``lambda_max(P0) q_max / (1 + q_max)``, ``q_max = lambda_max(P0^{1/2} I P0^{1/2})``. An
+isotropic prior makes the first the larger.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +24,25 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.criteria.two_by_two import trace_of_inverse
-from ratt_opt.setfunctions.information import InformationObjective, Tangent
+from ratt_opt.setfunctions.criteria.packed import packed_inverse
+from ratt_opt.setfunctions.criteria.two_by_two import gradient_of_trace_of_inverse, trace_of_inverse
+from ratt_opt.setfunctions.criterion_parts import Tangent
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.minorants import SeparableMinorant
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
+    from ratt_opt.setfunctions.minorants import Choices
 
 __all__ = ["TraceObjective"]
+
+PRIOR_SHARE = 0.25
+"""``t_0`` above; the owners share the rest. It trades the reserve against the bound of full contexts: MEASURED."""
+MARGIN = 1e-11
+"""Relative safety margin for rounding on the largest marginals."""
 
 
 class TraceObjective(InformationObjective):
@@ -33,13 +63,17 @@ class TraceObjective(InformationObjective):
         """(..., M) weighted traces of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return self.planar_criterion(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return TraceObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
         covariance = np.linalg.inv(posterior_information)
         return np.asarray(self.weights * np.trace(covariance, axis1=-2, axis2=-1))
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
         """(..., M) the same in closed form."""
         return np.asarray(self.weights * trace_of_inverse(a, b, c))
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
+        """``Lambda^{-2}`` by its entries, the off-diagonal one twice: (..., 3)."""
+        return np.stack(gradient_of_trace_of_inverse(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-2}``: (..., M, d, d)."""
@@ -48,8 +82,81 @@ class TraceObjective(InformationObjective):
 
     def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
         """``tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y)`` for *any* symmetric ``Y``: an inexact inverse costs strength only."""
-        inverse = np.linalg.inv(point)
-        y = (inverse + np.swapaxes(inverse, -1, -2)) / 2
+        y = _inverse(point)
         traces = np.trace(y, axis1=-2, axis2=-1)
         slope = self.weights[:, None, None] * (y @ y)
         return Tangent(slope, float((self._baseline - 2 * self.weights * traces).sum()))
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``sum_j w_j [tr(prior_j) - tr_inv(L_j)]`` in cvxpy."""
+        import cvxpy as cp
+
+        traces = sum(w * cp.tr_inv(L) for w, L in zip(self.weights, posterior, strict=True))
+        return self._baseline.sum() - traces
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
+        """``Y = L^{-1}`` of every target, packed."""
+        return packed_inverse(point)
+
+    def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
+        """0, and the larger of both kinds of extreme points."""
+        values, vectors = np.linalg.eigh(self.prior)
+        root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
+        q = np.linalg.eigvalsh(root @ self.information @ root)[..., -1]
+        rank_one = self.weights * values[:, -1] * q / (1 + q)
+        alone = self.criterion(self.prior_information) - self.criterion(self.prior_information + self.information)
+        return np.zeros(self.n), np.asarray(np.maximum(alone, rank_one).sum(axis=-1) * (1 + MARGIN))
+
+    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
+        """The tangent in ``P`` at the relaxed context, its rising part made linear, its falling part by owners."""
+        posterior = self.prior_information + others.mixed(share)
+        covariance, after = _inverse(posterior), _inverse(posterior + added)
+        # (1 + P X)^{-1} = (L + X)^{-1} L, hence G = 1 - L B B L with B = (L + X)^{-1}.
+        shrunk = after @ posterior
+        slope = np.eye(self.dimension) - np.swapaxes(shrunk, -1, -2) @ shrunk
+        value = np.trace(covariance - after, axis1=-2, axis2=-1)
+        gains, axes = np.linalg.eigh(slope)
+        rising = (axes * np.clip(gains, 0.0, None)[:, None, :]) @ np.swapaxes(axes, -1, -2)
+        falling = np.clip(-gains, 0.0, None) * self.weights[:, None]
+        tangent = self.weights[:, None, None] * (covariance @ rising @ covariance)
+        constant = (self.weights * (value - _pairs(slope, covariance) + 2 * _pairs(rising, covariance))).sum()
+        constant -= float((tangent * self.prior_information).sum())
+        score = others.scores(tangent)
+        if not falling.any():
+            return SeparableMinorant(float(constant), score, np.zeros(len(others.first)))
+        upper = self._inverse_majorant(others, share, axes, falling)
+        return SeparableMinorant(float(constant) - upper.constant, score + upper.score, upper.absent)
+
+    def _inverse_majorant(
+        self, others: Choices, share: FloatArray, axes: FloatArray, strength: FloatArray
+    ) -> SeparableMinorant:
+        """``sum_jk strength[j, k] n_jk' L^{-1} n_jk <= constant + sum of scores``, ``n_jk`` the columns of ``axes``."""
+        weighted = share[:, None] * others.regular
+        mass = np.add.reduceat(weighted, others.first, axis=0)
+        mean_inverse = np.add.reduceat(weighted[..., None, None] * others.inverse, others.first, axis=0)
+        usable = mass > 0
+        harmonic = np.zeros_like(mean_inverse)
+        harmonic[usable] = mass[usable][:, None, None] * np.linalg.inv(mean_inverse[usable])
+        potential = np.linalg.inv(self.prior_information + harmonic.sum(axis=0)) @ axes
+        flow = harmonic @ potential  # (R, M, d, d): w_i of each axis, in columns
+        rest = axes - flow.sum(axis=0)  # w_0, so that the shares add up exactly as computed
+        cost = np.einsum("rmak,mab,rmbk,mk->rm", flow, self.prior, flow, strength, optimize=True)
+        # t_i in proportion to the root of the cost makes the sum of the reserves smallest.
+        root = np.sqrt(np.maximum(cost, 0.0))
+        reserve = root * root.sum(axis=0) / (1 - PRIOR_SHARE)
+        outer = np.einsum("rmak,mk,rmbk->rmab", flow, strength, flow, optimize=True)
+        own = (others.inverse * outer[others.owners]).sum(axis=(-1, -2))
+        kept = np.where(others.regular, np.minimum(own, reserve[others.owners]), reserve[others.owners]).sum(axis=-1)
+        constant = float(np.einsum("mak,mab,mbk,mk->", rest, self.prior, rest, strength)) / PRIOR_SHARE
+        return SeparableMinorant(constant, kept, reserve.sum(axis=-1))
+
+
+def _pairs(first: FloatArray, second: FloatArray) -> FloatArray:
+    """(M,) inner products."""
+    return np.asarray((first * second).sum(axis=(-1, -2)))
+
+
+def _inverse(matrices: FloatArray) -> FloatArray:
+    """Inverses, symmetric to the last digit."""
+    inverse = np.linalg.inv(matrices)
+    return np.asarray((inverse + np.swapaxes(inverse, -1, -2)) / 2)

@@ -71,7 +71,6 @@ def divide_by_scores(
 
 def mixing_gains(
     problem: Problem,
-    objective: InformationObjective,
     *,
     selection: FloatArray,
     inside: BoolArray,
@@ -88,7 +87,7 @@ def mixing_gains(
     weights : (K,) weight of each group in the bound
     targets : for max-eigenvalue, the target each group is bounded by
     """
-    gains = np.zeros(problem.n_robots)
+    objective, gains = problem.information_objective, np.zeros(problem.n_robots)
     if not len(weights):
         return gains
     support = np.flatnonzero((selection > SUPPORT) & (selection < 1 - SUPPORT))

@@ -1,4 +1,4 @@
-"""The proof of an upper bound on the optimum, as a search tree whose leaves are checked one by one.
+"""The proof of an upper bound on the optimum: a search tree, in preorder, whose leaves are checked one by one.
 
 A node stands for the plans whose elements remain allowed on its path and for which the declared
 groups win. Children of an :class:`ElementBranch` partition one robot's remaining elements; those of a
@@ -12,6 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ratt_opt._values import ByValue
+
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack
@@ -19,8 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["Cut", "ElementBranch", "Leaf", "Node", "UpperProof", "WinnerBranch"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cut:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Cut(ByValue):
     """A tangent bound on one group of one attack.
 
     ``point`` : (M, d, d) posterior information where it touches; ``target`` : for max-eigenvalue, which target's.
@@ -42,27 +44,30 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElementBranch:
-    """``children`` : (elements that remain for ``robot``, node); the element sets partition what remained."""
+    """``parts`` : the elements that remain for ``robot`` in each child, ascending; a partition of what remained."""
 
     robot: int
-    children: tuple[tuple[tuple[int, ...], Node], ...]
+    parts: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WinnerBranch:
-    """``children`` : (group that attains the team value under ``attack``, node); one child for each of its groups."""
+    """``parts`` : the group that attains the team value under ``attack`` in each child, ascending; all its groups."""
 
     attack: int
-    children: tuple[tuple[tuple[int, ...], Node], ...]
+    parts: tuple[tuple[int, ...], ...]
 
 
 Node = Leaf | ElementBranch | WinnerBranch
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UpperProof:
-    """Attacks and cuts that the tree ``root`` refers to by index."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class UpperProof(ByValue):
+    """Attacks and cuts that the ``tree`` refers to by index; its nodes are in preorder."""
 
     attacks: tuple[Attack, ...]
     cuts: tuple[Cut, ...]
-    root: Node
+    tree: tuple[Node, ...]
+
+    def __repr__(self) -> str:
+        return f"UpperProof({len(self.attacks)} attacks, {len(self.cuts)} cuts, {len(self.tree)} nodes)"

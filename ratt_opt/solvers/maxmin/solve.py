@@ -3,36 +3,41 @@
 from __future__ import annotations
 
 import math
-import time
 from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt._validation import readonly
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.baselines import greedy, myopic
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin.branch_and_bound import BranchAndBound
-from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent
-from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.pair_outcomes import PairOutcomes
-from ratt_opt.solvers.maxmin.search_tree import equal_elements
+from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
+from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.plans.proved_plan import PROVED
+from ratt_opt.solvers.maxmin.search import BranchAndBound
+from ratt_opt.solvers.maxmin.task import Task
+from ratt_opt.solvers.maxmin.turns import Turns
+from ratt_opt.solvers.ratt import ratt
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.search import Progress
 
 __all__ = ["check_limits", "solve_maxmin"]
 
 LISTED_ROBOTS = 12
 LISTED_OUTCOMES = 3000
 """Up to this many robots and outcomes all non-dominated outcomes are listed beforehand."""
+ROUNDING = 1e-9
+"""Relative width of a bracket that counts as closed."""
 
 
 def solve_maxmin(
@@ -41,7 +46,9 @@ def solve_maxmin(
     gap: float = 1e-9,
     time_limit: float | None = None,
     max_nodes: int | None = None,
-    progress: Callable[[int, float, float], None] | None = None,
+    progress: Progress = None,
+    alpha_cs: int | None = None,
+    budget: Budget | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
@@ -56,6 +63,8 @@ def solve_maxmin(
     time_limit : seconds; the bracket is valid whenever the search stops
     max_nodes : search nodes; with it (and no time limit) the result is reproducible
     progress : called as ``progress(nodes, lower, upper)``
+    alpha_cs : sensing attacks that the link attacks are worth, where RATT was asked before
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
@@ -64,38 +73,36 @@ def solve_maxmin(
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    objective = problem.objective
-    if not isinstance(objective, InformationObjective):
+    if not isinstance(problem.objective, InformationObjective):
         return exhaustive_optimum(problem)
-    deadline = None if time_limit is None else time.monotonic() + time_limit
-    pool = OutcomePool(problem, objective)
-    incumbent = Incumbent(problem, pool, deadline)
+    budget = Budget.inside(budget, time_limit, max_nodes)
+    first = ratt(problem, alpha_cs=alpha_cs).elements
+    pool = OutcomePool(problem)
+    incumbent = Incumbent(problem, pool, first, budget)
     search: BranchAndBound | None = None
     try:
         _list_outcomes(problem, pool)
-        classes = equal_elements(problem, objective)
-        pairs = PairOutcomes.of(problem, objective, classes)
-        incumbent.start(*([] if pairs is None else [pairs.strongest_plan()]))
+        task = Task.of(problem)
+        pairs = PairOutcomes.of(task)
+        plans = [first, *(planner(problem).elements for planner in (greedy, myopic))]
+        incumbent.start(plans if pairs is None else [*plans, pairs.strongest_plan()])
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = BranchAndBound(pool, incumbent, classes, max(gap - PROVED, 0.0), pairs)
-        stop = _search_and_prove(search, incumbent, max_nodes, progress)
+        search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
+        stop = _search_and_prove(search, Turns(budget, incumbent), progress)
+    except OutOfBudget as out:
+        stop = out.stop
     except KeyboardInterrupt:
-        stop = Stop.INTERRUPTED
+        stop = budget.interrupt()
     return _result(problem, incumbent, search, stop, gap)
 
 
-def _search_and_prove(
-    search: BranchAndBound,
-    incumbent: Incumbent,
-    max_nodes: int | None,
-    progress: Callable[[int, float, float], None] | None,
-) -> Stop:
+def _search_and_prove(search: BranchAndBound, turns: Turns, progress: Progress) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
-            progress(search.nodes, incumbent.lower, search.upper)
-        stop = search.run(max_nodes, progress)
-        if not incumbent.prove():
+            progress(turns.budget.nodes, search.incumbent.proved.lower, search.upper)
+        stop = search.run(turns, progress)
+        if not turns.prove():
             return stop
 
 
@@ -104,29 +111,29 @@ def _result(
 ) -> MaxMinResult:
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))
-    proved = search is not None and np.isfinite(search.upper)
-    lower = incumbent.lower
-    upper = max(search.upper if search is not None and proved else everything, lower)
-    if upper <= lower * (1 + 1e-9):
+    bounded = search is not None and np.isfinite(search.upper)
+    proved = incumbent.proved
+    lower = proved.lower
+    upper = max(search.upper if search is not None and bounded else everything, lower)
+    if upper <= lower * (1 + ROUNDING):
         stop = Stop.CLOSED
-    elif stop is Stop.GAP and upper - lower > max(gap, 1e-9) * abs(upper) * (1 + 1e-9):
-        stop = incumbent.unproved_stop  # no better plan is left, but this one's worst case is not proved
+    elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING):
+        stop = proved.unproved_stop  # no better plan is left, but this one's worst case is not proved
     return MaxMinResult(
-        elements=readonly(incumbent.elements),
-        lower=lower,
-        upper=upper,
+        elements=readonly(proved.elements),
+        lower=float(lower),
+        upper=float(upper),
         stop=stop,
-        evaluations=incumbent.evaluations,
-        nodes=0 if search is None else search.nodes,
-        posterior_gap=_posterior_gap(problem, lower, upper),
-        worst_case=incumbent.worst_case,
-        proof=search.proof() if search is not None and proved else None,
+        evaluations=proved.evaluations,
+        nodes=incumbent.budget.nodes,
+        posterior_gap=_posterior_gap(problem, float(lower), float(upper)),
+        worst_case=proved.worst_case,
+        proof=search.proof() if search is not None and bounded else None,
     )
 
 
 def _posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
-    objective = problem.objective
-    before = objective.prior_criterion if isinstance(objective, InformationObjective) else None
+    before = problem.information_objective.prior_criterion
     return None if before is None or before <= lower else (upper - lower) / (before - lower)
 
 

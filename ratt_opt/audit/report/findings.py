@@ -1,0 +1,166 @@
+"""What the ledger settles, worked out from its records: the theorem, the numbered lines, the readings, the repairs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ratt_opt.audit.appendix.entry import EntryKind, Reference
+from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
+from ratt_opt.audit.report.words import title
+
+if TYPE_CHECKING:
+    from ratt_opt.audit.report.document import EntryRecord, LedgerDocument
+
+__all__ = ["Finding", "findings"]
+
+STEP = EntryKind.STEP
+PLAN, OPTIMUM, TEAM = "the plan's", "the optimum's", "the team's only"
+REFUTED, PROVED = "refuted", "proved"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One section of the summary: a heading, sentences, and a table whose first row is its head (empty: no table)."""
+
+    heading: str
+    sentences: tuple[str, ...]
+    table: tuple[tuple[str, ...], ...] = ()
+
+
+def findings(document: LedgerDocument) -> tuple[Finding, ...]:
+    """Return the sections in reading order; sections without anything to say are left out."""
+    records = document["entries"]
+    sections = (_theorems(records), _lines(records), _readings(records), _repairs(records), _own_claims(records))
+    return tuple(section for section in sections if len(section.table) > 1)
+
+
+def _theorems(records: list[EntryRecord]) -> Finding:
+    rows = [r for r in records if r["kind"] == EntryKind.THEOREM]
+    first = [r for r in rows if r["label"] in (THEOREM1.label, THEOREM1_SUB.label)]
+    sentences = []
+    if _all_proved(first):
+        sentences.append(
+            "Both bounds of Theorem 1 hold: each is proved from RATT's choices alone, without the appendix."
+        )
+    if _all_proved([r for r in rows if r["label"] in (PATTERN_FREE_ND.label, PATTERN_FREE_SUB.label)]):
+        sentences.append(
+            "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
+            "every curvature strictly between 0 and 1. "
+            "The machine decides teams up to the size shown; a written proof for any number of robots is in the "
+            "documentation of pattern_free_bound."
+        )
+    table = [("entry", "statement", "verdict", "for which sizes")]
+    table += [(r["label"], r["statement"], r["verdict"], r["sizes"]) for r in rows]
+    return Finding(heading="Does the theorem survive?", sentences=tuple(sentences), table=tuple(table))
+
+
+def _lines(records: list[EntryRecord]) -> Finding:
+    """Numbered lines of the paper by what becomes of them as steps."""
+    steps = _grouped([r for r in records if r["kind"] == STEP])
+    equalities = [r for r in records if r["kind"] == EntryKind.AS_WRITTEN and r["verdict"] == REFUTED]
+    outcome: dict[str, list[str]] = {"holds": [], "depends on the reading": [], "fails": []}
+    for label, group in steps.items():
+        refuted = sum(r["verdict"] == REFUTED for r in group)
+        name = "holds" if not refuted else "fails" if refuted == len(group) else "depends on the reading"
+        outcome[name].append(label)
+    cumulative = _grouped([r for r in records if r["kind"] == EntryKind.CUMULATIVE])
+    lost = [label for label, group in cumulative.items() if all(r["verdict"] == REFUTED for r in group)]
+    table = [("numbered lines whose step ...", "how many", "which")]
+    for name, labels in outcome.items():
+        table.append((name, str(len(labels)), "all others" if name == "holds" else ", ".join(labels) or "none"))
+    names = list(dict.fromkeys(r["label"] for r in equalities))
+    table.append(("is printed as = but holds as >= only", str(len(names)), ", ".join(names) or "none"))
+    text = f"Of {len(steps)} numbered lines, {len(outcome['holds'])} follow from the line before under every reading."
+    end = "A failing step is a gap in the argument, not a false result: from the start of its chain each line is proved"
+    end = f"{end} in some reading ({len(cumulative)} lines)."
+    if lost:
+        end = f"Even from the start of its chain, these lines fail in every reading: {', '.join(lost)}."
+    return Finding(heading="Which steps hold?", sentences=(text, end), table=tuple(table))
+
+
+def _readings(records: list[EntryRecord]) -> Finding:
+    """Lines decided under several readings of whose worst attack A* is."""
+    table = [("step", *(f"A* is {who} worst attack" for who in (PLAN, OPTIMUM)), "A* is worst for the team only")]
+    fails: dict[str, list[str]] = {PLAN: [], OPTIMUM: []}
+    for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
+        found = {who: r["verdict"] for r in group if (who := _whose(r["reading"]))}
+        if len(found) > 1:
+            table.append((label, *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
+            for who, labels in fails.items():
+                labels.extend([label] * (found.get(who) == REFUTED))
+    sentences = [f"If A* is {who} worst attack, {_steps(len(labels))}." for who, labels in fails.items()]
+    if all(fails.values()):
+        sentences.append("So no single reading of A* makes every step hold.")
+    return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
+
+
+def _steps(count: int) -> str:
+    return "1 step fails" if count == 1 else f"{count} steps fail"
+
+
+def _whose(reading: str) -> str | None:
+    if not reading.startswith("A*"):
+        return None
+    return TEAM if "team only" in reading else OPTIMUM if "optimum" in reading else PLAN
+
+
+def _repairs(records: list[EntryRecord]) -> Finding:
+    table = [("refuted", "smallest counterexample", "what is left of it, or serves instead", "conclusion without it")]
+    for record in records:
+        if record["verdict"] == REFUTED and record["chain"] != "tightness" and record["kind"] != EntryKind.CUMULATIVE:
+            survival = record.get("conclusion_without_it")
+            without = (survival and survival["verdict"]) or "-"
+            table.append((title(record), _size(record), _left(record), without))
+    whole = sum(row[3] == PROVED for row in table[1:])
+    text = (
+        f"{len(table) - 1} statements are refuted; for {whole} of them the conclusion is proved without the statement."
+    )
+    return Finding(heading="Refuted, and what serves instead", sentences=(text,), table=tuple(table))
+
+
+def _size(record: EntryRecord) -> str:
+    refuted = next((claim for claim in record["claims"] if claim["witness"] is not None), None)
+    if refuted is None:
+        return str(next(iter(record.get("counterexamples", [])), "-"))
+    return f"{refuted['size']}; {refuted['scope']}"
+
+
+def _left(record: EntryRecord) -> str:
+    """Best factors, a direct way from an earlier line, or a repaired claim, each with the ledger's verdict."""
+    parts = []
+    factors = record.get("best_factors", [])
+    if any(item["factor"] != "0" for item in factors):
+        parts.append("; ".join(f"factor {item['factor']} at curvature {item['curvature']}" for item in factors))
+    elif factors:
+        parts.append("no positive factor")
+    if record.get("follows_from"):
+        parts.append(f"follows directly from {record['follows_from']} (proved)")
+    serves = record.get("weaker_step_that_serves")
+    if serves:
+        named = Reference.parse(serves["entry"])
+        other = [named.reading] if named.reading and named.reading != record["reading"] else []
+        parts.append(f"{', '.join([named.label, named.kind, *other])} ({serves['verdict']})")
+    searched = "best_factors" in record or not record["claims"]
+    return "; ".join(parts) or ("nothing weaker found" if searched else "not looked for in a quick run")
+
+
+def _own_claims(records: list[EntryRecord]) -> Finding:
+    """How tight the bounds are."""
+    table = [("entry", "statement", "verdict", "evidence")]
+    for r in records:
+        if r["chain"] == "tightness":
+            cases = r.get("counterexamples") or [r["detail"]]
+            table.append((r["label"], r["statement"], r["verdict"], cases[0]))
+    return Finding(heading="How tight are the bounds?", sentences=(), table=tuple(table))
+
+
+def _all_proved(records: list[EntryRecord]) -> bool:
+    return bool(records) and all(r["verdict"] == PROVED for r in records)
+
+
+def _grouped(records: list[EntryRecord]) -> dict[str, list[EntryRecord]]:
+    groups: dict[str, list[EntryRecord]] = {}
+    for record in records:
+        groups.setdefault(record["label"], []).append(record)
+    return groups

@@ -1,0 +1,86 @@
+"""The guarantee from how few seeing robots an attack can leave in every group."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import check_integer
+from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, one_curvature
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.survivor_sizes import forced_group_size
+
+if TYPE_CHECKING:
+    from ratt_opt.problem import Problem
+
+__all__ = ["achievable_group_size", "group_size_bound"]
+
+SOURCE = "group-size bound (proof in its docstring)"
+
+
+def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, baits_survive: bool = True) -> Guarantee:
+    """``1/g`` for every submodular function, ``t / (g - 1 + t)`` with ``t = 1 - c`` for every non-decreasing one.
+
+    ``g`` is a number of seeing robots that an attack can keep every group down to while it blinds ``T``, the
+    unprotected robots of the ``alpha_s`` largest individual values (:func:`achievable_group_size`). On complete graphs
+    without protected parts it is the smallest largest group of seeing robots. With ``g <= 1`` RATT is optimal.
+
+    Proof. Let ``v`` be the largest individual value of a robot outside ``T`` and ``r`` the first such robot in RATT's
+    order; all before it are in ``T``. RATT takes the ``alpha_s + alpha_cs`` robots of the largest individual values
+    as bait, with their best elements; where ``alpha_cs >= 1`` that includes ``r``. A protected ``r`` always sees.
+    Otherwise the bait includes ``T`` and ``r``, one more than can be blinded, all of value at least ``v``. So some
+    bait worth ``v`` sees after every attack, and by monotonicity RATT keeps ``v``. The attack above leaves any plan
+    ``o`` only groups ``S`` of at most ``g`` robots outside ``T``. Submodular: ``phi(o_S) <= sum_S phi(o_i) <= g v``.
+    Non-decreasing with total curvature ``c``: a marginal of ``x`` is at most ``phi(x) / t``, so ``phi(o_S) <= v + (g
+    - 1) v / t``.
+
+    Where ``alpha_cs = 0`` (``baits_survive=False``) an attack may blind exactly the bait. No cut then splits the team,
+    so that leaves all greedy robots in one group, which keeps ``1 / (1 + k)`` of the optimum (submodular; Fisher,
+    Nemhauser, Wolsey 1978; Conforti and Cornuejols 1984), respectively ``1 - c`` (their marginals, chosen greedily,
+    are at least ``(1 - c)`` times those of any other choice). Any other attack leaves a bait, as before. The bound is
+    then the minimum of both.
+
+    Parameters
+    ----------
+    g : number of robots, at least 0
+    k, c : curvature of a submodular objective, or total curvature; exactly one of them
+
+    Raises
+    ------
+    InputError : neither or both curvatures, one outside [0, 1], or ``g < 0``.
+
+    Source: this library. ``1/g`` is attained by ``k = 1`` at every budget of at most four robots with a bait.
+    """
+    g = check_integer("g", g, low=0)
+    kind, value = one_curvature(k, c)
+    keep = 1 - value
+    if kind == "k":
+        bound, greedy = 1 / max(g, 1), 1 / (1 + value)
+    else:
+        bound, greedy = (keep / (g - 1 + keep) if g > 1 else 1.0), keep
+    uses_curvature = (kind == "c" and g > 1) or not baits_survive
+    needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
+    needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
+    needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
+    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE)
+
+
+def achievable_group_size(problem: Problem) -> int:
+    """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
+
+    Exact on complete graphs without protected parts (integer partitions). Elsewhere the cut that makes the largest
+    group small is taken, which is within the budget but need not be best for those blinded robots: the number
+    returned is achievable, and a larger one only weakens the guarantee.
+    """
+    threat = problem.threat
+    if threat.is_symmetric:
+        return forced_group_size(problem.n_robots, threat.n_blinded, threat.alpha_c)
+    single = problem.objective.singletons()
+    strength = np.array([single[choice].max() for choice in problem.choices])
+    free = [int(i) for i in np.argsort(-strength, kind="stable") if i not in problem.protected_robots]
+    blinded = frozenset(free[: problem.alpha_s])
+    cut = smallest_largest_group(
+        problem.communication, problem.alpha_c, method="counting", protected_links=problem.protected_links
+    ).cut
+    return max(len(group - blinded) for group in problem.communication.groups(cut))

@@ -1,0 +1,92 @@
+"""The problem and the plan that a certificate states, checked to be well posed.
+
+Notation, per target: ``L(S) = prior^{-1} + sum of the information of S``.
+"""
+
+from __future__ import annotations
+
+from flint import fmpq, fmpq_mat
+
+from ratt_opt.certificates.verifier.exact_matrices import defect_of, definite, total, trace
+from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed
+
+__all__ = ["PRECISIONS", "Statement"]
+
+PRECISIONS = (128, 1024)
+"""Bits of the balls; a comparison undecided at the last is not proved. The first decides nearly all of them."""
+PROBLEM = "objective dimension prior information weights owners links alpha_s alpha_c protected_robots protected_links"
+LARGEST_TEAM = 1000
+
+
+class Statement:
+    """One problem and plan, in exact numbers.
+
+    ``defect[e][j]`` : what has to be added to the eigenvalues of element ``e``'s information of target ``j`` to make it
+    positive semidefinite. ``prior_low``, ``prior_high`` : bounds on ``max_j w_j lambda_max(prior_j)`` (max-eigenvalue).
+
+    Raises
+    ------
+    FileFormatError : a field is missing, too large or of another form.
+    ProofError : the problem, the plan or the range of the prior's eigenvalue is not what it must be.
+    """
+
+    def __init__(self, problem: object, plan: object, prior_range: object) -> None:
+        kind, d, prior, information, weights, owners, pairs, blinded, cut, *safe = fields("problem", problem, PROBLEM)
+        need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
+        self.objective, self.d = kind, index("dimension", d, 101)
+        self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(array("prior", prior))]
+        m = len(self.prior)
+        rows = [array(f"information[{e}]", row, m) for e, row in enumerate(array("information", information))]
+        self.information = [[packed(f"information[{e}]", x, self.d) for x in row] for e, row in enumerate(rows)]
+        self.weights = [exact("weights", w) for w in array("weights", weights, m)]
+        self._read_team(owners, pairs, (blinded, cut), safe)
+        self.plan = tuple(index("plan", e, len(self.owner)) for e in array("plan", plan, self.n))
+        need(
+            self.d and m and self.n and all(self.choices),
+            "problem: no target, no dimension, or a robot without element",
+        )
+        need(self.safe_links <= self.links, "problem: a protected link does not exist")
+        need(all(self.owner[e] == i for i, e in enumerate(self.plan)), "plan: an element is not its robot's")
+        need(all(w > 0 for w in self.weights), "problem: a weight is not positive")
+        need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
+        self._derive(prior_range)
+
+    def _read_team(self, owners: object, pairs: object, budgets: tuple[object, object], safe: list[object]) -> None:
+        self.owner = [index("owners", i, LARGEST_TEAM) for i in array("owners", owners, len(self.information))]
+        self.n = n = max(self.owner, default=-1) + 1
+        self.choices = tuple(tuple(e for e, i in enumerate(self.owner) if i == k) for k in range(n))
+        self.links, self.safe_links = links("links", pairs, n), links("protected_links", safe[1], n)
+        self.near: list[set[int]] = [set() for _ in range(n)]
+        for i, j in self.links:
+            self.near[i].add(j)
+            self.near[j].add(i)
+        self.alpha_s, self.alpha_c = (
+            index("alpha_s", budgets[0], n + 1),
+            index("alpha_c", budgets[1], len(self.links) + 1),
+        )
+        self.safe_robots = frozenset(indices("protected_robots", safe[0], n))
+
+    def _derive(self, prior_range: object) -> None:
+        """What the checks need; information must be semidefinite but for rounding."""
+        self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
+        self.inverse = [p.inv() for p in self.prior]
+        self.prior_trace = total(w * trace(p) for w, p in zip(self.weights, self.prior, strict=True))
+        self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
+        self.prior_low, self.prior_high = self._check_prior_range(prior_range)
+        # Stored information is positive semidefinite up to rounding: with its defect added, it is. So L(S) is
+        # positive definite for all plans; n more defects leave room for the lower proof.
+        for j, inverse in enumerate(self.inverse):
+            worst = total(max(self.defect[e][j] for e in own) for own in self.choices)
+            room = inverse - self.identity * ((self.n + 1) * worst)
+            need(definite(room) > 0, f"problem: information of target {j} is not positive semidefinite")
+
+    def _check_prior_range(self, given: object) -> tuple[fmpq, fmpq]:
+        """Check ``low <= max_j w_j lambda_max(prior_j) <= high`` (max-eigenvalue only; empty otherwise)."""
+        if self.objective != "maxeig":
+            array("prior_eigenvalue", given, 0)
+            return fmpq(0), fmpq(0)
+        low, high = (exact("prior_eigenvalue", x) for x in array("prior_eigenvalue", given, 2))
+        pairs = list(zip(self.weights, self.prior, strict=True))
+        need(all(definite(self.identity * (high / w) - p) >= 0 for w, p in pairs), "prior_eigenvalue: upper too small")
+        need(any(definite(self.identity * (low / w) - p) <= 0 for w, p in pairs), "prior_eigenvalue: lower too large")
+        return low, high

@@ -1,0 +1,172 @@
+"""No plan keeps more than the claim's upper end under every attack: a search tree, checked leaf by leaf.
+
+Notation, per target: ``<A, B> = tr(A B)`` and ``L(S) = prior^{-1} + sum of the information of S``.
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from flint import arb, ctx, fmpq, fmpq_mat
+
+from ratt_opt.certificates.verifier import reading
+from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
+from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, walk
+from ratt_opt.certificates.verifier.statement import PRECISIONS
+from ratt_opt.errors import ProofError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ratt_opt.certificates.verifier.statement import Statement
+
+__all__ = ["UpperCheck"]
+
+
+class _Cut(NamedTuple):
+    """``phi(plan restricted to group) <= constant + sum of scores[element] over the robots of the group``."""
+
+    attack: int
+    group: frozenset[int]
+    constant: Any
+    scores: list[fmpq]
+
+
+class UpperCheck:
+    """Decides the upper proofs of one problem."""
+
+    def __init__(self, about: Statement) -> None:
+        self.about = about
+
+    def check(self, part: object, upper: fmpq) -> int:
+        """Check that every plan's worst-case value is at most ``upper``; return the number of leaves."""
+        need(upper >= 0, "claim: upper is negative")  # a group of blinded robots only is worth phi(empty set) = 0
+        for precision in PRECISIONS:
+            with ctx.workprec(precision):
+                bounds = self.bounds(part)
+                worst = next((b for b in bounds if not b <= upper), None)
+                if worst is None:
+                    return len(bounds)
+        raise ProofError(f"upper proof: a leaf only proves {arb(worst).str(17)}, more than the claim")
+
+    def bounds(self, part: object) -> list[Any]:
+        """Return each leaf's bound; together the leaves cover all plans, or ProofError.
+
+        The plans of a case are a product of element sets, one per robot. Under attack ``a`` the team value is
+        the value of the winning group; a cut of group g may be used where g is the only group or the declared
+        winner. So the worst case is at most any weighted average of usable cuts, and that is at most its
+        constant plus, robot by robot, the largest score among the elements left.
+        """
+        attacks, points, cut_list, tree = fields("upper proof", part, "attacks points cuts tree")
+        families = array("attacks", attacks)
+        reading.check_size("attacks", len(families) * self.about.n, reading.LARGEST_TABLE)
+        groups = [self._groups(attack) for attack in families]
+        cuts, bounds = self._cuts(groups, points, cut_list), []
+
+        def expand(node: Any, case: Any) -> Iterator[Any]:
+            left, winners = case
+            if isinstance(node, dict) and "weights" in node:
+                bounds.append(self._leaf(node, cuts, groups, left, winners))
+            elif isinstance(node, dict) and "attack" in node:
+                a = index("winner branch", fields("winner branch", node, "attack")[0], len(groups))
+                need(a not in winners, "upper proof: an attack's winner is declared twice")
+                yield from ((left, {**winners, a: group}) for group in groups[a])
+            else:
+                robot, parts = fields("element branch", node, "robot parts")
+                i = index("element branch robot", robot, self.about.n)
+                blocks = [indices("element branch", block, len(self.about.owner)) for block in array("parts", parts)]
+                exact_cover = all(blocks) and sorted(chain(*blocks)) == list(left[i])
+                need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
+                yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
+
+        walk("upper", tree, (self.about.choices, {}), expand)
+        return bounds
+
+    def _leaf(self, node: Any, cuts: list[_Cut], groups: list[Any], left: Any, winners: Any) -> Any:
+        chosen, given = fields("leaf", node, "cuts weights")
+        used = [cuts[index("leaf cut", k, len(cuts))] for k in array("leaf cuts", chosen)]
+        weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
+        mass = total(weights)
+        need(mass > 0 and all(w >= 0 for w in weights), "upper proof: a leaf's weights are negative or all zero")
+        wins = all(len(groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for cut in used)
+        need(wins, "upper proof: a leaf uses a group that is not known to win")
+        pairs = list(zip(weights, used, strict=True))
+        bound = total(w * cut.constant for w, cut in pairs)
+        for i, elements in enumerate(left):
+            active = [(w, cut.scores) for w, cut in pairs if i in cut.group]
+            bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
+        return bound / mass
+
+    def _groups(self, attack: object) -> list[frozenset[int]]:
+        """Check an attack against the budgets; return the seeing robots of its groups, by lowest robot."""
+        robots, pairs = fields("attack", attack, "robots links")
+        blinded, cut = (
+            frozenset(indices("attack robots", robots, self.about.n)),
+            links("attack links", pairs, self.about.n),
+        )
+        need(
+            len(blinded) <= self.about.alpha_s and len(cut) <= self.about.alpha_c,
+            "upper proof: an attack exceeds its budget",
+        )
+        allowed = cut <= self.about.links - self.about.safe_links and not blinded & self.about.safe_robots
+        need(allowed, "upper proof: an attack hits what does not exist or is protected")
+        groups: list[set[int]] = []
+        for start in range(self.about.n):
+            stack, group = [start], {start}
+            while stack and not any(start in g for g in groups):
+                i = stack.pop()
+                fresh = {j for j in self.about.near[i] - group if (min(i, j), max(i, j)) not in cut}
+                group |= fresh
+                stack.extend(fresh)
+            groups += [group] if not stack else []
+        return sorted((frozenset(g) for group in groups if (g := group - blinded)), key=min) or [frozenset()]
+
+    def _cuts(self, groups: list[list[frozenset[int]]], points: object, cut_list: object) -> list[_Cut]:
+        width = len(self.about.prior) * self.about.d**2
+        given = array("points", points)
+        reading.check_size("points", len(given) * max(width, len(self.about.owner)), reading.LARGEST_TABLE)
+        fenchel = [self._fenchel(point) for point in given]
+        columns = [x for row in self.about.information for matrix in row for x in matrix.entries()]
+        rows = fmpq_mat(len(fenchel), width, [x for row, _ in fenchel for x in row])
+        scores = (rows * fmpq_mat(len(self.about.owner), width, columns).transpose()).tolist()
+        cuts = []
+        for item in array("cuts", cut_list):
+            a, g, p = array("cut", item, 3)
+            family = groups[index("cut attack", a, len(groups))]
+            group = family[index("cut group", g, len(family))]
+            cuts.append(_Cut(a, group, fenchel[index("cut point", p, len(fenchel))][1], scores[p]))
+        return cuts
+
+    def _fenchel(self, point: object) -> tuple[list[fmpq], Any]:
+        """Return ``(W, c)`` with ``phi(S) <= c + sum over e in S of <W, information[e]>`` for every S.
+
+        trace:  tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y), from (L^{-1} - Y) L (L^{-1} - Y) >= 0; W = w Y^2.
+        logdet: logdet L <= tr(Y L) - logdet Y - d, from log x <= x - 1 for the eigenvalues of Y L; W = w Y.
+        maxeig: lambda_max(L^{-1}) >= 1/q >= 2t - t^2 q with q = v'Lv / v'v; W = w t^2 vv' / v'v for one target.
+        """
+        d, m = self.about.d, len(self.about.prior)
+        if self.about.objective == "maxeig":
+            target, size, vector = array("point", point, 3)
+            j, t = index("point target", target, m), exact("point t", size)
+            v = fmpq_mat(d, 1, [exact("point v", x) for x in array("point v", vector, d)])
+            need(any(v.entries()), "upper proof: a direction v is zero")
+            weight = v * v.transpose() * (self.about.weights[j] * t * t / trace(v.transpose() * v))
+            blank = [fmpq(0)] * (d * d)
+            constant = self.about.prior_high - 2 * self.about.weights[j] * t + trace(weight * self.about.inverse[j])
+            return blank * j + weight.entries() + blank * (m - j - 1), constant
+        row, constant = [], fmpq(0)
+        packs = array("point", point, m)
+        for given, w, prior, inverse in zip(
+            packs, self.about.weights, self.about.prior, self.about.inverse, strict=True
+        ):
+            y = packed("point Y", given, d)
+            weight = y * w if self.about.objective == "logdet" else y * y * w
+            if self.about.objective == "logdet":
+                need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
+                constant -= w * d + w * arb((y * inverse).det()).log()
+            else:
+                constant += w * (trace(prior) - 2 * trace(y))
+            constant += trace(weight * inverse)
+            row += weight.entries()
+        return row, constant

@@ -1,0 +1,63 @@
+"""Whether a certificate proves its claim, decided exactly.
+
+Imports no solver, no attacker, no numerical library. Trace and max-eigenvalue are decided in rational
+arithmetic, logarithms in balls (python-flint).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from ratt_opt.certificates.verifier import reading
+from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.reading import exact, fields, need
+from ratt_opt.certificates.verifier.statement import Statement
+from ratt_opt.certificates.verifier.upper import UpperCheck
+from ratt_opt.certificates.verifier.verified import Verified
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["verify_certificate"]
+
+
+def verify_certificate(path: str | Path, *, expected_problem: object = None) -> Verified:
+    """Decide whether the certificate at ``path`` proves its claim.
+
+    Parameters
+    ----------
+    expected_problem : the problem record it must be about (``problem_document(problem)``); any when ``None``
+
+    Raises
+    ------
+    FileFormatError : the file is not a certificate of this version.
+    ProofError : the proof has a fault; the text names the first one found.
+    """
+    names = "format version problem plan claim prior_eigenvalue upper lower"
+    _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", reading.load(path), names)
+    need(expected_problem in (None, problem), "the certificate is about a different problem than the one given")
+    low, high = fields("claim", claim, "lower upper")
+    lower, upper = exact("claim lower", low), exact("claim upper", high)
+    need(lower <= upper, "claim: lower is above upper")
+    about = Statement(problem, plan, prior_range)
+    upper_leaves, lower_leaves = UpperCheck(about).check(upper_part, upper), LowerCheck(about).check(lower_part, lower)
+    return Verified(
+        lower=float(low),
+        upper=float(high),
+        lower_proved=lower_leaves > 0,
+        lower_method=str(lower_part["kind"]),
+        elements=about.plan,
+        objective=about.objective,
+        arithmetic="ball arithmetic" if about.objective == "logdet" else "exact rational arithmetic",
+        problem_hash=reading.document_hash(problem),
+        n_robots=about.n,
+        n_targets=len(about.prior),
+        n_elements=len(about.owner),
+        alpha_s=about.alpha_s,
+        alpha_c=about.alpha_c,
+        largest_defect=float(arb(max(map(max, about.defect))).upper()),
+        upper_leaves=upper_leaves,
+        lower_leaves=lower_leaves,
+    )

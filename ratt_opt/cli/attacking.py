@@ -1,0 +1,54 @@
+"""``ratt-opt attack``: what the adversary can do to the user's own plan."""
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, ObjectiveOption
+from ratt_opt.cli.terminal import print_json, print_tables, progress
+from ratt_opt.errors import InputError
+
+__all__ = ["attack"]
+
+
+def attack(
+    file: InputFile,
+    plan: Annotated[Path, typer.Option("--plan", help='JSON: {"elements": [...]} or {"controls": [...]}.')],
+    objective: ObjectiveOption = "trace",
+    time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for the exact attack.")] = TIME_LIMIT,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the random attack.")] = 0,
+    rank: Annotated[
+        int, typer.Option("--rank", min=0, help="Also rank so many robots and links by what protecting them gains.")
+    ] = 0,
+    below: Annotated[
+        float | None,
+        typer.Option("--below", help="Also find the smallest budgets that push the plan below this value."),
+    ] = None,
+    as_json: JsonFlag = False,
+) -> None:
+    """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
+    from ratt_opt.attackers.breaking_budgets import breaking_budgets
+    from ratt_opt.attackers.criticality import criticality_ranking
+    from ratt_opt.attackers.survey import attack_survey
+    from ratt_opt.main_job.document import attack_document
+    from ratt_opt.report.tables import attack_tables
+    from ratt_opt.scenario.files import load_input
+    from ratt_opt.scenario.plan_file import load_plan
+
+    if below is not None and not math.isfinite(below):
+        raise InputError("--below", "must be a finite number", below)
+    problem = load_input(file).problem(objective)
+    elements = load_plan(plan, problem)
+    with progress() as tell:
+        tell("attacking")
+        results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
+        if rank or below is not None:
+            tell("what to protect")
+        critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else None
+        budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
+    if as_json:
+        print_json(attack_document(objective, elements, results, critical, budgets))
+    else:
+        print_tables(attack_tables(results, critical, budgets, below))

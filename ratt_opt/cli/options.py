@@ -1,0 +1,28 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from ratt_opt.setfunctions.criteria.registry import CRITERIA
+
+__all__ = ["GAP", "TIME_LIMIT", "CertificateFlag", "InputFile", "JsonFlag", "Objective", "ObjectiveOption", "OutFolder"]
+
+if TYPE_CHECKING:
+    Objective = str
+else:
+    Objective = Literal[tuple(CRITERIA)]  # the choices that help and refusals list
+
+TIME_LIMIT = 60.0
+"""Seconds for all searches of a command, unless the user says otherwise: as in ``ratt_opt.bound``."""
+GAP = 1e-9
+"""Relative gap at which the search for the optimum stops, unless the user says otherwise: as in ``ratt_opt.bound``."""
+
+InputFile = Annotated[Path, typer.Argument(help="Scenario or information file.", show_default=False)]
+OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; created if absent.")]
+JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+CertificateFlag = Annotated[
+    bool, typer.Option(help="Write certificate.json, and verify it before anything is printed.")
+]
+ObjectiveOption = Annotated[Objective, typer.Option("--objective", help="Criterion of the tracking quality.")]

@@ -1,0 +1,88 @@
+"""``ratt-opt new`` and ``ratt-opt schema``: scenario files, and what they must look like."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["new", "schema"]
+
+
+def new(
+    out: Annotated[Path, typer.Option("--out", help="Scenario file to write.")],
+    sensing_attacks: Annotated[int, typer.Option("--sensing-attacks", help="Robots that may be blinded.")],
+    link_attacks: Annotated[int, typer.Option("--link-attacks", help="Links that may be cut.")],
+    robots: Annotated[int | None, typer.Option("--robots", help="Number of robots of a random scenario.")] = None,
+    targets: Annotated[int | None, typer.Option("--targets", help="Number of targets of a random scenario.")] = None,
+    seed: Annotated[int | None, typer.Option("--seed", help="Seed of a random scenario.")] = None,
+    communication_range: Annotated[
+        float | None, typer.Option("--range", help="Link robots within this distance [m]; all where absent.")
+    ] = None,
+    mrclam: Annotated[Path | None, typer.Option("--mrclam", help="Folder of the MRCLAM dataset.")] = None,
+    time: Annotated[
+        float | None, typer.Option("--time", help="Instant of the dataset: seconds since its start, or Unix time.")
+    ] = None,
+    label_correction: Annotated[
+        bool, typer.Option(help="Exchange the labels 11 and 17, as dataset 1 needs and its sightings confirm.")
+    ] = True,
+) -> None:
+    """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time)."""
+    from ratt_opt.scenario.files import save_scenario
+
+    budgets = (sensing_attacks, link_attacks)
+    drawn = {"robots": robots, "targets": targets, "seed": seed}
+    if mrclam is None:
+        _refuse({"time": time}, wants="--mrclam")
+        scenario = _random(drawn, budgets)
+    else:
+        _refuse(drawn, wants="no --mrclam")
+        scenario = _from_mrclam(mrclam, time, budgets, label_correction=label_correction)
+    if communication_range is not None:
+        scenario = scenario.replace(communication_range=communication_range)
+    save_scenario(scenario, out)
+    print(f"{out}: {scenario.n_robots} robots, {scenario.n_targets} targets")
+    for note in scenario.notes:
+        print(f"  {note}")
+
+
+def schema(
+    kind: Annotated[Literal["scenario", "information"], typer.Argument(help="Which input file.")] = "scenario",
+) -> None:
+    """Print the JSON Schema of an input file."""
+    from ratt_opt.scenario.files import scenario_schema
+
+    print(json.dumps(scenario_schema(kind), indent=1))
+
+
+def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int]) -> "Scenario":
+    from ratt_opt.scenario.generator import random_scenario
+
+    for name, value in drawn.items():
+        if value is None:
+            raise InputError(f"--{name}", "must be given for a random scenario (or give --mrclam)", "nothing")
+    robots, targets, seed = (int(value) for value in drawn.values() if value is not None)
+    return random_scenario(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
+
+
+def _from_mrclam(folder: Path, time: float | None, budgets: tuple[int, int], *, label_correction: bool) -> "Scenario":
+    from ratt_opt.scenario.mrclam import from_mrclam
+    from ratt_opt.scenario.mrclam_reader import DATASET_1_CORRECTIONS
+
+    if time is None:
+        raise InputError("--time", "must be given with --mrclam", "nothing")
+    corrections = DATASET_1_CORRECTIONS if label_correction else {}
+    return from_mrclam(folder, time, alpha_s=budgets[0], alpha_c=budgets[1], corrections=corrections)
+
+
+def _refuse(given: "Mapping[str, float | None]", wants: str) -> None:
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(f"--{name}", f"must come with {wants}", value)

@@ -1,0 +1,130 @@
+"""Brackets of the marginals of every element of an information criterion.
+
+Every element has the criterion's own bounds at once (``marginal_ends``). Each is then searched for its smallest
+marginal: by branch and bound where the criterion has separable minorants, else by descent alone; the least certain
+ratio is refined first.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.curvatures.least_certain import MarginalBrackets
+from ratt_opt.curvatures.separable.best_context import BestContext
+from ratt_opt.curvatures.separable.context_search import ContextSearch
+from ratt_opt.curvatures.separable.floor_search import FloorSearch
+from ratt_opt.setfunctions.minorants import Choices
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
+    from ratt_opt.budget import Budget
+    from ratt_opt.setfunctions.information import InformationObjective
+    from ratt_opt.stopping import Stop
+
+__all__ = ["SeparableBrackets", "choices_beside"]
+
+WORST_CONDITION = 1e6
+"""Information matrices beyond this condition count as singular: their inverse is not trusted to nine digits."""
+LARGER = 1e-6
+"""A bound on a largest marginal that exceeds the value alone by less, relatively, is that value and its margin."""
+
+
+class SeparableBrackets(MarginalBrackets):
+    """One search an element, over contexts of at most one element of each other owner.
+
+    ``rests_on`` : what the bounds are. ``against_own`` : the ratio that matters is to ``f({x})``, so the largest
+    marginals are left as they are.
+    """
+
+    def __init__(
+        self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
+    ) -> None:
+        single = f.singletons()
+        super().__init__(single, gap, budget)
+        self._f, self._owners, self._single, self._against_own = f, owners, single, against_own
+        self._choices: dict[int, Choices] = {}
+        self._searches: list[ContextSearch | FloorSearch] = []
+        self._largest: dict[int, BestContext] = {}
+        self._branches = f.states("marginal_minorant")
+        self.rests_on = "separable minorants" if self._branches else "bounds for all contexts"
+        floor, ceiling = f.marginal_ends(owners, budget)
+        self.least = np.minimum(floor, single)
+        if not against_own:
+            self.most = np.maximum(ceiling, single)
+
+    def _begin(self) -> Stop | None:
+        if not self._against_own:
+            self._raise_largest()
+        for x in range(self._f.n):
+            self._searches.append(self._search(x))
+            self._budget.nodes += self._searches[x].nodes
+            self._record(x)
+            if stop := self._budget.stop():
+                return stop
+        return None
+
+    def _raise_largest(self) -> None:
+        """Attained ends of the largest marginals, where the value alone is not known to be it."""
+        for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
+            attained = BestContext(self._f, x, self._beside(x), largest=True)
+            attained.descend(self._budget)
+            self._largest[x] = attained
+            self.seen_most[x] = attained.value
+            self.most[x] = max(self.most[x], attained.value)
+
+    def _search(self, x: int) -> ContextSearch | FloorSearch:
+        others, attained = self._beside(x), BestContext(self._f, x, self._beside(x))
+        if self._branches:
+            return ContextSearch(self._f, x, others, attained, self._budget)
+        return FloorSearch(attained, others, self._single, float(self.least[x]), self._budget)
+
+    def _beside(self, x: int) -> Choices:
+        owner = int(self._owners[x])
+        if owner not in self._choices:
+            self._choices[owner] = choices_beside(self._f, self._owners, owner)
+        return self._choices[owner]
+
+    def _refine(self, x: int, target: float) -> None:  # noqa: ARG002  (a minorant has no aim)
+        search = self._searches[x]
+        before = search.nodes
+        search.refine()
+        self._budget.nodes += search.nodes - before
+        self._record(x)
+
+    def _record(self, x: int) -> None:
+        search = self._searches[x]
+        self.seen_least[x] = search.attained.value
+        self.least[x] = min(max(search.lower, 0.0), search.attained.value)
+        self._done[x] = search.exhausted
+
+    def _attaining(self) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
+        smallest: list[tuple[int, ...]] = [()] * self._f.n
+        largest = smallest.copy()
+        for x, search in enumerate(self._searches):
+            self._record(x)
+            smallest[x] = search.attained.context
+        for x, attained in self._largest.items():
+            largest[x] = attained.context
+        return smallest, largest
+
+
+def choices_beside(f: InformationObjective, owners: IntArray, owner: int) -> Choices:
+    """The elements of the other owners, owner by owner."""
+    groups = [np.flatnonzero(owners == i) for i in np.unique(owners) if i != owner]
+    elements = np.concatenate([*groups, np.array([], dtype=np.int64)])
+    sizes = np.array([len(own) for own in groups], dtype=np.int64)
+    information = f.information[elements]
+    eigenvalues = np.linalg.eigvalsh(information)
+    regular = eigenvalues[..., 0] * WORST_CONDITION > eigenvalues[..., -1]
+    inverse = np.zeros_like(information)
+    inverse[regular] = np.linalg.inv(information[regular])
+    return Choices(
+        elements=elements,
+        owners=np.repeat(np.arange(len(sizes)), sizes),
+        first=np.cumsum(sizes) - sizes,
+        information=information,
+        inverse=inverse,
+        regular=regular,
+    )

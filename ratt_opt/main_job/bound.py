@@ -1,0 +1,199 @@
+"""The main job as one call: plan, attack, bound, guarantee."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+import numpy as np
+
+from ratt_opt._validation import readonly
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
+from ratt_opt.bounds.instance import instance_bound
+from ratt_opt.budget import Budget
+from ratt_opt.certificates.write import certify_if_possible
+from ratt_opt.curvatures.curvature import curvature, total_curvature
+from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
+from ratt_opt.errors import InputError
+from ratt_opt.main_job.result import BoundReport, PlanAssessment
+from ratt_opt.main_job.steps import Steps
+from ratt_opt.problem import Plan, Problem
+from ratt_opt.setfunctions.base import LARGEST_TABLE
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.baselines import greedy, myopic, random_plan
+from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
+from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers.ratt import ratt
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.bounds.guarantees import Guarantee
+    from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.solvers.result import MaxMinResult
+
+__all__ = ["bound"]
+
+ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
+"""Share of the time left that each attack, and each of the later searches, may take. The non-robust
+optimum is a baseline where it is proved in its share."""
+LEAST_SECONDS = 1e-3
+"""A search refuses a limit of nothing; with a millisecond it returns the bracket it starts from."""
+CURVATURE_GAP = 0.1
+"""A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
+or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
+RANDOM_SEED = 0
+"""Seed of the random baseline, so that a report is reproducible."""
+
+
+@runtime_checkable
+class HasProblem(Protocol):
+    """Anything that becomes a problem: a scenario, or the contents of a model-free file."""
+
+    def problem(self, objective: str = "trace") -> Problem:
+        """Return the max-min problem for one objective."""
+
+
+def bound(
+    scenario_or_problem: HasProblem | Problem,
+    *,
+    objective: str | None = None,
+    gap: float = 1e-9,
+    time_limit: float | None = 60.0,
+    certificate: str | Path | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> BoundReport:
+    """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
+
+    Parameters
+    ----------
+    scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
+    objective : name of the criterion (trace where ``None``); not with a problem, which has its own
+    gap : relative gap at which the search for the optimum stops
+    time_limit : seconds for all searches together, of which that for the optimum may take three quarters of what
+        the attacks on the baselines leave; ``None`` for no limit. Writing and verifying the certificate comes on top.
+    certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
+    progress : called with one line of text whenever there is something to tell
+
+    Raises
+    ------
+    InputError : an argument breaks its rule, or the certificate cannot be written.
+    ProofError : the verifier finds a fault in the search's own proof.
+    """
+    check_limits(gap, time_limit)
+    problem = _problem_of(scenario_or_problem, objective)
+    budget, steps = Budget(time_limit), Steps(progress)
+    with steps("RATT and the baselines"):
+        plan = ratt(problem)
+        assert plan.alpha_cs is not None, "RATT's plan says it"
+        robust = assess(problem, "ratt", plan, _share(budget, ATTACK_SHARE))
+        baselines = tuple(_baselines(problem, budget))
+    with steps("the best possible plan"):
+        limit = _share(budget, OPTIMUM_SHARE)
+        optimum = solve_maxmin(problem, gap=gap, time_limit=limit, progress=steps.search_line, alpha_cs=plan.alpha_cs)
+        best = _assess_optimum(problem, optimum, _share(budget, ATTACK_SHARE))
+    with steps("curvature and guarantees"):
+        k, c = _curvatures(problem, _share(budget, CURVATURE_SHARE))
+        guarantees = _guarantees(problem, plan, _share(budget, CURVATURE_SHARE), k=k, c=c)
+    with steps("certificate"):
+        proof = certify_if_possible(problem, optimum, certificate)
+    return BoundReport(
+        problem=problem,
+        alpha_cs=plan.alpha_cs,
+        ratt=robust,
+        baselines=baselines,
+        optimum=optimum,
+        best=best,
+        curvature=k,
+        total_curvature=c,
+        guarantees=guarantees,
+        inapplicable=inapplicable_guarantees(problem, plan.alpha_cs),
+        certificate=proof,
+        seconds=steps.seconds,
+    )
+
+
+def _share(budget: Budget, part: float) -> float | None:
+    """Seconds that are ``part`` of those left, never none; ``None`` where there is no limit."""
+    return None if budget.time_limit is None else part * max(budget.seconds_left, LEAST_SECONDS)
+
+
+def assess(
+    problem: Problem, name: str, plan: Plan, time_limit: float | None, known: AttackResult | None = None
+) -> PlanAssessment:
+    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
+    elements = plan.elements
+    worst = known or worst_case_attack(problem, elements, time_limit=time_limit)
+    seeing, f = problem.best_group(elements, worst.attack), problem.objective
+    posterior = None
+    if isinstance(f, InformationObjective):
+        posterior = readonly(np.linalg.inv(f.posterior_information(elements[sorted(seeing)])))
+    return PlanAssessment(
+        name=name,
+        elements=elements,
+        controls=tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True)),
+        bait=plan.bait,
+        worst_case=worst,
+        evaluations=plan.evaluations,
+        groups=problem.communication.groups(worst.attack.links),
+        best_group=seeing,
+        posterior=posterior,
+    )
+
+
+def _problem_of(given: HasProblem | Problem, objective: str | None) -> Problem:
+    if isinstance(given, Problem):
+        if objective is not None:
+            raise InputError("objective", "must be absent where a problem is given (it has its own)", objective)
+        return given
+    if not isinstance(given, HasProblem):
+        raise InputError("scenario_or_problem", "must be a scenario or a Problem", type(given).__name__)
+    return given.problem() if objective is None else given.problem(objective)
+
+
+def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
+    plans = {"greedy": greedy(problem), "myopic": myopic(problem), "random": random_plan(problem, seed=RANDOM_SEED)}
+    for name, plan in plans.items():
+        yield assess(problem, name, plan, _share(budget, ATTACK_SHARE))
+    if isinstance(problem.objective, InformationObjective) or problem.objective.n <= LARGEST_TABLE:
+        unattacked = nonrobust_search(problem, time_limit=_share(budget, NONROBUST_SHARE))
+        if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
+            plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
+            yield assess(problem, "nonrobust", plan, _share(budget, ATTACK_SHARE))
+
+
+def _assess_optimum(problem: Problem, optimum: MaxMinResult, time_limit: float | None) -> PlanAssessment:
+    plan = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
+    return assess(problem, "maxmin", plan, time_limit, known=optimum.worst_case)
+
+
+def _curvatures(problem: Problem, time_limit: float | None) -> tuple[Curvature | None, Curvature | None]:
+    """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
+    f, owners = problem.objective, problem.robot
+    if isinstance(f, InformationObjective):
+        submodular = f.is_submodular
+    elif np.prod([len(choice) + 1.0 for choice in problem.choices]) <= LARGEST_ENUMERATION:
+        submodular = False
+    else:
+        return None, None
+    if submodular:
+        return curvature(f, owners, gap=CURVATURE_GAP, time_limit=time_limit), None
+    return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=time_limit)
+
+
+def _guarantees(
+    problem: Problem,
+    plan: Plan,
+    time_limit: float | None,
+    *,
+    k: Curvature | None,
+    c: Curvature | None,
+) -> dict[str, Guarantee]:
+    """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
+    found = all_guarantees(problem, plan.alpha_cs or 0, k=k, c=c)
+    if k or c:
+        found["this instance"] = instance_bound(problem, plan.elements, k=k, c=c, time_limit=time_limit)
+    return dict(sorted(found.items(), key=lambda item: -item[1]))

@@ -1,0 +1,155 @@
+"""The results of the main job as plain data: strict JSON, full precision, unknown numbers ``None``."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.breaking_budgets import BreakingBudget
+    from ratt_opt.attackers.criticality import Criticality
+    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.certificates.write import Certification
+    from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+
+__all__ = ["FORMAT", "VERSION", "attack_document", "plan_document", "report_document"]
+
+FORMAT = "ratt-opt report"
+VERSION = 1
+"""Raised when a field changes its meaning or disappears; new fields alone do not raise it."""
+
+
+def report_document(report: BoundReport) -> dict[str, Any]:
+    """Return what ``report.json`` holds: everything that the tables and figures show but the scenario itself."""
+    problem, optimum = report.problem, report.optimum
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "n_robots": problem.n_robots,
+        "n_targets": report.n_targets,
+        "n_links": len(problem.communication.links),
+        "objective": report.objective,
+        "unit": report.unit,
+        "alpha_s": problem.alpha_s,
+        "alpha_c": problem.alpha_c,
+        "n_max": report.n_max,
+        "alpha_cs": report.alpha_cs,
+        "ratt": _shared(report, report.ratt),
+        "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
+        "optimum": {
+            "lower": _number(optimum.lower),
+            "upper": _number(report.upper),
+            "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
+            "stop": optimum.stop.value,
+            **_shared(report, report.best),
+        },
+        "certificate": _certificate(report.certificate),
+        "certified_ratio": _number(report.certified_ratio),
+        "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
+        "hypotheses": {name: list(value.hypotheses) for name, value in report.guarantees.items()},
+        "inapplicable": dict(report.inapplicable),
+        "guaranteed_share": report.guaranteed_share,
+        "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
+        "seconds": {name: _number(value) for name, value in report.seconds.items()},
+        "curvature": _curvature(report.curvature),
+        "total_curvature": _curvature(report.total_curvature),
+    }
+
+
+def attack_document(
+    objective: str,
+    elements: IntArray,
+    results: Mapping[str, AttackResult],
+    critical: Sequence[Criticality] | None = None,
+    budgets: Sequence[BreakingBudget] | None = None,
+) -> dict[str, Any]:
+    """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
+    document = {
+        "format": "ratt-opt attack",
+        "version": VERSION,
+        "objective": objective,
+        "elements": elements.tolist(),
+        "attacks": {name: _worst_case(result) for name, result in results.items()},
+    }
+    if critical:
+        document["critical"] = [_critical(row) for row in critical]
+    if budgets is not None:
+        document["breaking_budgets"] = [_budget(row) for row in budgets]
+    return document
+
+
+def _critical(row: Criticality) -> dict[str, Any]:
+    target = {"robot": row.target} if isinstance(row.target, int) else {"link": list(row.target)}
+    return {**target, "loss": row.loss, "gain_lower": row.gain_lower, "gain_upper": row.gain_upper}
+
+
+def _budget(row: BreakingBudget) -> dict[str, Any]:
+    return {
+        "alpha_s": row.alpha_s,
+        "alpha_c": row.alpha_c,
+        "value": row.value,
+        "sensing": sorted(row.attack.sensing),
+        "links": [list(link) for link in sorted(row.attack.links)],
+        "proved": row.is_proved,
+    }
+
+
+def plan_document(plan: PlanAssessment) -> dict[str, Any]:
+    """Return one plan and its worst case as JSON-ready values."""
+    return {
+        "elements": plan.elements.tolist(),
+        "controls": list(plan.controls),
+        "bait": list(plan.bait),
+        "worst_case": _worst_case(plan.worst_case),
+        "evaluations": plan.evaluations,
+        "groups": [sorted(group) for group in plan.groups],
+        "best_group": sorted(plan.best_group),
+        "posterior": None if plan.posterior is None else plan.posterior.tolist(),
+    }
+
+
+def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
+    """A plan with what it keeps as a share of the best possible."""
+    return {**plan_document(plan), "share": _number(report.share(plan))}
+
+
+def _worst_case(result: AttackResult) -> dict[str, Any]:
+    return {
+        "lower": _number(result.lower),
+        "upper": _number(result.upper),
+        "sensing": sorted(result.attack.sensing),
+        "links": [list(link) for link in sorted(result.attack.links)],
+        "stop": result.stop.value,
+    }
+
+
+def _certificate(given: Certification) -> dict[str, Any]:
+    """The verifier's verdict, or why there is none."""
+    proof = given.certificate
+    if proof is None:
+        return {"file": None, "verified": False, "reason": given.why_not}
+    found = proof.verified
+    return {
+        "file": proof.path.name,
+        "verified": True,
+        "claim": {"lower": found.lower, "upper": found.upper},
+        "lower_proved": found.lower_proved,
+        "lower_method": found.lower_method,
+        "arithmetic": found.arithmetic,
+        "problem_hash": found.problem_hash,
+        "bytes": proof.size,
+    }
+
+
+def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:
+    if bracket is None:
+        return None
+    return {"lower": _number(bracket.lower), "upper": _number(bracket.upper), "domain": bracket.domain}
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,96 @@
+"""The second input: covariances, information matrices and owners, for users whose robots are not unicycles."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ratt_opt._validation import readonly
+from ratt_opt.errors import InputError
+from ratt_opt.scenario.problem_record import Link, ProblemRecord
+from ratt_opt.scenario.record import Positive, Text, Whole
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+
+__all__ = ["InformationInput"]
+
+LARGEST_ENTRY = 1e100
+"""Units are the user's, so far larger entries than a scenario's are accepted; products of two stay finite."""
+
+Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY)]
+Matrix = tuple[tuple[Entry, ...], ...]
+
+
+class InformationInput(ProblemRecord):
+    """A max-min problem given by its matrices.
+
+    ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
+    each element; ``weights`` : (M,) or ``None``; ``labels`` : (E,) what each element is, or ``None``.
+    Links, budgets and protections are those of a scenario.
+    """
+
+    format: Literal["ratt-opt information"] = "ratt-opt information"
+    version: Literal[1] = 1
+    prior: Annotated[tuple[Matrix, ...], Field(min_length=1)]
+    information: Annotated[tuple[tuple[Matrix, ...], ...], Field(min_length=1)]
+    robot: Annotated[tuple[Whole, ...], Field(min_length=1)]
+    alpha_s: Whole
+    alpha_c: Whole
+    weights: tuple[Positive, ...] | None = None
+    labels: tuple[Text, ...] | None = None
+    links: tuple[Link, ...] | None = None
+    protected_robots: tuple[Whole, ...] = ()
+    protected_links: tuple[Link, ...] = ()
+    notes: tuple[Text, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_whole(self) -> Self:
+        if self.labels is not None and len(self.labels) != len(self.robot):
+            raise InputError("labels", f"must have {len(self.robot)} entries, one per element", len(self.labels))
+        # Before anything is built on the robots: a stray index of 10^9 would ask for a graph of that size.
+        owners = frozenset(self.robot)
+        missing = next(i for i in range(len(self.robot) + 1) if i not in owners)
+        if missing <= max(self.robot):
+            raise InputError("robot", "must give every robot at least one element", f"none for robot {missing}")
+        self._check_links()
+        self.problem()
+        return self
+
+    @property
+    def n_robots(self) -> int:
+        """Number of robots N."""
+        return max(self.robot) + 1
+
+    @property
+    def n_targets(self) -> int:
+        """Number of targets M."""
+        return len(self.prior)
+
+    @property
+    def element_labels(self) -> tuple[str, ...] | None:
+        """(E,) what each element is, or ``None``."""
+        return self.labels
+
+    @cached_property
+    def matrices(self) -> tuple[FloatArray, FloatArray]:
+        """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
+        return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
+
+    @property
+    def _owners(self) -> IntArray:
+        return np.array(self.robot)
+
+    @property
+    def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        return *self.matrices, None if self.weights is None else np.array(self.weights)
+
+
+def _array(name: str, nested: object) -> FloatArray:
+    try:
+        return np.array(nested, dtype=np.float64)
+    except ValueError:
+        raise InputError(name, "must hold square matrices of one size", "lists of different lengths") from None

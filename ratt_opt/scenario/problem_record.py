@@ -1,0 +1,101 @@
+"""What both kinds of input share: links, budgets and protections, and the problem that they become."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import networkx as nx
+from pydantic import AfterValidator
+
+from ratt_opt.errors import InputError
+from ratt_opt.problem import Problem
+from ratt_opt.scenario.record import Record, Whole
+from ratt_opt.setfunctions.criteria.registry import criterion_called
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ratt_opt._validation import FloatArray, IntArray
+
+__all__ = ["Link", "ProblemRecord"]
+
+
+def _ordered(link: tuple[int, int]) -> tuple[int, int]:
+    if link[0] == link[1]:
+        raise InputError("", "must join two different robots", list(link))
+    return (min(link), max(link))
+
+
+Link = Annotated[tuple[Whole, Whole], AfterValidator(_ordered)]
+"""Two robots that can communicate; stored with the lower one first."""
+
+
+class ProblemRecord(Record):
+    """A record that becomes a max-min problem; a subclass declares the fields, in the order of its file."""
+
+    if TYPE_CHECKING:
+        alpha_s: int
+        alpha_c: int
+        links: tuple[tuple[int, int], ...] | None
+        protected_robots: tuple[int, ...]
+        protected_links: tuple[tuple[int, int], ...]
+
+        @property
+        def n_robots(self) -> int:
+            """Number of robots N."""
+
+        @property
+        def n_targets(self) -> int:
+            """Number of targets M."""
+
+        @property
+        def _owners(self) -> IntArray:
+            """(E,) owner of each element."""
+
+        @property
+        def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+            """Priors (M, d, d), information (E, M, d, d) and weights (M,) or ``None``."""
+
+    def __repr__(self) -> str:
+        sizes = f"{self.n_robots} robots, {self.n_targets} targets"
+        return f"{type(self).__name__}({sizes}, alpha_s={self.alpha_s}, alpha_c={self.alpha_c})"
+
+    __str__ = __repr__
+
+    @property
+    def graph(self) -> nx.Graph | None:
+        """The communication graph, or ``None`` for the complete one."""
+        return None if self.links is None else self._graph_of(self.links)
+
+    def problem(self, objective: str = "trace") -> Problem:
+        """Return the max-min problem for one criterion: ``"trace"``, ``"logdet"``, ``"maxeig"``.
+
+        Raises
+        ------
+        InputError : there is no criterion of that name, or a matrix breaks its rule.
+        """
+        return Problem(
+            criterion_called(objective)(*self._matrices),
+            self._owners,
+            self.graph,
+            self.alpha_s,
+            self.alpha_c,
+            frozenset(self.protected_robots),
+            frozenset(self.protected_links),
+        )
+
+    def _graph_of(self, links: Iterable[tuple[int, int]]) -> nx.Graph:
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(range(self.n_robots))
+        graph.add_edges_from(links)
+        return graph
+
+    def _check_links(self) -> None:
+        """Refuse links that name no robot or are repeated; a problem refuses the rest (budgets, protections)."""
+        known: set[tuple[int, int]] = set()
+        for k, link in enumerate(self.links or ()):
+            if link[1] >= self.n_robots:
+                raise InputError(f"links[{k}]", f"must join robots in [0, {self.n_robots - 1}]", list(link))
+            if link in known:
+                raise InputError(f"links[{k}]", "must not be repeated", list(link))
+            known.add(link)

@@ -1,0 +1,183 @@
+"""What a criterion states about itself, and the generic stand-in for every part that it leaves out.
+
+:class:`~ratt_opt.setfunctions.information.InformationObjective` adds the data. A search asks for a part by its name
+and never which criterion it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ratt_opt.setfunctions.minorants import SeparableMinorant
+from ratt_opt.setfunctions.proof_parts import ProofParts, lacking
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
+    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
+    from ratt_opt.setfunctions.minorants import Choices
+
+__all__ = ["CriterionParts", "Tangent"]
+
+ROUNDING = 1e-12
+"""Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tangent:
+    """``value(L) <= offset + sum_j <slope_j, L_j>`` for every positive definite ``L``; ``slope`` (M, d, d)."""
+
+    slope: FloatArray
+    offset: float
+
+
+OPTIONAL_PARTS = (
+    "combine",
+    "compiled_code",
+    "conic_value",
+    "cut_values",
+    "fenchel_point",
+    "is_submodular",
+    "is_worst_axis",
+    "marginal_ends",
+    "marginal_minorant",
+    "name",
+    "planar_criterion",
+    "planar_gradient",
+    "planar_levels",
+    "prior_criterion",
+    "prior_eigenvalue",
+    "tangent",
+    "tangent_targets",
+    "unit",
+    "verifier_averages",
+)
+"""Parts that hold for a criterion's own formula only: a subclass with another formula does not inherit them."""
+
+
+class CriterionParts(ProofParts):
+    """The parts of a criterion of posterior information ``L`` (M, d, d): its value, and what theory knows of it.
+
+    A subclass defines :meth:`criterion` (or :meth:`value`) and :meth:`gradient`; the rest has generic stand-ins.
+    """
+
+    __slots__ = ()
+
+    prior_information: FloatArray
+    information: FloatArray
+    _baseline: FloatArray
+
+    name: ClassVar[str] = ""
+    """What files, tables and the command line call it; empty for a criterion that is not registered."""
+    unit: ClassVar[str] = ""
+    is_worst_axis: ClassVar[bool] = False
+    """Whether the team's criterion is ``max_j w_j v' Lambda_j^{-1} v`` over targets and unit vectors ``v``: one axis of
+    one target decides. Otherwise it is a sum over targets."""
+    compiled_code: ClassVar[int | None] = None
+    """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if {"criterion", "value", "gradient"} & set(vars(cls)):
+            for part in set(OPTIONAL_PARTS) - set(vars(cls)):
+                setattr(cls, part, getattr(CriterionParts, part))
+
+    @classmethod
+    def states(cls, part: str) -> bool:
+        """Whether the criterion defines this part itself instead of leaving it to the generic bounds."""
+        return getattr(cls, part) is not getattr(CriterionParts, part)
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Weighted criterion per target, lower is better: (..., M, d, d) -> (..., M)."""
+        raise lacking(self, "criterion(posterior_information)", "weighted criterion per target")
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
+        """A supergradient of the value with respect to ``Lambda``: (..., M, d, d), positive semidefinite.
+
+        For every ``L'``: ``value(L') <= value(L) + sum_j <gradient_j, L'_j - L_j>`` (concavity).
+        """
+        raise lacking(self, "gradient(posterior_information)", "supergradient of its value")
+
+    def combine(self, per_target: FloatArray) -> FloatArray:
+        """The criterion of the team from that of each target: (..., M) -> (...); a sum."""
+        return np.asarray(per_target.sum(axis=-1))
+
+    def value(self, posterior_information: FloatArray) -> FloatArray:
+        """Value as a concave function of the posterior information: (..., M, d, d) -> (...); a sum over targets."""
+        return np.asarray((self._baseline - self.criterion(posterior_information)).sum(axis=-1))
+
+    @property
+    def prior_criterion(self) -> float | None:
+        """The criterion before any measurement, where it is a size (trace, max-eigenvalue) and not a logarithm."""
+        return None
+
+    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
+        """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
+        rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
+        return self.criterion(rows)
+
+    def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
+        """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
+        raise lacking(self, "planar_gradient(a, b, c)", "derivative of one target's value")
+
+    def tangent_targets(self, point: FloatArray, level: float, most: int) -> list[int | None]:  # noqa: ARG002
+        """Targets to take tangents for at ``point`` (M, d, d), at most ``most``; ``None`` is all of them together.
+
+        ``level`` : tangents that do not cut this value off are of no use.
+        """
+        return [None]
+
+    def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002
+        """Bound the value of all information by the tangent at ``point`` (M, d, d), for one of its targets.
+
+        Relies on :meth:`gradient` and :meth:`value` being exact at ``point`` up to rounding.
+        """
+        slope = self.gradient(point)
+        return Tangent(slope, float(self.value(point)) - float(np.einsum("jkl,jkl->", slope, point)))
+
+    def cut_values(self, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:  # noqa: ARG002
+        """What tangents for these ``targets`` bound, up to a constant: (K, ..., M, d, d) -> (K, ...)."""
+        return self.value(points)
+
+    @property
+    def prior_magnitude(self) -> float:
+        """Sum of the targets' absolute criteria before any measurement: values are differences from it."""
+        return float(np.abs(self._baseline).sum())
+
+    def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
+        """(n,) proved lower bounds on the smallest and upper bounds on the largest marginals of the elements.
+
+        Over sets with at most one element per owner (``owners`` (n,): 0.. without gaps). Submodular: the marginal on
+        top of all that the other owners have, and the value alone. Otherwise by monotonicity: 0, and the value of all.
+        """
+        slack = ROUNDING * self.prior_magnitude
+        if not self.is_submodular:
+            everything = float(self.evaluate(np.ones((1, self.n), dtype=np.bool_))[0])
+            return np.zeros(self.n), np.full(self.n, everything * (1 + ROUNDING) + slack)
+        by_owner = np.zeros((int(owners.max()) + 1, *self.prior_information.shape))
+        np.add.at(by_owner, owners, self.information)
+        others = self.prior_information + np.tensordot(1.0 - np.eye(len(by_owner)), by_owner, axes=1)
+        below, above = self.value(others)[owners], self.value(others[owners] + self.information)
+        floor = above - below - ROUNDING * (np.abs(above) + np.abs(below)) - 2 * slack
+        return np.maximum(floor, 0.0), self.singletons() * (1 + 10 * ROUNDING)
+
+    def marginal_minorant(
+        self,
+        added: FloatArray,  # noqa: ARG002
+        others: Choices,
+        share: FloatArray,  # noqa: ARG002
+    ) -> SeparableMinorant:
+        """Bound the marginal of information ``added`` (M, d, d) over all contexts, best at a relaxed one.
+
+        Valid for any ``share`` (K,), which sums to at most 1 over each owner's elements. By default 0: none is less.
+        """
+        return SeparableMinorant(0.0, np.zeros(len(others.elements)), np.zeros(len(others.first)))
+
+    def planar_levels(self) -> PlanarLevels | None:
+        """The data as levels, where the value is one over their smallest (max-eigenvalue, at most two coordinates)."""
+        return None

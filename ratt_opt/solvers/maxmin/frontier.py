@@ -1,0 +1,105 @@
+"""The nodes of a search and the bound they leave, and which bounds are low enough."""
+
+from __future__ import annotations
+
+import heapq
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ratt_opt.solvers.maxmin.plans.candidates import Candidates
+    from ratt_opt.solvers.maxmin.tree import TreeNode
+
+__all__ = ["ClosingRule", "Frontier"]
+
+WIDEST_GAP = 0.5
+"""Relative gaps count as at most this where they say above which level a plan would have to be."""
+
+
+class ClosingRule:
+    """A bound closes a node where no plan below it can be better than the best known, by more than the gap.
+
+    Below that plan's level, proved or not, no better one is to be found. A new outcome may lower the level; then what
+    was closed may have to be opened again.
+    """
+
+    def __init__(self, plans: Candidates, gap: float) -> None:
+        self.plans, self.gap = plans, gap
+
+    @property
+    def level(self) -> float:
+        """Value of the best plan under the known outcomes."""
+        return self.plans.level
+
+    @property
+    def better(self) -> float:
+        """The level that a plan has to exceed to be better by more than the gap."""
+        return self.level / (1 - min(self.gap, WIDEST_GAP))
+
+    def closes(self, bound: float) -> bool:
+        """Whether a bound is low enough."""
+        return bool(np.isfinite(bound)) and bound <= self.level + self.gap * abs(bound)
+
+    def missing(self, bound: float) -> float:
+        """What has to be added to a bound until it no longer closes; negative where it does not close."""
+        return self.level + self.gap * abs(bound) - bound
+
+
+class Frontier:
+    """Nodes that are open, the one in work, and those that were closed; any interrupt leaves a valid bound."""
+
+    def __init__(self, rule: ClosingRule) -> None:
+        self.rule = rule
+        self.current: TreeNode | None = None
+        """The node in work, which is part of the bound."""
+        self._queue: list[tuple[float, int, TreeNode]] = []
+        self._pushed = 0
+        self._closed: list[TreeNode] = []
+        self._finished = self._settled = -np.inf
+
+    @property
+    def bound(self) -> float:
+        """The largest bound of an open or finished node."""
+        still = [self._next_bound()] if self._queue else []
+        if self.current is not None:
+            still.append(self.current.bound)
+        return max(self._finished, self._settled, *still)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether no open node is left that does not close."""
+        return not self._queue or self.rule.closes(self._next_bound())
+
+    def _next_bound(self) -> float:
+        return -self._queue[0][0]
+
+    def push(self, node: TreeNode) -> None:
+        """Queue an open node."""
+        heapq.heappush(self._queue, (-node.bound, self._pushed, node))
+        self._pushed += 1
+
+    def take(self) -> TreeNode:
+        """Make the open node of largest bound the one in work."""
+        self.current = node = self._queue[0][2]  # before it leaves the queue: an interrupt must not lose it
+        heapq.heappop(self._queue)
+        return node
+
+    def close(self, node: TreeNode) -> None:
+        """Finish a node whose bound closes it."""
+        self._closed.append(node)
+        self._finished = max(self._finished, node.bound)
+
+    def settle(self, node: TreeNode) -> None:
+        """Finish a node of a single plan, whose bound is as low as it can be."""
+        self._settled = max(self._settled, node.bound)
+
+    def reopen(self) -> bool:
+        """Queue nodes that were closed against a better level than there is now; whether there are any."""
+        again = [node for node in self._closed if not self.rule.closes(node.bound)]
+        if again:
+            self._closed = [node for node in self._closed if self.rule.closes(node.bound)]
+            self._finished = max((node.bound for node in self._closed), default=-np.inf)
+            for node in again:
+                self.push(node)
+        return bool(again)

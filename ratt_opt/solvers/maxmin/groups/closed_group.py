@@ -1,0 +1,105 @@
+"""Proof that one group never exceeds a level, whatever its robots choose.
+
+A small depth-first search of its own: tangent cuts at improving mixtures of the group's elements bound
+it, and where one cut is not enough the robot whose mixture gains most is divided. One plan above the level
+ends it without a proof.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
+from ratt_opt.solvers.maxmin.branching import divide_elements, mixing_gains
+from ratt_opt.solvers.maxmin.task import with_choice
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.solvers.maxmin.frontier import ClosingRule
+    from ratt_opt.solvers.maxmin.task import Choices, Task
+
+__all__ = ["ClosedGroup", "close_group"]
+
+STEPS = 6
+"""Frank-Wolfe steps towards the best mixture of a node."""
+LARGEST_PROOF = 300
+"""Cuts after which the attempt is given up."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClosedGroup:
+    """A node of the proof: closed by ``cut``, or divided into ``parts`` = (elements of ``robot``, node)."""
+
+    bound: float
+    cut: GroupCut | None = None
+    robot: int = -1
+    parts: tuple[tuple[IntArray, ClosedGroup], ...] = ()
+
+
+class _RefutedError(Exception):
+    """The group exceeds the level with some elements, or the proof became too large."""
+
+
+def close_group(task: Task, members: tuple[int, ...], choices: Choices, rule: ClosingRule) -> ClosedGroup | None:
+    """Prove that ``rule`` closes the group's value under every plan within ``choices``, or return ``None``."""
+    search = _Search(task, members, rule)
+    try:
+        return search.close(choices)
+    except _RefutedError:
+        return None
+
+
+class _Search:
+    def __init__(self, task: Task, members: tuple[int, ...], rule: ClosingRule) -> None:
+        self.problem, self.objective = task.problem, task.objective
+        self.members, self.rule = members, rule
+        self.inside = np.isin(np.arange(task.problem.n_robots), members)
+        self.cuts = 0
+
+    def close(self, choices: Choices) -> ClosedGroup:
+        """Close one node of the proof, by a cut or by dividing it."""
+        own = tuple(choices[i] for i in self.members)
+        plan = np.array([choice[0] for choice in own], dtype=np.int64)
+        selection = np.zeros(self.objective.n)
+        for step in range(STEPS):
+            share = 2 / (step + 2)
+            selection *= 1 - share
+            selection[plan] += share
+            point = self._point(selection)
+            cut = tangent_cut(self.problem, self.members, point)
+            self.cuts += 1
+            bound, scores = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), choices)
+            if self.rule.closes(bound):
+                return ClosedGroup(bound=bound, cut=cut)
+            plan = np.array([choice[scores[choice].argmax()] for choice in own], dtype=np.int64)
+            value = float(self.objective.value(self.objective.posterior_information(plan)[None])[0])
+            if not self.rule.closes(value) or self.cuts > LARGEST_PROOF:
+                raise _RefutedError
+        return self._divide(choices, selection, point, cut.target)
+
+    def _point(self, selection: FloatArray) -> FloatArray:
+        chosen = np.flatnonzero(selection)
+        mixed = np.tensordot(selection[chosen], self.objective.information[chosen], axes=1)
+        return np.asarray(self.objective.prior_information + mixed)
+
+    def _divide(self, choices: Choices, selection: FloatArray, point: FloatArray, target: int | None) -> ClosedGroup:
+        gains = mixing_gains(
+            self.problem,
+            selection=selection,
+            inside=self.inside[None],
+            points=point[None],
+            weights=np.ones(1),
+            targets=[target],
+        )
+        divisible = [i for i in self.members if len(choices[i]) > 1]
+        if not divisible:
+            raise _RefutedError
+        robot = max(divisible, key=lambda i: (gains[i], -i))
+        parts = tuple(
+            (part, self.close(with_choice(choices, robot, part)))
+            for part in divide_elements(self.objective, choices[robot], selection, point)
+        )
+        return ClosedGroup(bound=max(node.bound for _, node in parts), robot=robot, parts=parts)

@@ -1,0 +1,83 @@
+"""Known outcomes of attacks and the values of plans and relaxed selections under them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.problem import Attack, Problem
+
+__all__ = ["OutcomePool"]
+
+
+class OutcomePool:
+    """Attacks with the groups of non-blinded robots they leave; equal outcomes are kept once.
+
+    ``attacks[o]`` leaves the groups ``groups[g]`` for ``g`` in ``of_outcome[o]``. ``complete`` : whether
+    all outcomes that matter are known.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.objective = problem, problem.information_objective
+        self.complete = False
+        self.attacks: list[Attack] = []
+        self.groups: list[tuple[int, ...]] = []
+        self.of_outcome: list[tuple[int, ...]] = []
+        self._number: dict[tuple[int, ...], int] = {}
+        self._known: dict[tuple[int, ...], int] = {}
+        self._membership = np.zeros((0, problem.n_robots))
+        self._flat = np.zeros(0, dtype=np.int64)
+        self._starts = np.zeros(0, dtype=np.int64)
+
+    def add(self, attack: Attack) -> int:
+        """Add the outcome of one attack and return its index, new or old."""
+        left = [tuple(sorted(group)) for group in self.problem.groups_left(attack)]
+        numbers = tuple(sorted({self._group(group) for group in left if group} or {self._group(())}))
+        if numbers not in self._known:
+            self._known[numbers] = len(self.attacks)
+            self.attacks.append(attack)
+            self.of_outcome.append(numbers)
+        return self._known[numbers]
+
+    def _group(self, group: tuple[int, ...]) -> int:
+        if group not in self._number:
+            self._number[group] = len(self.groups)
+            self.groups.append(group)
+        return self._number[group]
+
+    def membership(self) -> FloatArray:
+        """(G, N) 1 where the robot belongs to the group."""
+        known = len(self._membership)
+        if known < len(self.groups):
+            rows = np.zeros((len(self.groups) - known, self.problem.n_robots))
+            for row, group in zip(rows, self.groups[known:], strict=True):
+                row[list(group)] = 1.0
+            self._membership = np.concatenate([self._membership, rows])
+        return self._membership
+
+    def group_points(self, of_robot: FloatArray) -> FloatArray:
+        """(G, M, d, d) posterior information of every group, each robot contributing ``of_robot[i]`` (M, d, d)."""
+        flat = of_robot.reshape(len(of_robot), -1)
+        sums = (self.membership() @ flat).reshape(-1, *self.objective.prior.shape)
+        return np.asarray(sums + self.objective.prior_information)
+
+    def group_values(self, of_robot: FloatArray) -> FloatArray:
+        """(G,) value of every group; concave in ``of_robot`` (N, M, d, d)."""
+        return self.objective.value(self.group_points(of_robot))
+
+    def outcome_values(self, group_values: FloatArray) -> FloatArray:
+        """(O,) team value of every outcome: the best of its groups; works along the last axis."""
+        if not self.of_outcome:
+            return np.full((*group_values.shape[:-1], 0), np.inf)
+        if len(self._starts) < len(self.of_outcome):
+            self._flat = np.array([g for numbers in self.of_outcome for g in numbers], dtype=np.int64)
+            self._starts = np.cumsum([0, *(len(numbers) for numbers in self.of_outcome[:-1])])
+        return np.asarray(np.maximum.reduceat(group_values[..., self._flat], self._starts, axis=-1))
+
+    def plan_value(self, elements: IntArray) -> float:
+        """Smallest team value of a plan under the known outcomes: an upper bound on its worst case."""
+        values = self.outcome_values(self.group_values(self.objective.information[elements]))
+        return float(values.min(initial=np.inf))

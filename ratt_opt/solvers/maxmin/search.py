@@ -1,0 +1,178 @@
+"""Branch and bound over elements and winning groups, by outer approximation of concave relaxations.
+
+At a node, tangent cuts of the groups' values and a linear program bound the relaxed plans that remain
+(``relaxed/``). Outcomes enter when a plan or a relaxed plan is attacked (``plans/``). An attack that leaves several
+groups bounds a plan by the best of them, which is not concave: groups that never win are closed by bounds of
+their own, and where that fails the node branches on which group wins (``groups/``).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
+from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
+from ratt_opt.solvers.maxmin.groups.group_proofs import GroupProofs
+from ratt_opt.solvers.maxmin.groups.winner_division import WinnerDivision
+from ratt_opt.solvers.maxmin.groups.winners import Winners
+from ratt_opt.solvers.maxmin.proof import Leaf, UpperProof
+from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
+from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
+from ratt_opt.solvers.maxmin.task import with_choice
+from ratt_opt.solvers.maxmin.tree import TreeNode, nodes_below, preorder
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
+    from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
+    from ratt_opt.solvers.maxmin.task import Task
+    from ratt_opt.solvers.maxmin.turns import Turns
+
+    Progress = Callable[[int, float, float], None] | None
+
+__all__ = ["BranchAndBound"]
+
+STALL = 0.03
+"""A round that closes less than this share of the remaining gap counts as a stall; two stalls end the rounds."""
+STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
+
+
+class BranchAndBound:
+    """The search; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
+
+    def __init__(self, task: Task, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> None:
+        self.task, self.pool, self.incumbent, self.pairs = task, incumbent.pool, incumbent, pairs
+        self.rule = ClosingRule(incumbent.candidates, gap)
+        self.frontier = Frontier(self.rule)
+        self.cuts = CutStore(task, self.pool)
+        self.winners = Winners(GroupProofs(self.cuts, self.rule), incumbent.candidates)
+        self.rounds = CutRounds(self.cuts, self.winners, incumbent.adversary)
+        self.by_winner = WinnerDivision(self.winners, self.frontier)
+        self.division = Division(self.cuts, self.by_winner)
+        self._root = self._first_node()
+        self.frontier.push(self._root)
+
+    @property
+    def upper(self) -> float:
+        """Proved upper bound on the optimum: the largest bound of a node, or of a group closed for all plans."""
+        return max(self.frontier.bound, self.winners.finished, self.incumbent.proved.lower)
+
+    def proof(self) -> UpperProof:
+        """The proof of :attr:`upper`: winners decided for all plans, then the tree."""
+        used = {k for node in nodes_below(self._root) if node.split is None for k in node.leaf.cuts}
+        root = self.winners.above(self._root, {int(self.cuts.outcomes[k]) for k in used})
+        return UpperProof(attacks=tuple(self.pool.attacks), cuts=self.cuts.record(), tree=preorder(root))
+
+    def run(self, turns: Turns, progress: Progress) -> Stop:
+        """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
+        budget, frontier = turns.budget, self.frontier
+        while True:
+            if frontier.is_closed:
+                reopened = frontier.reopen()
+                self.winners.reconsider()
+                if not reopened:
+                    return Stop.GAP
+                continue
+            if (stop := budget.stop() or turns.stop()) is not None:
+                return stop
+            node = frontier.take()
+            budget.nodes += 1
+            if (stop := self._explore(node, turns)) is not None:
+                assert frontier.current is not None
+                frontier.push(frontier.current)
+                frontier.current = None
+                return stop
+            frontier.current = None
+            if progress is not None:
+                progress(budget.nodes, self.incumbent.proved.lower, self.upper)
+
+    def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
+        """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
+        narrowed = self._narrow(node)
+        if narrowed is None:
+            return None
+        self.frontier.current = node = narrowed
+        nodes, stalls = turns.budget.nodes, 0
+        allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
+        self.rounds.begin(node)
+        while True:
+            relaxed = None if turns.stop() else self.rounds.solve(node)
+            if relaxed is None and (stop := turns.stop()) is not None:
+                return stop
+            if relaxed is None:
+                self.division.divide(node, None)
+                return None
+            before = node.bound
+            found = self._tighten(node, relaxed)
+            if self.rule.closes(node.bound):
+                self.frontier.close(node)
+                return None
+            plan = relaxed.rounded(self.task.choices)
+            if self.incumbent.offer(plan):
+                self.incumbent.improve(plan)
+            self.frontier.current = node = self._eliminate(node, *found)
+            stalls = stalls + 1 if before - node.bound < STALL * (node.bound - self.rule.level) else 0
+            if not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls:
+                if nodes & (nodes - 1) == 0:  # the first nodes, and ever fewer
+                    self.incumbent.improve(plan)
+                self.division.divide(node, relaxed)
+                return None
+
+    def _narrow(self, node: TreeNode) -> TreeNode | None:
+        """What remains of a node once elements that are weak in some pair are split off, if anything does."""
+        if self.pairs is None or not self.rule.level > 0:
+            return node
+        return self.pairs.narrow(node, self.rule.better, self.by_winner)
+
+    def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
+        """Derive the node's bound from the multipliers, keeping the old one where it is better.
+
+        Returns the leaf of these multipliers, its bound and its combined scores (E,).
+        """
+        active = relaxed.duals > NEGLIGIBLE
+        if not active.any():
+            return node.leaf, *self.cuts.leaf_bound(node.leaf, node.choices)
+        leaf = Leaf(cuts=tuple(relaxed.cuts[active].tolist()), weights=tuple(relaxed.duals[active].tolist()))
+        bound, combined = self.cuts.leaf_bound(leaf, node.choices)
+        node.tighten(leaf, bound)
+        return leaf, bound, combined
+
+    def _eliminate(self, node: TreeNode, leaf: Leaf, bound: float, combined: FloatArray) -> TreeNode:
+        """Split off elements whose choice would close the node by the same multipliers; return what remains."""
+        slack = self.rule.missing(bound)
+        for i in range(self.task.problem.n_robots):
+            choice = node.choices[i]
+            gone = combined[choice] - combined[choice].max() < slack
+            if not gone.any() or gone.all():
+                continue
+            closed = node.child(with_choice(node.choices, i, choice[gone]))
+            closed.leaf, closed.bound = leaf, self.cuts.leaf_bound(leaf, closed.choices)[0]
+            if not self.rule.closes(closed.bound):
+                continue
+            rest = node.child(with_choice(node.choices, i, choice[~gone]))
+            node.divide(i, [closed, rest], self.task)
+            self.frontier.close(closed)
+            node = rest
+        return node
+
+    def _first_node(self) -> TreeNode:
+        """The root, bounded by one tangent cut of the best plan's worst attack where its winner is decided."""
+        node = TreeNode(choices=self.task.choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
+        points = self.pool.group_points(self.task.objective.information[self.incumbent.candidates.best])
+        for outcome in range(len(self.pool.attacks)):
+            winner = self.winners.of(node, outcome)
+            if winner is None:
+                continue
+            k = self.cuts.tangent(outcome, winner, points[winner])
+            self.rounds.use(k)
+            leaf = Leaf(cuts=(k,), weights=(1.0,))
+            node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])
+            if len(self.cuts) >= 4 * CUTS_A_ROUND:
+                break
+        return node

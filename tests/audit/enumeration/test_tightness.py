@@ -1,0 +1,17 @@
+"""Which bounds are attained: verdicts that follow from instances and proofs."""
+
+from __future__ import annotations
+
+from ratt_opt.audit.engine.decide import Verdict
+from ratt_opt.audit.enumeration.tightness import tightness_entries
+
+
+def test_verdicts() -> None:
+    verdicts = {entry.label: entry.enumerate_cases().verdict for entry in tightness_entries()}
+    assert verdicts == {
+        "theorem1_nd_tight": Verdict.REFUTED,
+        "theorem1_sub_tight": Verdict.REFUTED,
+        "pattern_free_sub_tight": Verdict.PROVED,
+        "pattern_free_sub_tight_n4": Verdict.PROVED,
+        "pattern_free_nd_tight": Verdict.PROVED,
+    }

@@ -1,0 +1,102 @@
+"""The summary says what the records say: counts by hand on a small ledger, and no dangling references."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from ratt_opt.audit.appendix.entry import Reference
+from ratt_opt.audit.ledger import all_entries, run_audit
+from ratt_opt.audit.report.findings import findings
+from ratt_opt.audit.report.html_page import html_report
+from ratt_opt.audit.report.markdown_page import markdown_report
+
+
+def record(label: str, kind: str, verdict: str, reading: str = "", **more: Any) -> dict[str, Any]:
+    head = {"label": label, "kind": kind, "verdict": verdict, "reading": reading, "chain": "a", "statement": "s"}
+    return {**head, "sizes": "two robots", "hypotheses": "h", "claims": [], "decided_by": "d", "seconds": 0.0, **more}
+
+
+PLAN, OPTIMUM = "A* is the plan's worst attack", "A* is the optimum's worst attack"
+FACTOR = {"curvature": "1/2", "factor": "2/3", "cannot_exceed_by_1/1000": True}
+RECORDS = [
+    record("eqn:appro_non_descrease", "theorem", "proved"),
+    record("eqn:appro_submodular", "theorem", "proved"),
+    record("x_1", "step", "proved"),
+    record("x_1", "step as equality", "refuted", weaker_step_that_serves={"entry": "x_1/step", "verdict": "proved"}),
+    record("x_1", "cumulative", "proved"),
+    record("x_2", "step", "refuted", PLAN, best_factors=[FACTOR]),
+    record("x_2", "step", "proved", OPTIMUM),
+    record("x_3", "step", "proved", PLAN),
+    record("x_3", "step", "refuted", OPTIMUM, conclusion_without_it={"entry": "x_3/cumulative", "verdict": "proved"}),
+    record("x_4", "step", "refuted", follows_from="x_2"),
+    record("x_4", "cumulative", "refuted"),
+]
+
+
+def document(records: list[dict[str, Any]]) -> dict[str, Any]:
+    counts = {v: sum(r["verdict"] == v for r in records) for v in ("proved", "refuted")}
+    return {"entries": records, "counts": counts, "seconds": 1.0, "complete": True}
+
+
+def test_every_section_by_hand() -> None:
+    sections = {section.heading: section for section in findings(document(RECORDS))}
+    assert "Both bounds of Theorem 1 hold" in sections["Does the theorem survive?"].sentences[0]
+    lines = sections["Which steps hold?"]
+    assert {row[0]: row[1:] for row in lines.table[1:]} == {
+        "holds": ("1", "all others"),
+        "depends on the reading": ("2", "x_2, x_3"),
+        "fails": ("1", "x_4"),
+        "is printed as = but holds as >= only": ("1", "x_1"),
+    }
+    assert "these lines fail in every reading: x_4" in lines.sentences[-1]
+    readings = sections["Whose worst attack is A*?"]
+    assert readings.table[1:] == (("x_2", "refuted", "proved", "-"), ("x_3", "proved", "refuted", "-"))
+    assert readings.sentences[-1] == "So no single reading of A* makes every step hold."
+    repairs = {row[0].split(",")[0]: row[2:] for row in sections["Refuted, and what serves instead"].table[1:]}
+    assert repairs == {
+        "x_1": ("x_1, step (proved)", "-"),
+        "x_2": ("factor 2/3 at curvature 1/2", "-"),
+        "x_3": ("nothing weaker found", "proved"),
+        "x_4": ("follows directly from x_2 (proved)", "-"),
+    }
+
+
+def test_a_refuted_theorem_is_not_said_to_hold() -> None:
+    broken = [record("eqn:appro_non_descrease", "theorem", "refuted"), *RECORDS[1:]]
+    assert findings(document(broken))[0].sentences == ()
+
+
+def test_one_good_reading_is_not_said_to_be_missing() -> None:
+    kept = [r for r in RECORDS if r["label"] != "x_3"]
+    section = next(s for s in findings(document(kept)) if s.heading.startswith("Whose"))
+    assert len(section.sentences) == 2
+
+
+def test_both_reports_carry_the_summary_escaped() -> None:
+    marked = [{**r, "label": f"<{r['label']}>"} if r["label"] == "x_2" else r for r in RECORDS]
+    for text in (html_report(document(marked)), markdown_report(document(marked))):
+        assert "Which steps hold?" in text
+        assert "no single reading of A" in text
+        assert "<x_2>" not in text
+
+
+def test_every_entry_named_as_survivor_or_stand_in_exists() -> None:
+    entries = list(all_entries())
+    names = {name for entry in entries for name in entry.names}
+    for entry in entries:
+        for name in (entry.survives_by, entry.serves_by):
+            assert name is None or name in names, f"{entry.label} names {name}"
+            assert name is None or Reference.parse(str(name)) == name
+
+
+@pytest.mark.slow
+def test_every_refuted_step_has_something_that_serves(tmp_path: Any) -> None:
+    ledger = run_audit(tmp_path)
+    assert ledger.complete
+    assert ledger.counts()["not decidable here"] == 0
+    section = next(s for s in findings(ledger.document()) if s.heading.startswith("Refuted"))
+    for name, _, instead, without in section.table[1:]:
+        assert without == "proved", name
+        assert "(proved)" in instead, name

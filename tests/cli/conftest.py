@@ -1,0 +1,19 @@
+"""A scenario file that the commands read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from ratt_opt import random_scenario, save_scenario
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def scenario_file(tmp_path: Path) -> Path:
+    path = tmp_path / "scenario.json"
+    save_scenario(random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=5), path)
+    return path

@@ -1,0 +1,246 @@
+"""The command line as a stranger uses it: files, tables, JSON, refusals in one line with exit code 2."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from ratt_opt import (
+    breaking_budgets,
+    criticality_ranking,
+    random_scenario,
+    save_scenario,
+    worst_case_attack,
+)
+from ratt_opt.certificates import write
+from ratt_opt.cli import run
+from tests.cli.refusal import refused
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+REPORT_FIELDS = {
+    "format", "version", "n_robots", "n_targets", "objective", "alpha_s", "alpha_c", "n_max", "alpha_cs", "ratt",
+    "optimum", "certificate", "certified_ratio", "curvature", "total_curvature", "guarantees", "baselines",
+}  # fmt: skip
+
+
+def _strict(text: str) -> Any:
+    def refuse(name: str) -> None:
+        raise AssertionError(f"{name} is not strict JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["demo", "--out", str(tmp_path / "demo")]) == 0
+    written = ["certificate.json", "plan.png", "plan.svg", "report.json", "scenario.json"]
+    assert sorted(os.listdir(tmp_path / "demo")) == written
+    report = _strict((tmp_path / "demo" / "report.json").read_text())
+    assert report.keys() >= REPORT_FIELDS
+    assert (report["n_robots"], report["n_targets"], report["alpha_s"], report["alpha_c"]) == (4, 4, 1, 3)
+    assert report["optimum"]["lower"] <= report["optimum"]["upper"]
+    assert report["ratt"]["worst_case"]["lower"] / report["optimum"]["upper"] == report["certified_ratio"] <= 1
+    assert report["total_curvature"]["domain"] == "feasible"
+    assert {"greedy", "myopic", "random", "nonrobust"} <= report["baselines"].keys()
+    printed = capsys.readouterr().out
+    assert "certified ratio of RATT" in printed
+    assert (tmp_path / "demo" / "plan.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "demo" / "plan.svg").read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])
+def test_bound_reports_what_the_library_computes(
+    scenario_file: Path, tmp_path: Path, objective: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert run(["bound", str(scenario_file), "--out", str(out), "--objective", objective, "--json"]) == 0
+    report = _strict(capsys.readouterr().out)
+    assert report == _strict((out / "report.json").read_text())
+    problem = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=5).problem(objective)
+    for plan in (report["ratt"], report["optimum"]):
+        assert worst_case_attack(problem, plan["elements"]).lower == pytest.approx(
+            plan["worst_case"]["lower"], rel=1e-12
+        )
+        assert plan["controls"] == [e - 12 * i for i, e in enumerate(plan["elements"])]
+    assert report["curvature" if objective == "logdet" else "total_curvature"]["lower"] > 0
+    assert all(0 <= value <= report["certified_ratio"] + 1e-12 for value in report["guarantees"].values())
+
+
+def test_blinding_everyone_is_worth_nothing_and_ratio_one(tmp_path: Path) -> None:
+    path = tmp_path / "s.json"
+    save_scenario(random_scenario(2, 2, alpha_s=2, alpha_c=0, seed=0), path)
+    assert run(["bound", str(path), "--out", str(tmp_path / "o")]) == 0
+    report = _strict((tmp_path / "o" / "report.json").read_text())
+    assert report["optimum"]["upper"] == report["ratt"]["worst_case"]["lower"] == 0
+    assert report["certified_ratio"] == 1.0
+    assert report["certificate"]["lower_proved"]
+    assert run(["verify", str(tmp_path / "o" / "certificate.json")]) == 0
+
+
+def test_a_model_free_file_is_bounded(tmp_path: Path) -> None:
+    document = {
+        "format": "ratt-opt information", "version": 1, "alpha_s": 1, "alpha_c": 0, "robot": [0, 0, 1],
+        "prior": [[[2.0]]], "information": [[[[1.0]]], [[[2.0]]], [[[0.5]]]],
+    }  # fmt: skip
+    path = tmp_path / "i.json"
+    path.write_text(json.dumps(document))
+    assert run(["bound", str(path), "--out", str(tmp_path / "o")]) == 0
+    report = _strict((tmp_path / "o" / "report.json").read_text())
+    assert report["optimum"]["upper"] == pytest.approx(2 - 1 / (0.5 + 0.5))
+
+
+@pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])
+def test_a_bound_comes_with_a_certificate_that_verifies(
+    scenario_file: Path, tmp_path: Path, objective: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, about = tmp_path / "out", ["--problem", str(scenario_file), "--objective", objective]
+    assert run(["bound", str(scenario_file), "--out", str(out), "--objective", objective]) == 0
+    printed = capsys.readouterr().out
+    assert "verified, both ends proved in" in printed
+    assert "certificate.json" in printed
+    assert run(["verify", str(out / "certificate.json"), *about]) == 0
+    text = capsys.readouterr().out
+    assert "no plan keeps more than" in text
+    assert "not covered" in text
+    assert run(["verify", str(out / "certificate.json"), "--json"]) == 0
+    found = _strict(capsys.readouterr().out)
+    report = _strict((out / "report.json").read_text())
+    assert report["certificate"]["claim"] == {"lower": found["lower"], "upper": found["upper"]}
+    assert report["certificate"]["problem_hash"] == found["problem_hash"]
+    assert found["lower"] <= report["optimum"]["lower"] <= report["optimum"]["upper"] <= found["upper"]
+    assert found["elements"] == report["optimum"]["elements"]
+
+
+def test_no_certificate_is_left_from_an_earlier_run(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["bound", str(scenario_file), "--out", str(tmp_path / "o")]
+    assert run(command) == 0
+    assert run([*command, "--no-certificate"]) == 0
+    assert not (tmp_path / "o" / "certificate.json").exists()
+    assert "none: not asked for" in capsys.readouterr().out
+    assert _strict((tmp_path / "o" / "report.json").read_text())["certificate"]["verified"] is False
+
+
+def test_a_bound_whose_proof_has_a_fault_fails(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A solver that claims too much: its proof is refused, nothing is printed as a result, no file is left."""
+    real = write.upper_record
+
+    def without_last_leaf(*arguments: Any) -> Any:
+        record = real(*arguments)
+        record["tree"].pop()
+        return record
+
+    monkeypatch.setattr(write, "upper_record", without_last_leaf)
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 1
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "error: upper proof: a case has no leaf" in shown.err
+    assert os.listdir(tmp_path / "o") == []
+
+
+@pytest.mark.parametrize(
+    ("edit", "text"),
+    [
+        (lambda text: text[:-30], "complete JSON"),
+        (lambda text: text.replace('"version":1', '"version":2'), "version must be 1"),
+        (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper"),
+        (lambda text: text[:0], "complete JSON"),
+    ],
+)
+def test_verify_names_the_first_fault_in_one_line(
+    edit: Any, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "o" / "certificate.json"
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
+    path.write_text(edit(path.read_text()))
+    capsys.readouterr()
+    for arguments in (["verify", str(path)], ["verify", str(path), "--json"]):
+        assert run(arguments) == 1
+        shown = capsys.readouterr()
+        assert shown.out == ""
+        assert shown.err.startswith("error: ")
+        assert text in shown.err
+        assert shown.err.count("\n") == 1
+
+
+def test_verify_refuses_a_missing_file_and_another_problem(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["verify", str(tmp_path / "none.json")]) == 1
+    assert "none.json" in capsys.readouterr().err
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
+    certificate = str(tmp_path / "o" / "certificate.json")
+    assert run(["verify", certificate, "--problem", str(scenario_file), "--objective", "logdet"]) == 1
+    assert "different problem" in capsys.readouterr().err
+
+
+def test_attack_says_what_to_protect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Ranking and smallest budgets as the library finds them; what is protected already is never attacked."""
+    path, plan = tmp_path / "scenario.json", tmp_path / "plan.json"
+    free = random_scenario(5, 3, alpha_s=1, alpha_c=4, seed=2)
+    scenario = free.replace(protected_robots=(1,), protected_links=((0, 2),))
+    save_scenario(scenario, path)
+    plan.write_text('{"controls": [0, 0, 0, 0, 0]}')
+    problem, elements = scenario.problem("trace"), [0, 12, 24, 36, 48]
+    worst = worst_case_attack(problem, elements).upper
+    below = worst * 0.9
+    command = ["attack", str(path), "--plan", str(plan), "--rank", "4", "--below", str(below)]
+    assert run([*command, "--json"]) == 0
+    document = _strict(capsys.readouterr().out)
+    assert all(1 not in found["sensing"] and [0, 2] not in found["links"] for found in document["attacks"].values())
+    ranking = criticality_ranking(problem, elements)
+    assert [row["gain_lower"] for row in document["critical"]] == [row.gain_lower for row in ranking[:4]]
+    assert [row.get("robot", tuple(row.get("link", ()))) for row in document["critical"]] == [
+        row.target for row in ranking[:4]
+    ]
+    found = [(row["alpha_s"], row["alpha_c"], row["proved"]) for row in document["breaking_budgets"]]
+    assert found == [(row.alpha_s, row.alpha_c, True) for row in breaking_budgets(problem, elements, below)]
+    assert run(command) == 0
+    printed = capsys.readouterr().out
+    assert "what to protect" in printed
+    assert "smallest budgets that leave less than" in printed
+    assert run([*command[:-1], "0"]) == 0
+    assert "no attack on what is" in capsys.readouterr().out
+    refused([*command[:-1], "nan"], capsys, "--below must be a finite number; got nan")
+
+
+def test_attack_evaluates_the_users_plan(
+    scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = tmp_path / "plan.json"
+    plan.write_text('{"controls": [0, 4, 11]}')
+    assert run(["attack", str(scenario_file), "--plan", str(plan), "--json"]) == 0
+    document = _strict(capsys.readouterr().out)
+    assert document["elements"] == [0, 16, 35]
+    exact = document["attacks"]["exact"]
+    assert exact["lower"] == exact["upper"]
+    assert all(exact["lower"] <= result["upper"] for result in document["attacks"].values())
+    assert run(["attack", str(scenario_file), "--plan", str(plan)]) == 0
+    assert "bounded rational" in capsys.readouterr().out
+
+
+def test_new_is_reproducible(tmp_path: Path) -> None:
+    common = ["--robots", "4", "--targets", "3", "--sensing-attacks", "1", "--link-attacks", "2", "--seed", "7"]
+    for name in ("a.json", "b.json"):
+        assert run(["new", *common, "--out", str(tmp_path / name)]) == 0
+    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+
+
+def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["schema"]) == 0
+    assert _strict(capsys.readouterr().out)["title"] == "Scenario"
+
+
+def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ("demo", "new", "bound", "attack", "verify", "audit", "schema"):
+        assert run([command, "--help"]) == 0
+        assert "--help" in capsys.readouterr().out
+    assert run(["--version"]) == 0
+    assert capsys.readouterr().out.strip() == "0.1.0"

@@ -1,0 +1,70 @@
+"""Bad command lines and plans are refused in one line, with exit code 2 and nothing written."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.cli.refusal import refused
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+NEW = ["new", "--sensing-attacks", "1", "--link-attacks", "1", "--out", "OUT/s.json"]
+BAD = [
+    (["bound", "OUT/none.json", "--out", "OUT/o"], "none.json must be a file that can be read"),
+    (["bound", "FILE", "--out", "FILE"], "out must be a folder that can be written"),
+    (["bound", "FILE", "--out", "OUT/o", "--objective", "area"], "area"),
+    (["bound", "FILE", "--out", "OUT/o", "--time-limit", "0"], "time_limit must be positive"),
+    (["bound", "FILE", "--out", "OUT/o", "--gap", "-1"], "gap must be a number >= 0; got -1.0"),
+    (["bound", "FILE", "--out", "OUT/o", "--time-limit", "soon"], "soon"),
+    (["bound", "FILE", "--colour", "red"], "--colour"),
+    (["bound"], "Missing argument 'file'"),
+    (["plan"], "plan"),
+    (["audit", "--out", "FILE"], "out must be a folder that can be written"),
+    ([*NEW, "--robots", "2", "--targets", "2"], "--seed must be given for a random scenario"),
+    ([*NEW, "--robots", "2", "--targets", "0", "--seed", "1"], "n_targets must be an integer >= 1; got 0"),
+    ([*NEW, "--robots", "1", "--targets", "1", "--seed", "1"], "alpha_c must be an integer in [0, 0]; got 1"),
+    ([*NEW, "--robots", "2", "--mrclam", "OUT", "--time", "0"], "--robots must come with no --mrclam"),
+    ([*NEW, "--mrclam", "OUT"], "--time must be given with --mrclam"),
+    ([*NEW, "--mrclam", "OUT", "--time", "0"], "Landmark_Groundtruth.dat"),
+    (
+        [*NEW, "--time", "3", "--robots", "2", "--targets", "2", "--seed", "1"],
+        "--time must come with --mrclam; got 3.0",
+    ),
+]
+
+
+@pytest.mark.parametrize(("arguments", "text"), BAD, ids=range(len(BAD)))
+def test_bad_command_lines(
+    arguments: list[str], text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = sorted(os.listdir(tmp_path))
+    filled = [a.replace("OUT", str(tmp_path)).replace("FILE", str(scenario_file)) for a in arguments]
+    refused(filled, capsys, text)
+    assert [name for name in sorted(os.listdir(tmp_path)) if name != "o"] == before
+    assert not (tmp_path / "o").exists() or os.listdir(tmp_path / "o") == []
+
+
+@pytest.mark.parametrize(
+    ("plan", "text"),
+    [
+        ("{}", 'must be an object with "elements" or "controls"'),
+        ("[0, 1, 2]", "must be an object"),
+        ('{"elements": [0, 12]}', "elements must be a list of 3 integers, one per robot"),
+        ('{"elements": [0, 12, 13]}', "elements[2] must be an element of robot 2; got 13 of robot 1"),
+        ('{"elements": [0, 12, 99]}', "elements[2] must be an integer in [0, 35]; got 99"),
+        ('{"elements": [0, 12, "x"]}', "elements[2] must be an integer"),
+        ('{"controls": [0, 1, 12]}', "controls[2] must be an integer in [0, 11]; got 12"),
+        ('{"controls": [0, 1, [2]]}', "controls must be a list of 3 integers"),
+        ("{", "line 1"),
+    ],
+)
+def test_bad_plans(
+    plan: str, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "plan.json"
+    path.write_text(plan)
+    refused(["attack", str(scenario_file), "--plan", str(path)], capsys, text)

@@ -1,0 +1,149 @@
+"""A bound report as a value: plain data, pickled, copied, compared, shown."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.main_job import bound as main_job
+from ratt_opt.setfunctions.information import InformationObjective
+from tests.strategies import OBJECTIVES
+
+SCENARIO = ro.random_scenario(4, 3, alpha_s=1, alpha_c=3, seed=3)
+
+
+@pytest.fixture(scope="module", params=[*OBJECTIVES, "table"])
+def report(request):
+    if request.param == "table":
+        return ro.bound(ro.Problem(ro.Modular([1.0, 2.0, 3.0, 4.0]), [0, 0, 1, 2], None, 1, 1))
+    return ro.bound(SCENARIO, objective=request.param)
+
+
+def test_to_dict_is_plain_and_strict(report):
+    """JSON gives back exactly what went in: no arrays, no NumPy numbers, no tuples, no NaN."""
+    document = report.to_dict()
+    assert json.loads(json.dumps(document, allow_nan=False)) == document
+
+    def plain(value):
+        if isinstance(value, dict):
+            return all(type(name) is str and plain(item) for name, item in value.items())
+        if type(value) is list:
+            return all(map(plain, value))
+        return value is None or type(value) in {str, int, float, bool}
+
+    assert plain(document)
+
+
+def test_to_dict_says_what_the_report_says(report):
+    document = report.to_dict()
+    problem, best = report.problem, report.recommended
+    assert document["objective"] == report.objective
+    assert document["unit"] == report.unit
+    assert document["n_links"] == len(problem.communication.links)
+    assert document["guaranteed_share"] == max(document["guarantees"].values(), default=0.0)
+    assert document["hypotheses"].keys() == document["guarantees"].keys()
+    assert document["inapplicable"] == report.inapplicable
+    shown = document["recommended"]
+    assert shown["planner"] == best.name
+    assert shown["share"] == report.share(best)
+    assert problem.best_group(shown["elements"], best.worst_case.attack) == set(shown["best_group"])
+    groups = problem.communication.groups({tuple(link) for link in shown["worst_case"]["links"]})
+    assert [set(group) for group in groups] == [set(group) for group in shown["groups"]]
+    assert document["baselines"] == {
+        plan.name: plan.to_dict() | {"share": report.share(plan)} for plan in report.baselines
+    }
+
+
+def test_the_posterior_is_that_of_the_best_group(report):
+    objective = report.problem.objective
+    for plan in report.plans:
+        if not isinstance(objective, InformationObjective):
+            assert plan.posterior is None
+            continue
+        left = objective.criterion(np.linalg.inv(plan.posterior))
+        before = objective.criterion(objective.prior_information)
+        assert objective.combine(before) - objective.combine(left) == pytest.approx(plan.worst_case.upper, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "remake",
+    [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))],
+    ids=["copy", "deep", "pickle"],
+)
+def test_a_copy_is_equal_and_says_the_same(report, remake):
+    again = remake(report)
+    assert again == report
+    assert again.to_dict() == report.to_dict()
+    assert remake(report.ratt) == report.ratt
+    assert hash(remake(report.ratt)) == hash(report.ratt)
+    worst = again.ratt.worst_case.attack
+    assert again.problem.team_value(again.ratt.elements, worst) == report.problem.team_value(
+        report.ratt.elements, worst
+    )
+
+
+def test_equal_means_saying_the_same_whatever_time_it_took(report):
+    assert replace(report, seconds={"everything": 1.0}) == report
+    assert report != ro.bound(SCENARIO.replace(alpha_s=2))
+    assert report != report.to_dict()
+    assert replace(report.ratt, name="mine") != report.ratt
+    changed = replace(report.ratt, elements=report.ratt.elements[::-1])
+    assert replace(report, ratt=changed) != report
+
+
+def test_it_shows_itself_in_one_short_line(report):
+    for value in (report, report.ratt):
+        text = repr(value)
+        assert text.startswith(type(value).__name__)
+        assert "\n" not in text
+        assert len(text) < 200
+
+
+def test_numbers_are_python_floats(report):
+    numbers = [report.upper, report.certified_ratio, report.guaranteed_share]
+    numbers += [report.share(plan) for plan in report.plans]
+    assert {type(number) for number in numbers} == {float}
+    assert {type(value) for value in report.seconds.values()} == {float}
+
+
+def test_alpha_cs_is_computed_once(monkeypatch):
+    """Off complete graphs it can be an integer program."""
+    calls = []
+    real = main_job.equivalent_sensing_attacks
+    monkeypatch.setattr(main_job, "equivalent_sensing_attacks", lambda problem: calls.append(0) or real(problem))
+    report = ro.bound(SCENARIO.replace(links=((0, 1), (1, 2), (2, 3))))
+    assert len(calls) == 1
+    assert report.alpha_cs == real(report.problem)
+
+
+class RootOfTrace(InformationObjective):
+    """A user's own criterion: only a value per target and its supergradient, no name, no compiled loop."""
+
+    def criterion(self, posterior_information):
+        return np.sqrt(np.trace(np.linalg.inv(posterior_information), axis1=-2, axis2=-1))
+
+    def gradient(self, posterior_information):
+        covariance = np.linalg.inv(posterior_information)
+        root = np.sqrt(np.trace(covariance, axis1=-2, axis2=-1))[..., None, None]
+        return covariance @ covariance / (2 * root)
+
+
+def test_a_criterion_of_ones_own_goes_through(tmp_path):
+    trace = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=4).problem().objective
+    problem = ro.Problem(RootOfTrace(trace.prior, trace.information), np.repeat([0, 1, 2], 12), None, 1, 1)
+    report = ro.bound(problem, certificate=tmp_path / "certificate.json")
+    exact = ro.exhaustive_optimum(problem)
+    assert report.optimum.lower - 1e-9 <= exact.upper
+    assert exact.lower <= report.upper + 1e-9
+    assert report.objective == "RootOfTrace"
+    assert report.unit == ""
+    assert report.total_curvature.upper <= 1
+    assert isinstance(report.certificate, str)
+    assert not (tmp_path / "certificate.json").exists()
+    assert {field.name for field in fields(report)} >= {"guarantees", "inapplicable"}

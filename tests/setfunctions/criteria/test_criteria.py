@@ -1,0 +1,169 @@
+"""What every criterion states of itself, and a fourth one, defined here, that states nothing but its formula."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.criteria import compiled
+from ratt_opt.setfunctions.criteria.registry import CRITERIA, criterion_called
+from ratt_opt.setfunctions.criteria.two_by_two import triples
+from ratt_opt.setfunctions.criterion_parts import OPTIONAL_PARTS, CriterionParts
+from ratt_opt.setfunctions.information import InformationObjective
+from tests.strategies import information_data
+
+
+class SquaredVariances(InformationObjective):
+    """``sum_j w_j tr(P_j^2)``, which no file of the library knows; convex in ``L = P^{-1}`` as ``x^{-2}`` is."""
+
+    def criterion(self, posterior_information):
+        covariance = np.linalg.inv(posterior_information)
+        return self.weights * np.trace(covariance @ covariance, axis1=-2, axis2=-1)
+
+    def gradient(self, posterior_information):
+        covariance = np.linalg.inv(posterior_information)
+        return 2 * self.weights[:, None, None] * (covariance @ covariance @ covariance)
+
+
+ALL = [*CRITERIA.values(), SquaredVariances]
+
+
+def draw(rng, criterion, dimension=None):
+    dimension = dimension or int(rng.integers(1, 5))
+    prior, information = information_data(rng, 6, int(rng.integers(1, 4)), dimension)
+    return criterion(prior, information, rng.uniform(0.3, 3, len(prior)))
+
+
+def random_information(rng, f):
+    """A posterior information that no subset need lead to."""
+    root = rng.normal(size=(f.n_targets, f.dimension, f.dimension)) * rng.choice([0.1, 1.0, 5.0])
+    return f.prior_information + root @ root.swapaxes(-1, -2)
+
+
+@pytest.mark.parametrize("criterion", ALL)
+def test_tangents_bound_the_value_everywhere_and_touch_at_their_point(criterion):
+    rng = np.random.default_rng(51)
+    for _ in range(60):
+        f = draw(rng, criterion)
+        point = random_information(rng, f)
+        others = [random_information(rng, f) for _ in range(20)] + [f.prior_information]
+        targets = f.tangent_targets(point, float(f.value(point)) + rng.uniform(0, 1), 3)
+        for target in targets:
+            tangent = f.tangent(point, target)
+            scale = 1 + abs(tangent.offset) + f.prior_magnitude
+            for other in others:
+                assert f.value(other) <= tangent.offset + (tangent.slope * other).sum() + 1e-9 * scale
+            here = tangent.offset + (tangent.slope * point).sum()
+            # What the tangent bounds, up to a constant, is cut_values: their fall from the first target's is the same.
+            fall = f.cut_values(np.stack([point] * 2), [targets[0], target])
+            assert here - fall[1] == pytest.approx(f.value(point) - fall[0], abs=1e-9 * scale)
+
+
+@pytest.mark.parametrize("criterion", ALL)
+def test_gradients_are_supergradients_and_point_upwards(criterion):
+    rng = np.random.default_rng(52)
+    for _ in range(60):
+        f = draw(rng, criterion)
+        point, other = random_information(rng, f), random_information(rng, f)
+        slope = f.gradient(point)
+        assert np.linalg.eigvalsh(slope).min() >= -1e-9 * np.abs(slope).max()
+        scale = 1 + f.prior_magnitude + np.abs(slope * (other - point)).sum()
+        assert f.value(other) <= f.value(point) + (slope * (other - point)).sum() + 1e-9 * scale
+
+
+@pytest.mark.parametrize("criterion", ALL)
+def test_the_planar_the_general_and_the_compiled_formula_agree(criterion):
+    rng = np.random.default_rng(53)
+    for _ in range(40):
+        f = draw(rng, criterion, 2)
+        rows = np.stack([random_information(rng, f) for _ in range(5)])
+        entries = rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1]
+        assert f.planar_criterion(*entries) == pytest.approx(f.criterion(rows), rel=1e-12)
+        if f.compiled_code is None:
+            continue
+        # The same targets with a third coordinate of its own: the general formula.
+        wide = np.zeros((5, f.n_targets, 3, 3))
+        wide[..., :2, :2], wide[..., 2, 2] = rows, 1e9
+        general = type(f)(np.tile(np.eye(3), (f.n_targets, 1, 1)), np.zeros((1, f.n_targets, 3, 3)), f.weights)
+        known = {"trace": f.weights * 1e-9, "logdet": -f.weights * np.log(1e9), "maxeig": 0.0}[f.name]
+        assert general.criterion(wide) - known == pytest.approx(f.criterion(rows), rel=1e-9)
+        for matrices in rows:
+            ours = compiled.team_criterion(f.compiled_code, f.weights, triples(matrices))
+            assert ours == pytest.approx(float(f.combine(f.criterion(matrices))), rel=1e-12, abs=1e-12)
+            if f.prior_criterion is not None and f.combine(np.ones(3)) == 1:
+                continue  # one target's value has no meaning of its own
+            alone = [
+                compiled.target_value(f.compiled_code, w, before, tuple(after))
+                for w, before, after in zip(f.weights, triples(f.prior_information), triples(matrices), strict=True)
+            ]
+            assert sum(alone) == pytest.approx(float(f.value(matrices)), rel=1e-9)
+
+
+def test_parts_are_inherited_with_the_formula_they_belong_to_and_not_without_it():
+    class Renamed(ro.LogDetObjective):
+        """The same formula with data of its own."""
+
+        __slots__ = ("note",)
+
+    class Other(ro.LogDetObjective):
+        """Another formula: nothing that is proved of log-det holds of it."""
+
+        def criterion(self, posterior_information):
+            return 2 * super().criterion(posterior_information) ** 3
+
+    class Stated(ro.LogDetObjective):
+        """Another formula that says what it is."""
+
+        is_submodular: ClassVar[bool] = True
+
+        def gradient(self, posterior_information):
+            return super().gradient(posterior_information)
+
+    for part in OPTIONAL_PARTS:
+        assert getattr(Renamed, part) is getattr(ro.LogDetObjective, part)
+        assert getattr(Other, part) is getattr(CriterionParts, part)
+        assert part == "is_submodular" or getattr(Stated, part) is getattr(CriterionParts, part)
+    assert Stated.is_submodular
+    assert not Other.states("marginal_minorant")
+    assert Renamed.states("marginal_minorant")
+
+
+def test_what_is_missing_is_refused_by_its_name():
+    prior, information = information_data(np.random.default_rng(54), 3, 2)
+
+    class Nothing(InformationObjective):
+        pass
+
+    class ValueAlone(InformationObjective):
+        def value(self, posterior_information):
+            size = np.linalg.slogdet(posterior_information)[1] - np.linalg.slogdet(self.prior_information)[1]
+            return size.sum(axis=-1)
+
+    with pytest.raises(InputError, match=r"must define criterion\(posterior_information\).*got Nothing"):
+        Nothing(prior, information)
+    f = ValueAlone(prior, information)
+    assert f([]) == 0
+    assert f([0, 2]) == pytest.approx(ro.LogDetObjective(prior, information)([0, 2]))
+    with pytest.raises(InputError, match=r"must define gradient\(posterior_information\).*got ValueAlone"):
+        f.tangent(f.prior_information, None)
+    with pytest.raises(InputError, match="objective must be trace, logdet or maxeig"):
+        criterion_called("squares")
+
+
+@pytest.mark.parametrize("criterion", ALL[:3])
+def test_a_criterion_is_copied_pickled_and_shown(criterion):
+    f = draw(np.random.default_rng(55), criterion, 2)
+    for again in (copy.copy(f), copy.deepcopy(f), pickle.loads(pickle.dumps(f))):
+        assert (again.table() == f.table()).all()
+        with pytest.raises(ValueError, match="read-only"):
+            again.information[0] = 0.0
+        assert again != f
+    assert repr(f) == f"{criterion.__name__}(6 elements, {f.n_targets} targets, d = 2)"
+    assert repr(ro.TableFunction([0.0, 1.0])) == "TableFunction(n=1)"
+    assert (f.restricted_to(np.array([4, 1])).table() == [f([]), f([4]), f([1]), f([1, 4])]).all()

@@ -1,0 +1,285 @@
+"""The max-min solver against the exhaustive optimum, and its proofs against an independent reading."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import time
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from ratt_opt import (
+    Attack,
+    InputError,
+    LogDetObjective,
+    Problem,
+    TraceObjective,
+    exhaustive_optimum,
+    greedy,
+    myopic,
+    random_scenario,
+    ratt,
+    solve_maxmin,
+    worst_case_attack,
+)
+from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin import solve
+from ratt_opt.solvers.maxmin.plans import adversary
+from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.stopping import Stop
+from tests.oracles import groups_left
+from tests.strategies import OBJECTIVES, random_problem
+
+
+def proved_upper(problem: Problem, proof: UpperProof) -> float:
+    """Walk the tree and bound every leaf from the matrices; assert that it covers all plans."""
+    f = problem.objective
+
+    def bound_at(cut, winners):
+        attack = proof.attacks[cut.attack]
+        problem.check_attack(attack)
+        groups = {tuple(sorted(g - attack.sensing)) for g in groups_left(problem, attack.links)} - {()} or {()}
+        assert cut.group in groups
+        assert len(groups) == 1 or winners.get(cut.attack) == cut.group
+        value, slope = tangent(f, cut.point, cut.target)
+        constant = value + sum(np.vdot(slope[j], f.prior_information[j] - cut.point[j]) for j in range(f.n_targets))
+        scores = np.array([sum(np.vdot(slope[j], f.information[e, j]) for j in range(f.n_targets)) for e in range(f.n)])
+        return constant, np.where(np.isin(problem.robot, cut.group), scores, 0.0)
+
+    nodes = iter(proof.tree)
+
+    def visit(choices, winners):
+        node = next(nodes)
+        if isinstance(node, Leaf):
+            assert node.cuts
+            assert min(node.weights) >= 0
+            bounds = [bound_at(proof.cuts[k], winners) for k in node.cuts]
+            share = np.array(node.weights) / sum(node.weights)
+            total = share @ np.array([b[1] for b in bounds])
+            return share @ np.array([b[0] for b in bounds]) + sum(max(total[e] for e in c) for c in choices)
+        if isinstance(node, ElementBranch):
+            assert set().union(*node.parts) == set(choices[node.robot])
+            assert sum(map(len, node.parts)) == len(choices[node.robot])
+            before, after = choices[: node.robot], choices[node.robot + 1 :]
+            return max([visit((*before, list(part), *after), winners) for part in node.parts])
+        assert isinstance(node, WinnerBranch)
+        attack = proof.attacks[node.attack]
+        groups = {tuple(sorted(g - attack.sensing)) for g in groups_left(problem, attack.links)} - {()}
+        assert sorted(groups) == list(node.parts)
+        return max([visit(choices, {**winners, node.attack: group}) for group in node.parts])
+
+    bound = visit(tuple(c.tolist() for c in problem.choices), {})
+    assert next(nodes, None) is None
+    return bound
+
+
+def tangent(f, point, target):
+    """Value and supergradient at one posterior information, from the definitions."""
+    inverse = np.linalg.inv(point)
+    if isinstance(f, TraceObjective):
+        traces = [np.trace(p) - np.trace(q) for p, q in zip(f.prior, inverse, strict=True)]
+        return f.weights @ traces, f.weights[:, None, None] * (inverse @ inverse)
+    if isinstance(f, LogDetObjective):
+        gains = [np.linalg.slogdet(L)[1] + np.linalg.slogdet(p)[1] for L, p in zip(point, f.prior, strict=True)]
+        return f.weights @ gains, f.weights[:, None, None] * inverse
+    values, vectors = np.linalg.eigh(inverse[target])
+    slope = np.zeros_like(point)
+    slope[target] = f.weights[target] * values[-1] ** 2 * np.outer(vectors[:, -1], vectors[:, -1])
+    return max(f.weights * np.linalg.eigvalsh(f.prior)[:, -1]) - f.weights[target] * values[-1], slope
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_equals_the_exhaustive_optimum(seed: int) -> None:
+    rng = np.random.default_rng([5, seed])
+    problem = random_problem(rng, int(rng.integers(1, 6)), controls=4)
+    expected = exhaustive_optimum(problem).lower
+    result = solve_maxmin(problem)
+    scale = max(1.0, abs(expected))
+    assert result.lower <= result.upper
+    assert result.lower == pytest.approx(expected, abs=1e-8 * scale)
+    assert result.upper == pytest.approx(expected, abs=1e-8 * scale)
+    assert worst_case_attack(problem, result.elements).lower >= result.lower - 1e-12 * scale
+    if result.proof is not None:
+        assert proved_upper(problem, result.proof) <= result.upper + 1e-10 * scale
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_quick_attacks_that_see_nothing_cost_time_only(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Plans look better than they are until they are attacked exactly; what was closed on their word is reopened."""
+    monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
+    monkeypatch.setattr(solve, "LISTED_ROBOTS", 0)
+    monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
+    rng = np.random.default_rng([6, seed])
+    problem = random_problem(rng, int(rng.integers(2, 6)), kind=list(OBJECTIVES)[seed % 3], controls=4)
+    expected = exhaustive_optimum(problem).lower
+    result = solve_maxmin(problem)
+    scale = max(1.0, abs(expected))
+    assert result.lower == pytest.approx(expected, abs=1e-8 * scale)
+    assert expected - 1e-9 * scale <= result.upper
+    assert proved_upper(problem, result.proof) <= result.upper + 1e-10 * scale
+    assert result.upper == pytest.approx(expected, abs=1e-8 * scale)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("max_nodes", [1, 2, 3, 5, 8])
+def test_stopping_early_leaves_a_valid_proved_bracket(kind: str, max_nodes: int) -> None:
+    problem = random_scenario(4, 3, alpha_s=1, alpha_c=2, seed=17).problem(kind)
+    optimum = exhaustive_optimum(problem).lower
+    result = solve_maxmin(problem, max_nodes=max_nodes)
+    again = solve_maxmin(problem, max_nodes=max_nodes)
+    assert result.lower <= optimum * (1 + 1e-12)
+    assert result.upper >= optimum * (1 - 1e-12)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+    assert (again.lower, again.upper, again.nodes) == (result.lower, result.upper, result.nodes)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize("at", [1, 2, 4])
+def test_an_interrupt_keeps_the_bracket(kind: str, at: int) -> None:
+    seed = 0 if kind == "maxeig" else 1
+    problem = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=seed).problem(kind)
+    brackets: list[tuple[float, float]] = []
+
+    def interrupt(_: int, lower: float, upper: float) -> None:
+        brackets.append((lower, upper))
+        if len(brackets) == at:
+            raise KeyboardInterrupt
+
+    result = solve_maxmin(problem, progress=interrupt)
+    assert result.stop is Stop.INTERRUPTED
+    assert (result.lower, result.upper) == brackets[-1]
+    assert all(later[0] >= lower and later[1] <= upper for (lower, upper), later in pairwise(brackets))
+    full = solve_maxmin(problem)
+    assert result.lower <= full.upper * (1 + 1e-12)
+    assert full.lower <= result.upper * (1 + 1e-12)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_scenario(10, 8, alpha_s=3, alpha_c=11, seed=1).problem(kind)
+    full = solve_maxmin(problem)
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.worst_case_attack", interrupted)
+    result = solve_maxmin(problem)
+    assert result.stop is Stop.INTERRUPTED
+    assert result.lower <= full.lower <= full.upper <= result.upper
+
+
+@pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": 0}, {"max_nodes": 0}])
+def test_bad_limits_are_refused(limits: dict[str, float]) -> None:
+    problem = random_scenario(2, 2, alpha_s=0, alpha_c=0, seed=0).problem()
+    with pytest.raises(InputError, match=next(iter(limits))):
+        solve_maxmin(problem, **limits)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_metamorphic(kind: str) -> None:
+    """More choice cannot hurt, more attacks cannot help, duplicates and relabelling change nothing."""
+    base = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=8)
+    value = solve_maxmin(base.problem(kind)).upper
+    assert solve_maxmin(base.replace(alpha_c=4).problem(kind)).upper <= value * (1 + 1e-9)
+    assert solve_maxmin(base.replace(robots=base.robots[::-1]).problem(kind)).upper == pytest.approx(value, rel=1e-8)
+    richer = base.robots[0].replace(controls=(*base.robots[0].controls, base.robots[0].controls[0], (2.0, 0.5)))
+    assert solve_maxmin(base.replace(robots=(richer, *base.robots[1:])).problem(kind)).upper >= value * (1 - 1e-9)
+
+
+def quadratic_regression(objective, robots: int, points: int = 21) -> Problem:
+    """Every robot may measure ``a + b x + c x^2`` at any point of a grid over [-1, 1]; nobody attacks."""
+    x = np.linspace(-1, 1, points)
+    rows = np.stack([np.ones_like(x), x, x * x], axis=1)
+    information = np.tile(rows[:, None, :, None] * rows[:, None, None, :], (robots, 1, 1, 1))
+    owners = np.repeat(np.arange(robots), points)
+    return Problem(objective(1e6 * np.eye(3)[None], information), owners, None, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("objective", "robots", "shares"),
+    [(LogDetObjective, 6, {0: 2, 10: 2, 20: 2}), (TraceObjective, 8, {0: 2, 10: 4, 20: 2})],
+)
+def test_optimal_designs_known_in_closed_form(objective, robots: int, shares: dict[int, int]) -> None:
+    """D-optimal: thirds at -1, 0, 1. A-optimal: a quarter, a half, a quarter."""
+    problem = quadratic_regression(objective, robots)
+    result = solve_maxmin(problem, gap=1e-9, time_limit=60)
+    chosen = (result.elements % 21).tolist()
+    best = problem.objective([i * 21 + point for i, point in enumerate(p for p, k in shares.items() for _ in range(k))])
+    assert result.upper >= best * (1 - 1e-12)
+    assert result.lower == pytest.approx(best, rel=1e-9)
+    assert {point: chosen.count(point) for point in set(chosen)} == shares
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+@pytest.mark.parametrize(("alpha_s", "alpha_c"), [(4, 20), (7, 30), (9, 46)])
+def test_teams_whose_outcomes_are_not_listed(kind: str, alpha_s: int, alpha_c: int) -> None:
+    """The proved bracket holds what every part says anew: the proof its upper end, the exact attacker its lower."""
+    problem = random_scenario(14, 5, alpha_s=alpha_s, alpha_c=alpha_c, seed=4).problem(kind)
+    result = solve_maxmin(problem, gap=1e-6)
+    assert result.upper - result.lower <= 1e-6 * result.upper * (1 + 1e-9)
+    assert result.stop in {Stop.GAP, Stop.CLOSED}
+    assert worst_case_attack(problem, result.elements).lower >= result.lower * (1 - 1e-9)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+    for planner in (ratt, greedy, myopic):
+        assert worst_case_attack(problem, planner(problem).elements).upper <= result.upper * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_node_limits_make_large_teams_reproducible(kind: str) -> None:
+    problem = random_scenario(14, 5, alpha_s=5, alpha_c=26, seed=0).problem(kind)
+    first, again = (solve_maxmin(problem, max_nodes=6) for _ in range(2))
+    assert first.elements.tolist() == again.elements.tolist()
+    assert (first.lower, first.upper, first.nodes, first.stop) == (again.lower, again.upper, again.nodes, again.stop)
+    assert first.nodes <= 6
+
+
+def test_a_time_limit_is_kept_and_the_bracket_reported_open() -> None:
+    problem = random_scenario(30, 25, alpha_s=10, alpha_c=108, seed=3).problem()
+    began = time.monotonic()
+    result = solve_maxmin(problem, time_limit=0.5)
+    assert result.stop is Stop.TIME
+    assert 0 <= result.lower < result.upper
+    assert time.monotonic() - began < 60, "a limit of half a second, on however busy a machine"
+
+
+def test_results_are_values_of_plain_numbers() -> None:
+    problem = random_scenario(4, 3, alpha_s=1, alpha_c=2, seed=17).problem()
+    result, again = solve_maxmin(problem), solve_maxmin(problem)
+    assert result == again == pickle.loads(pickle.dumps(result)) == copy.deepcopy(result)
+    assert hash(result) == hash(again)
+    assert result != replace(result, nodes=result.nodes + 1)
+    assert result != replace(result, proof=replace(result.proof, tree=result.proof.tree[:-1]))
+    assert {type(result.lower), type(result.upper), type(result.posterior_gap)} == {float}
+    assert len(repr(result)) < 200
+    assert exhaustive_optimum(problem) == exhaustive_optimum(problem)
+
+
+def test_an_outer_budget_counts_and_hears_of_interrupts() -> None:
+    problem = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=1).problem()
+    spent = solve_maxmin(problem, budget=Budget(time_limit=0.0))
+    assert spent.stop is Stop.TIME
+    assert spent.lower <= spent.upper
+    outer = Budget()
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    assert solve_maxmin(problem, budget=outer, progress=interrupt).stop is Stop.INTERRUPTED
+    assert outer.stop() is Stop.INTERRUPTED
+    assert solve_maxmin(problem, budget=outer).stop is Stop.INTERRUPTED
+
+
+def test_what_is_known_of_the_link_attacks_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_scenario(6, 3, alpha_s=1, alpha_c=4, seed=2).problem()
+    expected, plan = solve_maxmin(problem), ratt(problem)
+
+    def asked(_: Problem) -> int:
+        raise AssertionError
+
+    monkeypatch.setattr("ratt_opt.solvers.ratt.equivalent_sensing_attacks", asked)
+    assert solve_maxmin(problem, alpha_cs=plan.alpha_cs) == expected
+    assert ratt(problem, alpha_cs=plan.alpha_cs) == plan
