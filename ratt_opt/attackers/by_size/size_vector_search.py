@@ -11,6 +11,7 @@ incumbent is found, the other groups of the outcome are packed; that makes a new
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from itertools import islice
 from math import comb
 from typing import TYPE_CHECKING
@@ -29,7 +30,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -43,6 +44,9 @@ make attacks, and the bound is that of the forced size."""
 
 SHAKEN, SHAKES = 6, 40
 """Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
+
+LATER_SHAKES = 400
+"""The same for vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
 
 LISTED_WHOLE = 34
 """Up to so many robots, sets of any size are listed."""
@@ -114,19 +118,38 @@ class SizeVectorSearch:
             return
         lists = LowLists(self.team, np.argsort(-self.team.single, kind="stable"))
         must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.threat.protected_robots)
-        for family in families:
-            sizes = family.sizes
-            if not self._is_listed(sizes[0]):
-                continue
-            search = VectorSearch(lists, sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal)
-            try:
+        searches = {
+            family.sizes: VectorSearch(
+                lists, family.sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal
+            )
+            for family in families
+            if self._is_listed(family.sizes[0])
+        }
+        for sizes, search in searches.items():
+            with self._noting(sizes, search):
+                search.bound(self.task.budget)
+        still_open = [family for family in families if family.sizes in searches and family.sizes in self.bounds]
+        for family in still_open:
+            self.task.budget.spend()
+            family.shake(LATER_SHAKES)
+            if family.value < self.bracket.goal:
+                self._accept(family.groups())
+        for sizes in [family.sizes for family in sorted(still_open, key=lambda family: family.value)]:
+            with self._noting(sizes, searches[sizes]) as search:
+                search.threshold = self.bracket.goal
                 for groups in search.run(self.task.budget):
                     self._accept(groups)
                     search.threshold = min(search.threshold, self.bracket.goal)
-            finally:
-                self.bounds[sizes] = max(self.bounds[sizes], search.lower)
-                self._raise_lower()
-            if not search.is_open:
+
+    @contextmanager
+    def _noting(self, sizes: Sizes, search: VectorSearch) -> Iterator[VectorSearch]:
+        """Whatever happens, what the search has proved counts."""
+        try:
+            yield search
+        finally:
+            self.bounds[sizes] = max(self.bounds[sizes], search.lower)
+            self._raise_lower()
+            if self.bounds[sizes] >= self.bracket.goal:
                 del self.bounds[sizes]
 
     def _is_listed(self, largest: int) -> bool:

@@ -98,12 +98,33 @@ class VectorSearch:
         self._rest = Rest(n_rest, n_blinded, lists.single, must)
         self._open = [_Node(-np.inf, 0, SetClasses(len(lists.order)))]
         self._serial = 0
+        self._is_listed = False
         self.is_open = False
 
     @property
     def lower(self) -> float:
         """No family still undecided is worth less; infinite once all are decided."""
         return min((node.bound for node in self._open), default=np.inf)
+
+    def bound(self, budget: Budget) -> bool:
+        """List the sets and bound all families; false where that leaves nothing to search.
+
+        Raises
+        ------
+        OutOfBudget : the time is up; ``lower`` stays valid.
+        """
+        if not self._larger:
+            self._open = [replace(self._open[0], bound=self._rest.alone((1 << len(self.lists.order)) - 1))]
+            return True
+        if self._list(budget):
+            root = self._open[0]
+            budget.spend()
+            found = cover_bound(root.classes, self.threshold, budget)
+            self._open = [replace(root, bound=max(root.bound, found.bound))]
+            self._is_listed = found.bound < self.threshold
+        if not self._is_listed and not self.is_open:
+            self._open.clear()
+        return self._is_listed
 
     def run(self, budget: Budget) -> Iterator[tuple[frozenset[int], ...]]:
         """Yield better and better families of groups until none is left; robots left alone are groups of one.
@@ -115,7 +136,7 @@ class VectorSearch:
         if not self._larger:
             yield from self._alone()
             return
-        if self._list(budget):
+        if self._is_listed or self.bound(budget):
             while self._open and (node := min(self._open)).bound < self.threshold:
                 children = yield from self._decide(node, budget)
                 self._open = [*(other for other in self._open if other.serial != node.serial), *children]
@@ -143,6 +164,8 @@ class VectorSearch:
                 low = self.lists.wanted(size, Filter(threshold, bound.rest_costs, bound.room(threshold)), budget)
             else:
                 low = self.lists.of(size, threshold, budget)
+                if not k and low is not None and len(low.masks):
+                    self._open = [replace(self._open[0], bound=float(low.values[0]))]
             if low is None:
                 self.is_open = True
                 return False
