@@ -23,6 +23,7 @@ __all__ = [
     "iterate_non_dominated_sizes",
     "labelled_count",
     "non_dominated_sizes",
+    "sizes_of_largest",
 ]
 
 Sizes = tuple[int, ...]
@@ -43,26 +44,29 @@ def non_dominated_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> list[Siz
 
 
 def iterate_non_dominated_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> Iterator[Sizes]:
-    """Yield the same one by one, without going through the feasible vectors: there may be very many.
+    """Yield the same one by one, without going through the feasible vectors: there may be very many."""
+    if n_robots == n_blinded:
+        yield ()
+    for first in range(n_robots - n_blinded, 0, -1):
+        yield from sizes_of_largest(n_robots, n_blinded, alpha_c, first)
+
+
+def sizes_of_largest(n_robots: int, n_blinded: int, alpha_c: int, first: int) -> Iterator[Sizes]:
+    """Yield the non-dominated vectors whose largest group has ``first`` robots.
 
     Merging two groups of a feasible vector never cuts more links, so a vector is dominated exactly when splitting one
     of its groups in two is feasible. The split that keeps most links takes one robot off the smallest group
     of at least two, ``q`` robots and those blinded that stand with it: it loses ``q - 1`` links. So the links kept
     exceed those to keep by 0 to ``q - 2``, which leaves little to go through on the way down.
     """
-    survivors, to_keep = n_robots - n_blinded, comb(n_robots, 2) - alpha_c
-    if survivors == 0:
-        yield ()
-        return
-    for first in range(survivors, 0, -1):
-        missing = to_keep - comb(first + n_blinded, 2)
-        if missing <= 0:
-            # The largest group keeps enough on its own: the others stand alone, unless it can be split too.
-            if first == 1 or -missing < first + n_blinded - 1:
-                yield (first, *(1,) * (survivors - first))
-            continue
+    survivors = n_robots - n_blinded
+    missing = comb(n_robots, 2) - alpha_c - comb(first + n_blinded, 2)
+    if missing > 0:
         for rest in _tight(survivors - first, first, missing):
             yield (first, *rest)
+    elif first == 1 or -missing < first + n_blinded - 1:
+        # The largest group keeps enough on its own, and could not be split: the others stand alone.
+        yield (first, *(1,) * (survivors - first))
 
 
 def _tight(robots: int, largest: int, missing: int) -> Iterator[Sizes]:

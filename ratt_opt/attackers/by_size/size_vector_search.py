@@ -25,7 +25,7 @@ from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.graph.outcomes import realise
-from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes
+from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
@@ -39,8 +39,14 @@ if TYPE_CHECKING:
 __all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = 5_000
-"""Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60. Beyond, only the first ones
-make attacks, and the bound is that of the forced size."""
+"""Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
+Where there are more, some make attacks, and the bound is that of the forced size."""
+
+OF_EACH_SIZE, SOME_VECTORS = 4, 200
+"""Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
+
+EXCHANGES_SHARE = 0.3
+"""Of the time, at most spent on exchanges before the bounds: large teams get fewer vectors."""
 
 SHAKEN, SHAKES = 6, 40
 """Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
@@ -63,6 +69,9 @@ class SizeVectorSearch:
         self.threat = task.problem.threat
         n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
         self.vectors = list(islice(iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c), MOST_VECTORS + 1))
+        self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
+        if not self.has_all_vectors:
+            self.vectors = self._some_vectors()
         self.packer = Packer(team, self.threat.protected_robots, task.budget)
         self.bounds: dict[Sizes, float] = {}
         """What the families of each vector that is open are worth at least."""
@@ -81,20 +90,33 @@ class SizeVectorSearch:
         families = self._exchanged()
         if self.bracket.is_closed:
             return Stop.CLOSED
-        if len(self.vectors) > MOST_VECTORS:
+        if not self.has_all_vectors:
             return self._weakest_of_forced_size()
-        self.bounds = {family.sizes: -np.inf for family in families}
+        self.bounds = dict.fromkeys(self.vectors, -np.inf)
         self._decide_listed(families)
         return self._decide_by_largest()
+
+    def _some_vectors(self) -> list[Sizes]:
+        """A few vectors of each size of the largest group, the smallest sizes first."""
+        n_robots, budgets = len(self.team.single), (self.threat.n_blinded, self.threat.alpha_c)
+        vectors: list[Sizes] = []
+        for first in range(forced_group_size(n_robots, *budgets), n_robots - budgets[0] + 1):
+            vectors.extend(islice(sizes_of_largest(n_robots, *budgets, first), OF_EACH_SIZE))
+            if len(vectors) >= SOME_VECTORS:
+                break
+        return vectors
 
     # -- attacks -----------------------------------------------------------------------------------------------
 
     def _exchanged(self) -> list[GroupExchanges]:
         """A family of each vector that no exchange makes weaker, weakest first; each is an attack."""
         must = np.isin(np.arange(len(self.team.single)), list(self.threat.protected_robots))
-        families = []
+        families: list[GroupExchanges] = []
+        part = self.task.budget.part(EXCHANGES_SHARE)
         for sizes in self.vectors:
             self.task.budget.check()
+            if families and part.stop() is not None:
+                break
             family = GroupExchanges(self.team, sizes, must)
             family.weakest()
             families.append(family)
@@ -119,22 +141,23 @@ class SizeVectorSearch:
         lists = LowLists(self.team, np.argsort(-self.team.single, kind="stable"))
         must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.threat.protected_robots)
         searches = {
-            family.sizes: VectorSearch(
-                lists, family.sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal
-            )
-            for family in families
-            if self._is_listed(family.sizes[0])
+            sizes: VectorSearch(lists, sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal)
+            for sizes in dict.fromkeys([*(family.sizes for family in families), *self.vectors])
+            if self._is_listed(sizes[0])
         }
         for sizes, search in searches.items():
             with self._noting(sizes, search):
                 search.bound(self.task.budget)
-        still_open = [family for family in families if family.sizes in searches and family.sizes in self.bounds]
-        for family in still_open:
-            self.task.budget.spend()
-            family.shake(LATER_SHAKES)
-            if family.value < self.bracket.goal:
-                self._accept(family.groups())
-        for sizes in [family.sizes for family in sorted(still_open, key=lambda family: family.value)]:
+        for family in families:
+            if family.sizes in searches and family.sizes in self.bounds:
+                self.task.budget.spend()
+                family.shake(LATER_SHAKES)
+                if family.value < self.bracket.goal:
+                    self._accept(family.groups())
+        order = [family.sizes for family in sorted(families, key=lambda family: family.value)]
+        for sizes in dict.fromkeys([*order, *searches]):
+            if sizes not in searches or sizes not in self.bounds:
+                continue
             with self._noting(sizes, searches[sizes]) as search:
                 search.threshold = self.bracket.goal
                 for groups in search.run(self.task.budget):
