@@ -80,7 +80,7 @@ def worst_case_attack(
     bracket = None
     try:
         first = bounded_rational_attack(problem, values.plan)
-        bracket = AttackBracket(first.attack, first.upper, first.lower)
+        bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
         stop = _search(AttackTask(problem, values, bracket, own))
     except OutOfBudget as out:

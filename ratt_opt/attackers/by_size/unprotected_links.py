@@ -24,7 +24,7 @@ def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
 
     problem, bracket = task.problem, task.bracket
     relaxed = replace(problem, protected_links=frozenset())
-    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower)
+    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
     start.offer(bracket.attack, bracket.upper)
     try:
         SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team).run()

@@ -14,7 +14,7 @@ import numpy as np
 
 from ratt_opt.setfunctions.criteria.packed import packed_inverse
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
-from ratt_opt.setfunctions.criterion_parts import Tangent
+from ratt_opt.setfunctions.criterion_parts import VALUE_ROUNDING, Tangent
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.minorants import SeparableMinorant
 
@@ -36,6 +36,11 @@ class LogDetObjective(InformationObjective):
     unit: ClassVar[str] = "nat"
     is_submodular: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 1
+
+    @property
+    def rounding(self) -> float:
+        """Beside what the prior's log-determinants round off, every logarithm has an error of its own."""
+        return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum()))
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted log-determinants of the posterior covariances."""

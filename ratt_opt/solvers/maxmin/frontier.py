@@ -26,6 +26,7 @@ class ClosingRule:
 
     def __init__(self, plans: Candidates, gap: float) -> None:
         self.plans, self.gap = plans, gap
+        self._rounding = plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
@@ -35,15 +36,15 @@ class ClosingRule:
     @property
     def better(self) -> float:
         """The level that a plan has to exceed to be better by more than the gap."""
-        return self.level / (1 - min(self.gap, WIDEST_GAP))
+        return (self.level + self._rounding) / (1 - min(self.gap, WIDEST_GAP))
 
     def closes(self, bound: float) -> bool:
         """Whether a bound is low enough."""
-        return bool(np.isfinite(bound)) and bound <= self.level + self.gap * abs(bound)
+        return bool(np.isfinite(bound)) and self.missing(bound) >= 0
 
     def missing(self, bound: float) -> float:
         """What has to be added to a bound until it no longer closes; negative where it does not close."""
-        return self.level + self.gap * abs(bound) - bound
+        return self.level + self.gap * abs(bound) + self._rounding - bound
 
 
 class Frontier:

@@ -172,7 +172,7 @@ def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.
     assert result.lower <= full.lower <= full.upper <= result.upper
 
 
-@pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": 0}, {"max_nodes": 0}])
+@pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": -1}, {"max_nodes": 0}])
 def test_bad_limits_are_refused(limits: dict[str, float]) -> None:
     problem = random_scenario(2, 2, alpha_s=0, alpha_c=0, seed=0).problem()
     with pytest.raises(InputError, match=next(iter(limits))):

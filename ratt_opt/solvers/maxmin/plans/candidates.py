@@ -36,8 +36,8 @@ class Candidates:
         return self._top()[3]
 
     def is_better(self, plan: IntArray) -> bool:
-        """Whether a plan is worth more than the best one under the known outcomes."""
-        return self.pool.plan_value(plan) > self.level
+        """Whether a plan is worth more than the best one under the known outcomes, by more than rounding."""
+        return self.pool.plan_value(plan) > self.level + self.pool.objective.rounding
 
     def meet(self, plan: IntArray) -> bool:
         """Note a plan; whether it is met for the first time."""

@@ -38,7 +38,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
             values[:, rows] = objective.value(points[rows][None] + change[:, None])
             worst = pool.outcome_values(values).min(axis=1)
             k = int(worst.argmax())
-            if worst[k] > value * (1 + 1e-12):
+            if worst[k] > value + 1e-12 * abs(value) + objective.rounding:  # a tie is no improvement
                 current[i], value, base = others[k], float(worst[k]), values[k]
                 points[rows] += change[k]
                 unchanged = 0

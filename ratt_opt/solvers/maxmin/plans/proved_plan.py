@@ -35,7 +35,7 @@ class ProvedPlan:
 
     def reaches(self, level: float) -> bool:
         """Whether the proved value is a plan's known one."""
-        return self.lower >= level - PROVED * abs(level)
+        return self.lower >= level - PROVED * abs(level) - self.adversary.problem.objective.rounding
 
     def attack(self, plan: IntArray, budget: Budget) -> None:
         """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
