@@ -8,8 +8,8 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search
-from ratt_opt.attackers.by_size.first_bounds import first_bound
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
+from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.plan_values import PlanValues
 from ratt_opt.attackers.task import AttackTask
@@ -83,8 +83,10 @@ def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
 @pytest.mark.parametrize("seed", range(30))
 def test_first_bounds_hold(name, seed):
     problem, elements = team_problem(seed, 3 + seed % 6, name, protect=seed % 2 == 0)
-    team = PlanarTeam.of(problem.objective, elements)
-    assert first_bound(team, problem.threat) <= ro.worst_case_attack(problem, elements).upper + 1e-12
+    assert (
+        first_bound(problem.objective, elements, problem.threat)
+        <= ro.worst_case_attack(problem, elements).upper + 1e-12
+    )
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)

@@ -16,6 +16,7 @@ from ratt_opt.setfunctions.criteria.compiled import team_criterion
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["GroupExchanges"]
@@ -53,9 +54,15 @@ class GroupExchanges:
         home[rising[np.isin(rising, seeing)]] = np.repeat(np.arange(1, len(self.sizes) + 1), self.sizes)
         self._improve(home)
 
-    def shake(self, rounds: int) -> None:
-        """Exchange a few random robots of the best family and improve it again, so often."""
+    def shake(self, rounds: int, budget: Budget) -> None:
+        """Exchange a few random robots of the best family and improve it again, so often.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
         for _ in range(rounds):
+            budget.check()
             home = self._home.copy()
             for one, other in self._rng.integers(0, len(home), (STRENGTH, 2)).tolist():
                 if (home[one] and home[other]) or not (self._must[one] or self._must[other]):

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.first_bounds import first_bound
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
@@ -86,7 +85,6 @@ class SizeVectorSearch:
             self._accept((frozenset(),))
             self.bracket.lower = self.bracket.upper
             return Stop.CLOSED
-        self.bracket.raise_lower(min(first_bound(self.team, self.threat), self.bracket.goal))
         families = self._exchanged()
         if self.bracket.is_closed:
             return Stop.CLOSED
@@ -123,7 +121,7 @@ class SizeVectorSearch:
         families.sort(key=lambda family: family.value)
         for family in families[:SHAKEN]:
             self.task.budget.check()
-            family.shake(SHAKES)
+            family.shake(SHAKES, self.task.budget)
         families.sort(key=lambda family: family.value)
         self._accept(families[0].groups())
         return families
@@ -151,7 +149,7 @@ class SizeVectorSearch:
         for family in families:
             if family.sizes in searches and family.sizes in self.bounds:
                 self.task.budget.spend()
-                family.shake(LATER_SHAKES)
+                family.shake(LATER_SHAKES, self.task.budget)
                 if family.value < self.bracket.goal:
                     self._accept(family.groups())
         order = [family.sizes for family in sorted(families, key=lambda family: family.value)]

@@ -43,6 +43,8 @@ class Incumbent:
 
     def start(self, plans: Sequence[IntArray]) -> None:
         """Improve the most promising of some plans, beat all of them, and attack the best one briefly."""
+        # What is known at once of the first plan: whatever interrupts the rest, the bracket is not empty.
+        self.proved.attack(plans[0], self.budget.part(max_nodes=0))
         for plan in plans:
             self.adversary.learn(plan)
         self.improve(max(plans, key=self.pool.plan_value))
@@ -69,7 +71,7 @@ class Incumbent:
         self._started.add(key)
         current = plan
         for _ in range(LOCAL_SEARCH_ROUNDS):
-            current = climb(self.problem, self.pool, current)
+            current = climb(self.problem, self.pool, current, self.budget)
             known = len(self.pool.attacks)
             if not self.adversary.learn(current):
                 self.offer(current)

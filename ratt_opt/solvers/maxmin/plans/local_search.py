@@ -8,18 +8,23 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
 __all__ = ["climb"]
 
 
-def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
+def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
     Parameters
     ----------
     plan : (N,) element of each robot to start from; not changed
+
+    Raises
+    ------
+    OutOfBudget : the time is up.
     """
     objective = pool.objective
     current = plan.copy()
@@ -28,6 +33,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
     value = float(pool.outcome_values(base).min(initial=np.inf))
     unchanged, i = 0, 0
     while unchanged < problem.n_robots:
+        budget.check()
         choice = problem.choices[i]
         rows = np.flatnonzero(pool.membership()[:, i])
         others = choice[choice != current[i]]
