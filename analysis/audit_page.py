@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING
 
 from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.report.findings import Finding, findings
-from ratt_opt.audit.report.markdown_page import finding_lines
-from ratt_opt.audit.report.words import title
+from ratt_opt.audit.report.findings import Finding, findings, title
+from ratt_opt.audit.report.pages import finding_lines
 from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ratt_opt.audit.report.document import LedgerDocument, WorstRecord
+    from ratt_opt.audit.report.records import LedgerDocument, WorstRecord
 
 __all__ = ["CASES", "page", "ratio_table", "realistic_table"]
 

@@ -15,8 +15,7 @@ from analysis.studies.plots import COLOURS, LABELS, bands, new_figure, save
 from analysis.studies.statistics import column, estimate, select
 from analysis.studies.study import Case, Cell, Seeds, Study
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.solvers.baselines import greedy
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.ratt import greedy, ratt
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -2,5 +2,5 @@
 
 Open ``exact.py`` first: it chooses between the searches of ``by_size`` (complete graphs), ``by_partition`` (others) and
 the bound of ``forced_group.py``; ``weakest_set`` answers what they ask about one group, and ``heuristics`` finds first
-attacks. ``survey.py``, ``criticality.py`` and ``breaking_budgets.py`` ask the exact attacker many questions.
+attacks. ``criticality.py`` asks the exact attacker many questions; ``task.py`` is what all share.
 """

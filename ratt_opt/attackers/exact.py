@@ -1,19 +1,17 @@
-"""The exact worst-case attack on a plan, with a bracket at any time."""
+"""The exact worst-case attack on a plan, with a bracket at any time; and all attackers side by side."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.unprotected_links import unprotected_bound
+from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
@@ -27,11 +25,10 @@ if TYPE_CHECKING:
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
-__all__ = ["worst_case_attack"]
+__all__ = ["attack_survey", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
 
@@ -55,7 +52,7 @@ def worst_case_attack(
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
-      protected links too (``unprotected_links.py``). Relies on a non-decreasing objective, as above.
+      protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 
@@ -67,8 +64,7 @@ def worst_case_attack(
     ----------
     problem : N robots, E elements
     elements : (N,) element chosen for each robot
-    max_nodes : nodes that may be explored; unlimited by default
-    time_limit : seconds, checked between nodes; unlimited by default
+    max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -89,21 +85,13 @@ def worst_case_attack(
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
-    bracket = bracket or _without_attack(problem, values)
+    if bracket is None:  # what no attack at all gives
+        values.evaluations += len(problem.communication.groups())
+        bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
+    attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
     return AttackResult(
-        attack=bracket.attack,
-        lower=min(bracket.lower, bracket.upper),
-        upper=bracket.upper,
-        stop=stop,
-        evaluations=values.evaluations,
-        nodes=own.nodes,
+        attack=attack, lower=lower, upper=upper, stop=stop, evaluations=values.evaluations, nodes=own.nodes
     )
-
-
-def _without_attack(problem: Problem, values: PlanValues) -> AttackBracket:
-    """The bracket that no attack at all gives."""
-    values.evaluations += len(problem.communication.groups())
-    return AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
 
 
 def _search(task: AttackTask) -> Stop:
@@ -141,3 +129,31 @@ def _few_groups(problem: Problem, team: PlanarTeam | None) -> SeparableGroups | 
 
     few = FEW_GROUPS if problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
     return separable_groups(problem.threat, few)
+
+
+def attack_survey(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    time_limit: float | None = None,
+    seed: int = 0,
+    budget: Budget | None = None,
+) -> dict[str, AttackResult]:
+    """Attack one plan exactly and with every heuristic: name -> result.
+
+    Parameters
+    ----------
+    time_limit : seconds for the exact attack; unlimited by default
+    seed : of the random attack
+    budget : an outer search's budget: its seconds and interrupts count too
+
+    Raises
+    ------
+    InputError : the plan is not one element per robot.
+    """
+    return {
+        "exact": worst_case_attack(problem, elements, time_limit=time_limit, budget=budget),
+        "bounded rational": bounded_rational_attack(problem, elements),
+        "greedy": greedy_attack(problem, elements),
+        "random": random_attack(problem, elements, seed=seed),
+    }

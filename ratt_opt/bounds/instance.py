@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
+from ratt_opt.budget import Budget
 from ratt_opt.curvatures.curvature import SECONDS, total_curvature
-from ratt_opt.curvatures.domains import domain_of
+from ratt_opt.curvatures.domains import domain_of, over_subsets
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["instance_bound"]
 
-LARGEST_TABLE = 16
+MOST_ROBOTS = 16
 """Most robots whose subsets are all looked at: one table of 2**16 marginals a robot."""
 
 
@@ -33,6 +34,7 @@ def instance_bound(
     k: Curvature | None = None,
     c: Curvature | None = None,
     time_limit: float | None = SECONDS,
+    budget: Budget | None = None,
 ) -> Guarantee:
     """Share of the optimum that a plan keeps under the worst attack, from marginals within this plan alone.
 
@@ -51,6 +53,7 @@ def instance_bound(
     k : curvature over feasible sets of a submodular objective (its word for submodularity, and its values alone)
     c : total curvature over feasible sets of a non-decreasing objective; give exactly one of the two
     time_limit : seconds for the marginals within the plan, where a table of its subsets is too large (over 16 robots)
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
@@ -67,7 +70,7 @@ def instance_bound(
         raise InputError("k" if k else "c", "must be over feasible sets (give the owners)", given.domain)
     plan = problem.check_plan(elements)
     largest = np.array([given.marginals.largest_upper[choice].max() for choice in problem.choices])
-    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, time_limit)
+    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, Budget.inside(budget, time_limit))
     value = _best_order(within, largest)
     needs = (SUBMODULAR if k else NON_DECREASING, "this instance and this plan")
     return Guarantee(min(max(value, 0.0), 1.0), needs, "per-instance chain (proof in its docstring)")
@@ -94,18 +97,19 @@ def _on_top(problem: Problem, plan: IntArray) -> Callable[[IntArray, int], float
     return within
 
 
-def _smallest_within(problem: Problem, plan: IntArray, time_limit: float | None) -> Callable[[IntArray, int], float]:
+def _smallest_within(problem: Problem, plan: IntArray, budget: Budget) -> Callable[[IntArray, int], float]:
     """Smallest marginals of a robot's element over subsets of some others'."""
     f, robots = problem.objective, len(plan)
-    if robots > LARGEST_TABLE:
+    if robots > MOST_ROBOTS:
         # The domain's elements ascend; the plan's are in the order of the robots.
         order = np.argsort(np.argsort(plan, kind="stable"), kind="stable")
-        lower = total_curvature(f, plan=plan, gap=0.1, time_limit=time_limit).marginals.smallest_lower[order]
+        lower = total_curvature(f, plan=plan, gap=0.1, time_limit=None, budget=budget).marginals.smallest_lower[order]
         return lambda _, robot: float(lower[robot])
     domain = domain_of(f, None, plan)
     position = {int(name): axis for axis, name in enumerate(domain.names)}
     values = domain.values()
-    tables = [_running_minimum(np.diff(values, axis=position[int(e)]).squeeze(position[int(e)])) for e in plan]
+    axes_of = [position[int(e)] for e in plan]
+    tables = [over_subsets(np.minimum, np.diff(values, axis=axis).squeeze(axis)) for axis in axes_of]
 
     def within(before: IntArray, robot: int) -> float:
         own = position[int(plan[robot])]
@@ -113,12 +117,3 @@ def _smallest_within(problem: Problem, plan: IntArray, time_limit: float | None)
         return float(tables[robot][tuple(int(axis in axes) for axis in range(robots - 1))])
 
     return within
-
-
-def _running_minimum(gain: FloatArray) -> FloatArray:
-    """Smallest entry over all subsets of each set."""
-    smallest = gain.copy()
-    for axis in range(gain.ndim):
-        view = np.moveaxis(smallest, axis, 0)
-        np.minimum(view[1:], view[:1], out=view[1:])
-    return smallest

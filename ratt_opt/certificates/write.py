@@ -17,8 +17,8 @@ from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.errors import InputError, ProofError
-from ratt_opt.setfunctions.criteria.packed import packed
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.setfunctions.information import packed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -29,10 +29,9 @@ def attack(
     as_json: JsonFlag = False,
 ) -> None:
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
-    from ratt_opt.attackers.breaking_budgets import breaking_budgets
-    from ratt_opt.attackers.criticality import criticality_ranking
-    from ratt_opt.attackers.survey import attack_survey
-    from ratt_opt.main_job.document import attack_document
+    from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
+    from ratt_opt.attackers.exact import attack_survey
+    from ratt_opt.main_job.result import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan

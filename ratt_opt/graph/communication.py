@@ -53,9 +53,7 @@ class CommunicationGraph:
     def from_networkx(cls, graph: object, n_robots: int) -> CommunicationGraph:
         """Check and convert a ``networkx.Graph`` on nodes ``0..N-1``.
 
-        Raises
-        ------
-        InputError : not an undirected simple graph, wrong nodes, or a self-loop.
+        Raises ``InputError`` : not an undirected simple graph, wrong nodes, or a self-loop.
         """
         if not isinstance(graph, nx.Graph) or graph.is_directed() or graph.is_multigraph():
             raise InputError("graph", "must be an undirected networkx.Graph", type(graph).__name__)

@@ -1,23 +1,25 @@
-"""Sizes of the groups of seeing robots that an attack on a complete graph can leave.
+"""Sizes of the groups that an attack on a complete graph can leave: CAA, and those of the seeing robots.
 
-On a complete graph every robot and link is alike, so an outcome is feasible or not by its group
-sizes alone. ``b`` blinded robots still hold links and may stand in any group; the links kept,
-``sum_k C(size_k, 2)``, are convex in where they stand, so the cheapest place for all of them is
-the largest group.
+On a complete graph every robot and link is alike, so an outcome is feasible or not by its group sizes alone. ``b``
+blinded robots still hold links and may stand in any group; the links kept, ``sum_k C(size_k, 2)``, are convex in where
+they stand, so the cheapest place for all of them is the largest group.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from math import comb, factorial
 from typing import TYPE_CHECKING
 
-from ratt_opt.graph.caa import links_within
+from ratt_opt._validation import check_integer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = [
+    "CaaResult",
+    "caa",
     "cheapest_cut",
     "forced_group_size",
     "iterate_non_dominated_sizes",
@@ -25,6 +27,47 @@ __all__ = [
     "non_dominated_sizes",
     "sizes_of_largest",
 ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaaResult:
+    """``n_max``: size of the largest group left; ``alpha_cs = N - n_max``: equivalent sensing attacks."""
+
+    n_max: int
+    alpha_cs: int
+
+
+def links_within(n_robots: int, group: int) -> int:
+    """Links kept when a complete graph is split into as many groups of size ``group`` as fit, and one of the rest.
+
+    Source: ratt.tex, eq:bar_en.
+    """
+    full, rest = divmod(n_robots, group)
+    return full * (group * (group - 1) // 2) + rest * (rest - 1) // 2
+
+
+def caa(n_robots: int, alpha_c: int) -> CaaResult:
+    """Return the smallest possible largest group of a complete graph with ``alpha_c`` links cut.
+
+    Parameters
+    ----------
+    n_robots : N >= 1
+    alpha_c : links the attacker may cut, in ``[0, N (N - 1) / 2]``
+
+    Raises
+    ------
+    InputError : a number is out of range.
+
+    Source: ratt.tex, Algorithm 2 (CAA). Exact for complete graphs: agrees with the
+    enumeration of integer partitions for every N <= 30.
+    """
+    n_robots = check_integer("n_robots", n_robots, low=1)
+    links = n_robots * (n_robots - 1) // 2
+    alpha_c = check_integer("alpha_c", alpha_c, low=0, high=links)
+    remaining = links - alpha_c
+    n_max = next(n for n in range(1, n_robots + 1) if remaining <= links_within(n_robots, n))
+    return CaaResult(n_max=n_max, alpha_cs=n_robots - n_max)
+
 
 Sizes = tuple[int, ...]
 """Non-increasing positive group sizes; empty when every robot is blinded."""

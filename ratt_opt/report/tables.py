@@ -11,9 +11,8 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from ratt_opt.attackers.breaking_budgets import BreakingBudget
-    from ratt_opt.attackers.criticality import Criticality
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.criticality import BreakingBudget, Criticality
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job.result import BoundReport

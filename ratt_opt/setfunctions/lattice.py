@@ -15,8 +15,10 @@ __all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_diffe
 # Values are finite (checked on entry), so comparisons may assume it; no operation is reordered.
 _FINITE = {"nnan", "ninf", "nsz"}
 _BLOCK_BITS = 13
-_BLOCK = 1 << _BLOCK_BITS  # 64 KiB of differences
+_BLOCK = 1 << _BLOCK_BITS
+"""Differences kept in cache at once: 64 KiB, so that they stay in a core's own cache while all pairs use them."""
 _WIDTH = 512
+"""Entries a vector loop takes: many times the vector width, so that its overhead vanishes, and 4 KiB in cache."""
 
 
 @numba.njit(cache=True, fastmath=_FINITE)

@@ -1,4 +1,4 @@
-"""Robust active target tracking: bait for the attacked robots, greedy for the others."""
+"""Robust active target tracking: bait for the attacked robots, greedy for the others; and what it is compared with."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.graph.caa import caa
+from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
-
+__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "greedy", "myopic", "random_plan", "ratt"]
 
 PLAIN_WORK = 30_000_000
 """Criteria of single targets that the plain loop evaluates in about half a second; beyond, evaluation is lazy."""
@@ -112,3 +111,23 @@ def _lazy_greedy(problem: Problem, objective: InformationObjective, candidates: 
         elements[problem.robot[pick]] = pick
         is_open[problem.choices[int(problem.robot[pick])]] = False
     return evaluations
+
+
+def greedy(problem: Problem) -> Plan:
+    """Standard greedy plan that ignores attacks: RATT with ``alpha = 0``.
+
+    Source: Fisher, Nemhauser, Wolsey 1978; the algorithm Greedy of ratt.tex, Section VI.
+    """
+    return bait_and_greedy(problem, 0)
+
+
+def myopic(problem: Problem) -> Plan:
+    """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
+    return bait_and_greedy(problem, problem.n_robots)
+
+
+def random_plan(problem: Problem, *, seed: int) -> Plan:
+    """Uniformly random element of every robot. Source: the algorithm Random of ratt.tex, Section VI."""
+    rng = np.random.default_rng(check_integer("seed", seed, low=0))
+    elements = np.array([choice[rng.integers(len(choice))] for choice in problem.choices])
+    return Plan(elements=readonly(elements), evaluations=0)

@@ -9,7 +9,7 @@ from ratt_opt._values import ByValue, shown
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.stopping import Stop
 

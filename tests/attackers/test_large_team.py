@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackTask
-from ratt_opt.attackers.weakest_set import branch_and_bound, node_bounds
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
@@ -217,7 +215,7 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
             raise KeyboardInterrupt
         return affine_minorant(*arguments)
 
-    monkeypatch.setattr(node_bounds, "affine_minorant", interrupted)
+    monkeypatch.setattr(branch_and_bound, "affine_minorant", interrupted)
     result = ro.worst_case_attack(problem, np.arange(13))
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)

@@ -66,3 +66,21 @@ def test_a_function_with_too_many_feasible_sets_goes_without_curvature():
     assert report.curvature is None
     assert report.total_curvature is None
     assert not report.guarantees
+
+
+def test_an_interrupt_ends_every_step_and_keeps_the_bracket():
+    """Ctrl-C during the search for the optimum: what is proved so far is reported, and no later step starts anew."""
+    lines = []
+
+    def impatient(line):
+        lines.append(line)
+        if line.startswith("  "):
+            raise KeyboardInterrupt
+
+    scenario = ro.random_scenario(8, 6, alpha_s=2, alpha_c=11, seed=0)
+    report = ro.bound(scenario, time_limit=None, progress=impatient)
+    assert report.optimum.stop is ro.Stop.INTERRUPTED
+    assert report.total_curvature.stop is ro.Stop.INTERRUPTED
+    assert lines[-2:] == ["curvature and guarantees", "certificate"]
+    assert report.optimum.lower <= ro.solve_maxmin(report.problem, gap=1e-6).upper
+    assert ro.solve_maxmin(report.problem, gap=1e-6).lower <= report.upper * (1 + 1e-9)

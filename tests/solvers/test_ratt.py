@@ -21,9 +21,9 @@ from ratt_opt import (
     ratt,
 )
 from ratt_opt.problem import Attack
-from ratt_opt.solvers import nonrobust
 from ratt_opt.solvers import ratt as ratt_module
-from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers.maxmin import solve
+from ratt_opt.solvers.maxmin.solve import nonrobust_search
 from ratt_opt.stopping import Stop
 from tests.strategies import OBJECTIVES, information_data, random_problem
 
@@ -106,7 +106,7 @@ def test_nonrobust_optimum_is_the_best_plan_without_attack(problem: Problem) -> 
 def test_nonrobust_optimum_by_search_equals_every_plan(kind: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     problem = random_problem(np.random.default_rng([8, seed]), 4, kind=kind)
     every = nonrobust_optimum(problem)
-    monkeypatch.setattr(nonrobust, "FEW_PLANS", 0)
+    monkeypatch.setattr(solve, "FEW_PLANS", 0)
     searched = nonrobust_optimum(problem)
     values = [problem.team_value(plan.elements, Attack()) for plan in (every, searched)]
     assert values[1] == pytest.approx(values[0], rel=1e-9)

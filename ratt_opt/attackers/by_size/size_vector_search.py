@@ -12,6 +12,7 @@ incumbent is found, the other groups of the outcome are packed; that makes a new
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import islice
 from math import comb
 from typing import TYPE_CHECKING
@@ -22,6 +23,7 @@ from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
+from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["SizeVectorSearch"]
+__all__ = ["SizeVectorSearch", "unprotected_bound"]
 
 MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
@@ -229,3 +231,21 @@ class SizeVectorSearch:
             self.bracket.raise_lower(min(search.lower, search.threshold))
         self.bracket.raise_lower(search.threshold)
         return Stop.CLOSED if self.bracket.is_closed else Stop.HEURISTIC
+
+
+def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
+    """Raise the lower bound to the worst case without protected links, which is no larger; keep its attack if allowed.
+
+    Relies on a non-decreasing objective. What is proved when the budget runs out is kept.
+    """
+
+    problem, bracket = task.problem, task.bracket
+    relaxed = replace(problem, protected_links=frozenset())
+    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
+    start.offer(bracket.attack, bracket.upper)
+    try:
+        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team).run()
+    finally:
+        bracket.raise_lower(min(start.lower, start.upper))
+        if not start.attack.links & problem.protected_links:
+            task.offer(start.attack)

@@ -21,7 +21,7 @@ VERSION = 1
 LARGEST_FILE = 32 * 2**20
 LARGEST_LENGTH = 2_000_000
 """Most entries of all lists together; with the next two this bounds the memory of a check."""
-LARGEST_TABLE = 1_000_000
+MOST_CELLS = 1_000_000
 DEEPEST_TREE = 2500
 
 

@@ -60,7 +60,7 @@ class UpperCheck:
         """
         attacks, points, cut_list, tree = fields("upper proof", part, "attacks points cuts tree")
         families = array("attacks", attacks)
-        reading.check_size("attacks", len(families) * self.about.n, reading.LARGEST_TABLE)
+        reading.check_size("attacks", len(families) * self.about.n, reading.MOST_CELLS)
         groups = [self._groups(attack) for attack in families]
         cuts, bounds = self._cuts(groups, points, cut_list), []
 
@@ -125,7 +125,7 @@ class UpperCheck:
     def _cuts(self, groups: list[list[frozenset[int]]], points: object, cut_list: object) -> list[_Cut]:
         width = len(self.about.prior) * self.about.d**2
         given = array("points", points)
-        reading.check_size("points", len(given) * max(width, len(self.about.owner)), reading.LARGEST_TABLE)
+        reading.check_size("points", len(given) * max(width, len(self.about.owner)), reading.MOST_CELLS)
         fenchel = [self._fenchel(point) for point in given]
         columns = [x for row in self.about.information for matrix in row for x in matrix.entries()]
         rows = fmpq_mat(len(fenchel), width, [x for row, _ in fenchel for x in row])

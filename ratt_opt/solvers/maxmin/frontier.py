@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ratt_opt.solvers.maxmin.plans.candidates import Candidates
-    from ratt_opt.solvers.maxmin.tree import TreeNode
+    from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
+    from ratt_opt.solvers.maxmin.proof import TreeNode
 
 __all__ = ["ClosingRule", "Frontier"]
 
@@ -62,7 +62,7 @@ class Frontier:
     @property
     def bound(self) -> float:
         """The largest bound of an open or finished node."""
-        still = [self._next_bound()] if self._queue else []
+        still = [-self._queue[0][0]] if self._queue else []
         if self.current is not None:
             still.append(self.current.bound)
         return max(self._finished, self._settled, *still)
@@ -70,10 +70,7 @@ class Frontier:
     @property
     def is_closed(self) -> bool:
         """Whether no open node is left that does not close."""
-        return not self._queue or self.rule.closes(self._next_bound())
-
-    def _next_bound(self) -> float:
-        return -self._queue[0][0]
+        return not self._queue or self.rule.closes(-self._queue[0][0])
 
     def push(self, node: TreeNode) -> None:
         """Queue an open node."""

@@ -7,6 +7,7 @@ import pickle
 import time
 from dataclasses import replace
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -32,6 +33,9 @@ from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, Winne
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_problem
+
+if TYPE_CHECKING:
+    from ratt_opt import AttackResult
 
 
 def proved_upper(problem: Problem, proof: UpperProof) -> float:
@@ -170,6 +174,26 @@ def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.
     result = solve_maxmin(problem)
     assert result.stop is Stop.INTERRUPTED
     assert result.lower <= full.lower <= full.upper <= result.upper
+
+
+@pytest.mark.parametrize("robots", [10, 14])
+def test_an_interrupt_that_an_inner_attack_turned_into_a_bracket_is_heard(
+    robots: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the exact attack in a team of ten, of the quick one in a larger team."""
+    problem = random_scenario(robots, 8, alpha_s=3, alpha_c=11, seed=1).problem()
+    asked = []
+
+    def interrupted(*given: Any, **limits: Any) -> AttackResult:
+        asked.append(given)
+        return replace(worst_case_attack(*given, **limits), stop=Stop.INTERRUPTED)
+
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.worst_case_attack", interrupted)
+    outer = Budget()
+    result = solve_maxmin(problem, budget=outer)
+    assert result.stop is outer.stop() is Stop.INTERRUPTED
+    assert len(asked) == 1
+    assert result.lower <= result.upper
 
 
 @pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": -1}, {"max_nodes": 0}])

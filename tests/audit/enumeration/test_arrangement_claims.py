@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from ratt_opt.audit.appendix.dominance import SETTINGS
+from ratt_opt.audit.appendix.readings import SETTINGS
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries
-from ratt_opt.audit.enumeration.arrangements import arrangements, caa_groups, is_pattern1, is_pattern2, splits
-from ratt_opt.audit.enumeration.setting import Setting, counted
+from ratt_opt.audit.enumeration.arrangement_claims import (
+    arrangement_entries,
+    arrangements,
+    first_occurrence,
+    is_pattern1,
+    is_pattern2,
+    smallest_team_entries,
+)
+from ratt_opt.audit.enumeration.setting import Setting, caa_groups, counted, splits
 from ratt_opt.audit.enumeration.size_claims import size_entries
-from ratt_opt.audit.enumeration.smallest_teams import first_occurrence, smallest_team_entries
 
 SIZES = {entry.label: entry for entry in size_entries()}
 OCCURS = {entry.label: entry for entry in smallest_team_entries()}

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from ratt_opt.audit.worst_ratio.multipliers import basic_multipliers, checked_bound, proved_bound
-from ratt_opt.audit.worst_ratio.program import RatioProgram, Row
+from ratt_opt.audit.worst_ratio.program import RatioProgram, Row, basic_multipliers, checked_bound, proved_bound
 from ratt_opt.budget import Budget
 
 

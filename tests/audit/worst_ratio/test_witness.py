@@ -8,9 +8,8 @@ from fractions import Fraction
 import pytest
 
 from ratt_opt import InputError, ProofError
-from ratt_opt.audit.worst_ratio.families import attaining_instance, limit_instance, limit_ratio
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
-from ratt_opt.audit.worst_ratio.witness import replay
+from ratt_opt.audit.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,28 +10,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.curvatures.planar.options import Options
+    from ratt_opt.curvatures.planar.contexts import Options
+    from ratt_opt.curvatures.planar.level_program import Relaxed
 
-__all__ = ["Average", "Forms", "ceilings", "least_enough", "least_marginal", "most_enough", "most_marginal"]
+__all__ = ["ceilings", "least_enough", "least_marginal", "most_enough", "most_marginal"]
 
 MARGIN = 1e-12
 """Safety margin for rounding, relative to the sum of the absolute terms."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Forms:
-    """Lower bounds on levels: (S,) ``target``, (S, 3) ``direction``."""
-
-    target: IntArray
-    direction: FloatArray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Average:
-    """``t <= <cuts, total>`` with ``cuts`` (3, M), found for ``t - slope own``."""
-
-    cuts: FloatArray
-    slope: float
 
 
 def least_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, highest: float) -> FloatArray:
@@ -42,11 +26,8 @@ def least_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, hi
     ``P - ceiling = sqrt(slope) P``. So it is smallest there, where the two lines meet, or at ``highest``.
     """
     with np.errstate(all="ignore"):
-        places = [
-            np.full_like(ceiling, highest),
-            (ceiling + slope * added) / (1 - slope),
-            ceiling / (1 - np.sqrt(slope)),
-        ]
+        end = np.full_like(ceiling, highest)
+        places = [end, (ceiling + slope * added) / (1 - slope), ceiling / (1 - np.sqrt(slope))]
         values = []
         for p in places:
             value = 1 / p - 1 / np.maximum(p + added, (p - ceiling) / slope)
@@ -106,19 +87,22 @@ def ceilings(  # noqa: PLR0917
     options: Options,
     base: FloatArray,
     own_base: FloatArray,
-    forms: Forms,
-    averages: Sequence[Average],
+    target: IntArray,
+    direction: FloatArray,
+    known: Sequence[Relaxed],
     allowed: BoolArray,
 ) -> FloatArray:
-    """(B, S) bounds on ``t - slope own`` over all contexts of allowed options, from each average's cuts and slope."""
+    """(B, S) bounds on ``t - slope own`` over contexts of allowed options, from averages and slopes of ``known``.
+
+    ``own`` is at least the form of ``target`` (S,) along ``direction`` (S, 3).
+    """
     from ratt_opt.curvatures.planar.compiled import raise_ceilings
 
     parts, owners = options.parts[allowed], options.owners[allowed]
-    cuts = np.stack([average.cuts for average in averages])
-    slope = np.array([average.slope for average in averages])
+    cuts, slope = np.stack([one.average for one in known]), np.array([one.slope for one in known])
     level = np.tensordot(cuts, parts, axes=((1, 2), (1, 2)))  # (B, K)
     start = np.tensordot(cuts, base, axes=((1, 2), (0, 1)))[:, None]
-    own_start = slope[:, None] * np.einsum("ps,sp->s", own_base[:, forms.target], forms.direction)
-    best, size = raise_ceilings(parts, owners, level, slope, forms.target, forms.direction)
+    own_start = slope[:, None] * np.einsum("ps,sp->s", own_base[:, target], direction)
+    best, size = raise_ceilings(parts, owners, level, slope, target, direction)
     total, size = start - own_start + best, np.abs(start) + np.abs(own_start) + size
     return np.asarray(total + MARGIN * size)
