@@ -114,7 +114,7 @@ def _result(
     proved = incumbent.proved
     lower = proved.lower
     upper = max(search.upper if search is not None and bounded else everything, lower)
-    rounding = 4 * problem.objective.rounding  # of the search, of the plan's proof, and of the two attacks between them
+    rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
     if upper - lower <= ROUNDING * abs(lower) + rounding:
         stop = Stop.CLOSED
     elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING) + rounding:
