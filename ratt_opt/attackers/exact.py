@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
 from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
+from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
@@ -15,6 +16,7 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -76,7 +78,7 @@ def worst_case_attack(
     bracket = None
     try:
         first = bounded_rational_attack(problem, values.plan)
-        bracket = AttackBracket(first.attack, first.upper, first.lower)
+        bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
         stop = _search(AttackTask(problem, values, bracket, own))
     except OutOfBudget as out:
@@ -96,6 +98,8 @@ def _search(task: AttackTask) -> Stop:
     problem, plan = task.problem, task.values.plan
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(task)
+    if isinstance(problem.objective, InformationObjective):
+        task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
     team = PlanarTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles

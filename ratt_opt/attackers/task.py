@@ -96,11 +96,13 @@ class AttackBracket:
     attack: Attack
     upper: float
     lower: float
+    rounding: float = 0.0
+    """Values that differ by no more are equal: a relative width alone never closes on a worst case of 0."""
 
     @property
     def goal(self) -> float:
         """Only a value below this counts as a worse attack; a lower bound that reaches it closes the bracket."""
-        return self.upper - CLOSED_WIDTH * abs(self.upper)
+        return self.upper - max(CLOSED_WIDTH * abs(self.upper), self.rounding)
 
     @property
     def is_closed(self) -> bool:

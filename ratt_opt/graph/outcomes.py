@@ -41,13 +41,15 @@ def non_dominated_outcomes(threat: Threat) -> Iterator[Outcome]:
 
     Raises
     ------
-    InputError : another graph, with more than ``LARGEST_ENUMERATION`` robots.
+    InputError : another graph that can be attacked, with more than ``LARGEST_ENUMERATION`` robots.
     """
     n_robots = threat.graph.n_robots
     if threat.n_blinded == n_robots:
         return iter([(frozenset(),)])
     if threat.links_alike:
         return _by_sizes(threat)
+    if threat.n_blinded == 0 and threat.alpha_c == 0:
+        return iter([threat.graph.groups()])
     if n_robots > LARGEST_ENUMERATION:
         rule = (
             f"must have at most {LARGEST_ENUMERATION} robots to enumerate outcomes unless it is complete "

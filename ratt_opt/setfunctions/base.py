@@ -58,6 +58,11 @@ class SetFunction(ABC):
     def n(self) -> int:
         """Size of the ground set."""
 
+    @property
+    def rounding(self) -> float:
+        """Values that differ by no more may be equal but for rounding; 0 where nothing is known of that."""
+        return 0.0
+
     @abstractmethod
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of many subsets; ``membership`` (K, n) is True where the element belongs to the subset."""

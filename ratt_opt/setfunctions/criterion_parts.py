@@ -25,6 +25,8 @@ __all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent"]
 
 ROUNDING = 1e-12
 """Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
+VALUE_ROUNDING = 1e-14
+"""Error of a value in the same sense: some dozens of units in the last place cover sums over a few hundred targets."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -185,6 +187,11 @@ class CriterionParts(ProofParts):
     def prior_magnitude(self) -> float:
         """Sum of the targets' absolute criteria before any measurement: values are differences from it."""
         return float(np.abs(self._baseline).sum())
+
+    @property
+    def rounding(self) -> float:
+        """Values are differences of sums of a few hundred numbers from :attr:`prior_magnitude`."""
+        return VALUE_ROUNDING * self.prior_magnitude
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """(n,) proved lower bounds on the smallest and upper bounds on the largest marginals of the elements.

@@ -40,7 +40,7 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
 
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
-    shape = tuple(len(choice) for choice in problem.choices)
+    shape = _shape(problem, range(problem.n_robots))
     n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
     if n_plans > LARGEST_SEARCH:
         rule = f"must have at most {LARGEST_SEARCH:,} plans for an exhaustive search (use solve_maxmin)"
@@ -62,7 +62,8 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
     except KeyboardInterrupt:
         stop = own.interrupt()
     best = np.unravel_index(int(worst.argmax()), shape)
-    elements = np.array([choice[k] for choice, k in zip(problem.choices, best, strict=True)])
+    picks = iter(best)
+    elements = np.array([choice[next(picks) if len(choice) > 1 else 0] for choice in problem.choices])
     lower = upper = float(worst[best])
     if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
         lower, upper = problem.objective([]), min(upper, problem.objective(range(problem.objective.n)))
@@ -75,13 +76,16 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
 def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:
     """Value of one group's robots for each joint choice of theirs.
 
-    The array has one axis per robot of the team: its number of elements where the robot belongs to ``group``, 1
-    elsewhere, so that arrays of different groups broadcast.
+    The array has one axis per robot of the team that has a choice: its number of elements where the robot
+    belongs to ``group``, 1 elsewhere, so that arrays of different groups broadcast.
     """
     members = sorted(group)
-    shape = tuple(len(c) if i in set(members) else 1 for i, c in enumerate(problem.choices))
-    grids = np.meshgrid(*(problem.choices[i] for i in members), indexing="ij")
-    picks: IntArray = np.stack([g.ravel() for g in grids], axis=1) if members else np.zeros((1, 0), dtype=np.int64)
+    shape = _shape(problem, members)
+    varied = [problem.choices[i] for i in members if len(problem.choices[i]) > 1]
+    picks: IntArray = np.zeros((int(np.prod(shape)), len(members)), dtype=np.int64)
+    places = iter(np.indices([len(choice) for choice in varied]).reshape(len(varied), len(picks)))
+    for k, choice in enumerate(problem.choices[i] for i in members):
+        picks[:, k] = choice[next(places)] if len(choice) > 1 else choice[0]
     values = np.empty(len(picks))
     for start in range(0, len(picks), 8192):
         budget.check()
@@ -90,3 +94,9 @@ def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> Floa
         membership[np.arange(len(block))[:, None], block] = True
         values[start : start + 8192] = problem.objective.evaluate(membership)
     return values.reshape(shape)
+
+
+def _shape(problem: Problem, members: Iterable[int]) -> tuple[int, ...]:
+    """Axes of the robots with a choice (a team may be larger than arrays have axes)."""
+    inside = set(members)
+    return tuple(len(c) if i in inside else 1 for i, c in enumerate(problem.choices) if len(c) > 1)

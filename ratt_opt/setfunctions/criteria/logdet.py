@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, logdet_gradient
-from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
+from ratt_opt.setfunctions.criterion_parts import VALUE_ROUNDING, SeparableMinorant, Tangent
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
@@ -34,6 +34,11 @@ class LogDetObjective(InformationObjective):
     unit: ClassVar[str] = "nat"
     is_submodular: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 1
+
+    @property
+    def rounding(self) -> float:
+        """Beside what the prior's log-determinants round off, every logarithm has an error of its own."""
+        return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum()))
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted log-determinants of the posterior covariances."""

@@ -114,9 +114,10 @@ def _result(
     proved = incumbent.proved
     lower = proved.lower
     upper = max(search.upper if search is not None and bounded else everything, lower)
-    if upper <= lower * (1 + ROUNDING):
+    rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
+    if upper - lower <= ROUNDING * abs(lower) + rounding:
         stop = Stop.CLOSED
-    elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING):
+    elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING) + rounding:
         stop = proved.unproved_stop  # no better plan is left, but this one's worst case is not proved
     return MaxMinResult(
         elements=readonly(proved.elements),
@@ -149,8 +150,8 @@ def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = N
     """
     if not (math.isfinite(gap) and gap >= 0):
         raise InputError("gap", "must be a number >= 0", gap)
-    if time_limit is not None and not time_limit > 0:
-        raise InputError("time_limit", "must be positive seconds", time_limit)
+    if time_limit is not None and not time_limit >= 0:
+        raise InputError("time_limit", "must be a number of seconds >= 0", time_limit)
     if max_nodes is not None and max_nodes < 1:
         raise InputError("max_nodes", "must be at least 1", max_nodes)
 

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 __all__ = ["PROVED", "Candidates", "Incumbent", "ProvedPlan", "climb"]
 
 
-def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
+def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
-    ``plan`` : (N,) element of each robot to start from; not changed
+    ``plan`` : (N,) element of each robot to start from; not changed. Raises ``OutOfBudget`` : the time is up.
     """
     objective = pool.objective
     current = plan.copy()
@@ -35,6 +35,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
     unchanged, i = 0, 0
     seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
     while unchanged < problem.n_robots:
+        budget.check()
         choice = problem.choices[i]
         rows = np.flatnonzero(pool.membership()[:, i])
         others = choice[choice != current[i]]
@@ -45,7 +46,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray) -> IntArray:
             values[:, rows] = objective.value(points[rows][None] + change[:, None])
             worst = pool.outcome_values(values).min(axis=1)
             k = int(worst.argmax())
-            if worst[k] > value * (1 + 1e-12):
+            if worst[k] > value + 1e-12 * abs(value) + objective.rounding:  # a tie is no improvement
                 current[i], value, base = others[k], float(worst[k]), values[k]
                 points[rows] += change[k]
                 unchanged = 0
@@ -78,8 +79,8 @@ class Candidates:
         return self._top()[3]
 
     def is_better(self, plan: IntArray) -> bool:
-        """Whether a plan is worth more than the best one under the known outcomes."""
-        return self.pool.plan_value(plan) > self.level
+        """Whether a plan is worth more than the best one under the known outcomes, by more than rounding."""
+        return self.pool.plan_value(plan) > self.level + self.pool.objective.rounding
 
     def meet(self, plan: IntArray) -> bool:
         """Note a plan; whether it is met for the first time."""
@@ -156,10 +157,12 @@ class Incumbent:
     def is_proved(self) -> bool:
         """Whether the best plan's value is proved."""
         level = self.candidates.level
-        return self.proved.lower >= level - PROVED * abs(level)
+        return self.proved.lower >= level - PROVED * abs(level) - self.problem.objective.rounding
 
     def start(self, plans: Sequence[IntArray]) -> None:
         """Improve the most promising of some plans, beat all of them, and attack the best one briefly."""
+        # What is known at once of the first plan: whatever interrupts the rest, the bracket is not empty.
+        self.proved.attack(plans[0], self.budget.part(max_nodes=0))
         for plan in plans:
             self.adversary.learn(plan)
         self.improve(max(plans, key=self.pool.plan_value))
@@ -186,7 +189,7 @@ class Incumbent:
         self._started.add(key)
         current = plan
         for _ in range(LOCAL_SEARCH_ROUNDS):
-            current = climb(self.problem, self.pool, current)
+            current = climb(self.problem, self.pool, current, self.budget)
             known = len(self.pool.attacks)
             if not self.adversary.learn(current):
                 self.offer(current)

@@ -1,0 +1,76 @@
+"""The smaller groups of an outcome: disjoint sets of given sizes, all below a threshold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
+from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.survivor_sizes import Sizes
+
+__all__ = ["Packer", "Packing"]
+
+LONGEST_PACKING = 3_000_000
+"""Sets of the largest size to pack that are gone through; a packing question of more is left open."""
+
+
+@dataclass(frozen=True, slots=True)
+class Packing:
+    """``groups`` below the threshold, or ``None``; ``decided`` says whether ``None`` is proved."""
+
+    groups: tuple[frozenset[int], ...] | None
+    decided: bool = True
+
+
+@dataclass(slots=True)
+class Packer:
+    """Packs groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
+
+    team: PlanarTeam
+    must: frozenset[int]
+    budget: Budget
+
+    def pack(self, available: frozenset[int], sizes: Sizes, threshold: float) -> Packing:
+        """Find disjoint groups of these sizes among ``available``, each worth less than ``threshold``.
+
+        Weakest robots first; exact unless the search grows beyond ``LONGEST_PACKING`` nodes.
+        """
+        weak = frozenset(i for i in available if self.team.value([i]) < threshold)
+        missing = self.must & available
+        # No group below the threshold holds a robot that alone reaches it.
+        if not missing <= weak or not len(missing) <= sum(sizes) <= len(weak):
+            return Packing(None)
+        quick = self._weakest(weak, sizes, threshold)
+        # Robots on their own are all weak enough here, so only larger groups are searched for.
+        if quick is not None or not sizes or sizes[0] == 1:
+            return Packing(quick)
+        return self._search(weak, sizes, threshold)
+
+    def _weakest(self, available: frozenset[int], sizes: Sizes, threshold: float) -> tuple[frozenset[int], ...] | None:
+        """The weakest robots in order, the largest group first."""
+        order = sorted(available, key=lambda i: (i not in self.must, self.team.single[i], i))[: sum(sizes)]
+        order.sort(key=lambda i: (self.team.single[i], i))
+        groups = []
+        for size in sizes:
+            group, order = frozenset(order[:size]), order[size:]
+            if self.team.value(group) >= threshold:
+                return None
+            groups.append(group)
+        return tuple(groups)
+
+    def _search(self, available: frozenset[int], sizes: Sizes, threshold: float) -> Packing:
+        if len(available) > MOST_ROBOTS or comb(len(available), sizes[0]) > LONGEST_PACKING:
+            return Packing(None, decided=False)
+        lists = LowLists(self.team, np.array(sorted(available, key=lambda i: (-self.team.single[i], i))))
+        must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.must)
+        n_blinded = len(available) - sum(sizes)
+        search = VectorSearch(lists, sizes, n_blinded=n_blinded, must=must, threshold=threshold)
+        return Packing(next(search.run(self.budget), None), not search.is_open)
