@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
@@ -20,8 +21,11 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
+    from ratt_opt.attackers.by_prices.price_search import PriceSearch
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
@@ -29,6 +33,9 @@ __all__ = ["attack_survey", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
+BOUND_SHARE, PARTITION_SHARE = 0.3, 0.5
+"""Of what is left of the budget, for the weakest group of the forced size and for partitions; prices get the rest."""
+
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
 
@@ -53,7 +60,10 @@ def worst_case_attack(
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Other teams of more than 20 robots: an honest bracket (``forced_group.py``), with ``stop``
+    - Teams of more than 20 robots on any graph, where the lines above leave them open: annealed attacks, and prices
+      that no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of budget. Relies
+      on a non-decreasing objective, as above; targets of any dimension.
+    - Objectives of one's own beyond 20 robots: an honest bracket (``forced_group.py``), with ``stop``
       ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
 
     A keyboard interrupt or a spent budget returns the bracket reached. Interrupted before any attack
@@ -113,12 +123,50 @@ def _search(task: AttackTask) -> Stop:
         return threshold_search(task)
     if team is not None and problem.communication.is_complete:
         unprotected_bound(task, team)
-    stop = forced_group_bound(task, team)
-    if team is None or groups is None or stop is Stop.CLOSED:
-        return stop
-    from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
+    return _any_graph(task, team, groups)
 
-    return SplitSearch(task, team, groups).run()
+
+def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None) -> Stop:
+    """Annealed attacks, the forced size, then partitions where they are few, and prices."""
+    prices = _price_search(task)
+    if prices is not None:
+        prices.anneal()
+    stop = _within(task, BOUND_SHARE, lambda part: forced_group_bound(part, team))
+    if team is not None and groups is not None and stop is not Stop.CLOSED:
+        from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
+
+        share = 1.0 if prices is None else PARTITION_SHARE
+        stop = _within(task, share, lambda part: SplitSearch(part, team, groups).run())
+    return stop if prices is None or stop is Stop.CLOSED else prices.run()
+
+
+def _price_search(task: AttackTask) -> PriceSearch | None:
+    """The search by prices, for teams beyond a table of thresholds and criteria with compiled code."""
+    if task.problem.n_robots <= LARGEST_COMPILED:
+        return None
+    from ratt_opt.attackers.by_prices.team import Team
+
+    team = Team.of(task.problem.objective, task.values.plan)
+    if team is None:
+        return None
+    from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles
+
+    return PriceSearch(task, team)
+
+
+def _within(task: AttackTask, share: float, search: Callable[[AttackTask], Stop]) -> Stop:
+    """A search within a share of what is left of the seconds and nodes; the bracket keeps what it proves."""
+    budget = task.budget
+    nodes = None if budget.max_nodes is None else int(share * budget.nodes_left(budget.max_nodes))
+    part = budget.part(share, max_nodes=nodes)
+    try:
+        return search(replace(task, budget=part))
+    except OutOfBudget as out:
+        if share == 1.0 or out.stop is Stop.INTERRUPTED:
+            raise
+        return out.stop
+    finally:
+        budget.nodes += part.nodes
 
 
 def _few_groups(problem: Problem, team: PlanarTeam | None) -> SeparableGroups | None:

@@ -1,0 +1,98 @@
+"""How many robots of a group must be blinded for it to be worth less than a threshold, in compiled code.
+
+Imported only where compiled loops are used.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+
+from ratt_opt.attackers.by_prices.compiled import gather, value_of
+
+__all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "weak_subset"]
+
+ABSENT, WEAK, UNDECIDED = 0, 1, 2
+
+
+@numba.njit(cache=True)
+def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: float, limit: int, found: Any) -> int:  # noqa: PLR0917
+    """Whether blinding so many robots can leave ``group`` (N,) less than the threshold: ABSENT, WEAK or UNDECIDED.
+
+    ``seeing`` : (N,) robots that cannot be blinded; ``limit`` : values looked at before giving up;
+    ``found`` : (N,) becomes the blinded robots. The strongest are decided first, blinded before kept.
+    """
+    members = np.flatnonzero(group)
+    members = members[np.argsort(-team.single[members])]
+    size, asked = len(members), 0
+    sums = np.empty((size + 1, *team.prior.shape))
+    sums[0] = team.prior
+    choice = np.zeros(size + 1, dtype=np.int64)  # 0: nothing tried, 1: blinding tried, 2: keeping tried
+    depth, used = 0, 0
+    choice[0] = 0
+    while depth >= 0:
+        if depth == size or size - depth <= blinded - used:
+            found[:] = False
+            for k in range(depth):
+                found[members[k]] = choice[k] == 1
+            rest_fixed = False
+            for k in range(depth, size):
+                found[members[k]] = True
+                rest_fixed = rest_fixed or seeing[members[k]]
+            if not rest_fixed:
+                return WEAK
+        step = choice[depth] if depth < size else 2
+        robot = members[depth] if depth < size else -1
+        if step == 0 and used < blinded and not seeing[robot]:
+            choice[depth] = 1
+            sums[depth + 1] = sums[depth]
+            used += 1
+            depth += 1
+            if depth <= size:
+                choice[depth] = 0
+            continue
+        if step == 1:
+            used -= 1
+        if step < 2:
+            choice[depth] = 2
+            sums[depth + 1] = sums[depth] + team.information[robot]
+            asked += 1
+            if asked > limit:
+                return UNDECIDED
+            if value_of(team, sums[depth + 1]) < threshold:
+                depth += 1
+                choice[depth] = 0
+                continue
+        depth -= 1
+    return ABSENT
+
+
+@numba.njit(cache=True)
+def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, sums: Any) -> bool:  # noqa: PLR0917
+    """Exchange a blinded robot for a seeing one while that lowers the group's value; whether it falls below.
+
+    ``blind`` (N,) and ``sums`` (M, T), the seeing robots' information, are changed in place.
+    """
+    value = gather(team, group & ~blind, sums)
+    other = np.empty_like(sums)
+    for _ in range(len(group)):  # rounding must not make it exchange equals for ever
+        if value < threshold:
+            return True
+        best, leaves, enters = value * (1 - 1e-9), -1, -1
+        for i in range(len(group)):
+            if not (group[i] and blind[i]):
+                continue
+            for j in range(len(group)):
+                if not group[j] or blind[j] or seeing[j]:
+                    continue
+                other[:] = sums + team.information[i] - team.information[j]
+                changed = value_of(team, other)
+                if changed < best:
+                    best, leaves, enters = changed, i, j
+        if leaves < 0:
+            return False
+        blind[leaves], blind[enters] = False, True
+        value = gather(team, group & ~blind, sums)
+    return bool(value < threshold)

@@ -1,0 +1,130 @@
+"""Prices of robots, blinded robots and links that no weak group pays, by a linear program with growing rows.
+
+If every group worth less than the threshold has ``pi(g) <= cut(g) / 2 + mu need(g)``, an attack that leaves only such
+groups cuts at least ``sum of pi - mu alpha_s`` links (add up its groups). The program looks for the prices that make
+this most; it knows some groups only, so what it says is checked by the enumeration (``columns.py``).
+
+Source: Johnson, Mehrotra and Nemhauser, Min-cut clustering, Mathematical Programming 62 (1993).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.highs import LinearProgram, rows_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ratt_opt._validation import BoolArray, FloatArray
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["GroupPrices", "KnownGroup", "PriceVector"]
+
+MOST_ROWS = 6_000
+"""Rows before those are dropped that have slack at the last prices; more only slow the program down."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownGroup:
+    """``robots`` (N,) with ``need`` of them blinded; asked for at thresholds above ``value`` only."""
+
+    robots: BoolArray
+    need: int
+    value: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PriceVector:
+    """``robot`` : (N,) pi; ``blinded`` : mu; ``links`` : links they claim an attack cuts."""
+
+    robot: FloatArray
+    blinded: float
+    links: float
+
+    def scaled(self, links: float) -> PriceVector:
+        """The same prices in proportion, claiming so many links."""
+        factor = links / self.links
+        return PriceVector(robot=self.robot * factor, blinded=self.blinded * factor, links=links)
+
+    def lowered(self, amount: float) -> PriceVector:
+        """Every robot cheaper by an amount: every group's reduced cost rises by at least as much."""
+        return PriceVector(robot=self.robot - amount, blinded=self.blinded, links=self.links - amount * len(self.robot))
+
+
+class GroupPrices:
+    """The linear program for one threat; groups may be added and the threshold changed at any time."""
+
+    def __init__(self, threat: Threat) -> None:
+        self._threat = threat
+        n_robots = threat.graph.n_robots
+        self._adjacent = np.zeros((n_robots, n_robots), dtype=np.int64)
+        for i, j in threat.graph.links:
+            self._adjacent[i, j] = self._adjacent[j, i] = 1
+        self._groups: dict[tuple[bytes, int], KnownGroup] = {}
+        self._program: LinearProgram | None = None
+        self._threshold = -np.inf
+
+    def add(self, groups: Iterable[KnownGroup]) -> int:
+        """Add groups; returns how many are new."""
+        fresh = []
+        for group in groups:
+            key = (group.robots.tobytes(), group.need)
+            if key not in self._groups or self._groups[key].value > group.value:
+                self._groups[key] = group
+                fresh.append(group)
+        if self._program is not None:
+            self._append([group for group in fresh if group.value < self._threshold])
+        return len(fresh)
+
+    def solve(self, threshold: float) -> PriceVector:
+        """Best prices that no known group of this threshold pays."""
+        if self._program is None or threshold != self._threshold:
+            self._start(threshold)
+        assert self._program is not None
+        claim = self._program.solve()
+        n_robots = len(self._adjacent)
+        if len(claim.x) != n_robots + 1:
+            return PriceVector(robot=np.zeros(n_robots), blinded=0.0, links=0.0)
+        robot, blinded = claim.x[:n_robots], max(float(claim.x[n_robots]), 0.0)
+        links = float(robot.sum()) - blinded * self._threat.n_blinded
+        if self._program.n_rows > MOST_ROWS:
+            self._forget(robot, blinded)
+        return PriceVector(robot=robot, blinded=blinded, links=links)
+
+    def _start(self, threshold: float) -> None:
+        n_robots = len(self._adjacent)
+        most = 2.0 * len(self._threat.graph.links) + 2.0
+        cost = np.append(np.ones(n_robots), -float(self._threat.n_blinded))
+        low, high = np.append(np.full(n_robots, -most), 0.0), np.append(np.full(n_robots, most), most)
+        self._program = LinearProgram(cost, low, high, maximise=True)
+        self._threshold = threshold
+        self._append([group for group in self._groups.values() if group.value < threshold])
+
+    def half_cut(self, robots: BoolArray) -> float:
+        """Half the links that separate these robots (N,) from the others."""
+        return 0.5 * float(self._adjacent[robots][:, ~robots].sum())
+
+    def _append(self, groups: list[KnownGroup]) -> None:
+        if not groups:
+            return
+        assert self._program is not None
+        entries, sides = [], []
+        for group in groups:
+            members = np.flatnonzero(group.robots).tolist()
+            entries.append(([*members, len(self._adjacent)], [1.0] * len(members) + [-float(group.need)]))
+            sides.append(self.half_cut(group.robots))
+        self._program.add_rows(rows_of(entries, [-np.inf] * len(groups), sides))
+
+    def _forget(self, robot: FloatArray, blinded: float) -> None:
+        """Keep the groups whose reduced cost is among the least, and start afresh next time."""
+        known = list(self._groups.items())
+        slack = [
+            self.half_cut(group.robots) + blinded * group.need - float(robot[group.robots].sum()) for _, group in known
+        ]
+        order = np.argsort(slack, kind="stable")[: MOST_ROWS // 2]
+        self._groups = dict(known[k] for k in order)
+        self._program = None

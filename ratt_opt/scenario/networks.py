@@ -1,0 +1,125 @@
+"""Random scenarios on the networks that radio teams have: five families, reproducible by their seed.
+
+Robots and targets are those of :func:`random_scenario` with the same seed; the family says who hears whom. Budgets
+may be shares of the robots and links. Sparse disks can fall apart into several groups, as real teams do.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import networkx as nx
+import numpy as np
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+from ratt_opt.scenario.generator import random_scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["NETWORK_FAMILIES", "network_links", "network_scenario"]
+
+Link = tuple[int, int]
+
+DENSITY = 0.7
+"""Of the dense random graph: about what a team in one building hears."""
+
+NEIGHBOURS, REWIRED = 6, 0.2
+"""Of the small world: neighbours on a ring, and the share of links that lead elsewhere.
+
+Source: Watts and Strogatz, Nature 393 (1998).
+"""
+
+ATTACHED = 4
+"""Links with which a robot joins the hubs. Source: Barabasi and Albert, Science 286 (1999)."""
+
+
+def network_scenario(
+    family: str, n_robots: int, n_targets: int, *, alpha_s: float, alpha_c: float, seed: int, **options: Any
+) -> Scenario:
+    """Draw a scenario whose links are those of a network family.
+
+    Parameters
+    ----------
+    family : a name of ``NETWORK_FAMILIES``
+    n_robots, n_targets : N, M >= 1
+    alpha_s, alpha_c : robots that may be blinded, links that may be cut: a number of them (``int``), or a share in
+        [0, 1] of the robots and of the links (``float``), rounded to the nearest number
+    seed : integer >= 0, of robots, targets and links
+    options : further ones of :func:`random_scenario`
+
+    Raises
+    ------
+    InputError : the family is unknown, or a number is out of range.
+    """
+    scenario = random_scenario(n_robots, n_targets, alpha_s=0, alpha_c=0, seed=seed, **options)
+    links = network_links(family, scenario.poses[:, :2], seed)
+    budgets = {"alpha_s": _count("alpha_s", alpha_s, n_robots), "alpha_c": _count("alpha_c", alpha_c, len(links))}
+    return scenario.replace(links=links, communication_range=None, **budgets)
+
+
+def network_links(family: str, positions: FloatArray, seed: int) -> tuple[Link, ...]:
+    """Links ``(i, j)``, ``i < j``, ascending, between robots at ``positions`` (N, 2) [m].
+
+    Raises
+    ------
+    InputError : the family is unknown, or ``seed`` is not an integer >= 0.
+    """
+    if family not in NETWORK_FAMILIES:
+        raise InputError("graph", f"must be one of {', '.join(NETWORK_FAMILIES)}", family)
+    seed = check_integer("seed", seed, low=0)
+    links = NETWORK_FAMILIES[family](positions, seed)
+    return tuple(sorted((min(i, j), max(i, j)) for i, j in links))
+
+
+def _count(name: str, budget: float, most: int) -> int:
+    if isinstance(budget, (int, np.integer)):
+        return check_integer(name, budget, low=0, high=most)
+    if not 0 <= budget <= 1:
+        raise InputError(name, "must be a number of them or a share in [0, 1]", budget)
+    return round(budget * most)
+
+
+def _dense(positions: FloatArray, seed: int) -> list[Link]:
+    return _of(nx.gnp_random_graph(len(positions), DENSITY, seed=seed))
+
+
+def _disk(degree: int) -> Callable[[FloatArray, int], list[Link]]:
+    """Robots within one range of each other; the range that gives this mean number of links."""
+
+    def links(positions: FloatArray, seed: int) -> list[Link]:  # noqa: ARG001  (the positions are the seed's already)
+        first, second = np.triu_indices(len(positions), 1)
+        apart = np.linalg.norm(positions[first] - positions[second], axis=1)
+        nearest = np.argsort(apart, kind="stable")[: len(positions) * degree // 2]
+        return list(zip(first[nearest].tolist(), second[nearest].tolist(), strict=True))
+
+    return links
+
+
+def _small_world(positions: FloatArray, seed: int) -> list[Link]:
+    return _of(nx.watts_strogatz_graph(len(positions), min(NEIGHBOURS, len(positions) - 1), REWIRED, seed=seed))
+
+
+def _hubs(positions: FloatArray, seed: int) -> list[Link]:
+    if len(positions) <= ATTACHED:
+        return _of(nx.complete_graph(len(positions)))
+    return _of(nx.barabasi_albert_graph(len(positions), ATTACHED, seed=seed))
+
+
+def _of(graph: nx.Graph) -> list[Link]:
+    return [(int(i), int(j)) for i, j in graph.edges]
+
+
+NETWORK_FAMILIES: dict[str, Callable[[FloatArray, int], list[Link]]] = {
+    "dense": _dense,
+    "disk-12": _disk(12),
+    "disk-6": _disk(6),
+    "small-world": _small_world,
+    "hubs": _hubs,
+}
+"""Name -> links of robots at given positions: dense random (each pair with 0.7), disks of mean degree 12 and 6, small
+world (6 neighbours, a fifth rewired), preferential attachment (4 links a robot)."""

@@ -1,0 +1,175 @@
+"""The exact attacker of larger teams on any graph, run on teams small enough for the definition or a table."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.by_prices import cover
+from ratt_opt.attackers.by_prices.blinding import ABSENT, WEAK, weak_subset
+from ratt_opt.attackers.by_prices.columns import FINISHED, Prices, Question, Stack, enumerate_groups
+from ratt_opt.attackers.by_prices.cover import next_cover
+from ratt_opt.attackers.by_prices.price_search import PriceSearch
+from ratt_opt.attackers.by_prices.team import Links, Team
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.budget import Budget, OutOfBudget
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
+
+
+def team_problem(seed, n_robots, *, graph=None):
+    """Random team on a random graph: all criteria, targets of one to four coordinates, weights, protected parts."""
+    rng = np.random.default_rng(seed)
+    name, dimension = list(OBJECTIVES)[seed % 3], 1 + seed % 4
+    far = range_bearing(rng, n_robots, 4, 1) if dimension == 2 else None
+    data = far or information_data(rng, n_robots, 3, dimension)
+    graph = graph or random_graph(rng, n_robots)
+    links = sorted((min(link), max(link)) for link in graph.edges)
+    held = rng.random() < 0.4
+    problem = ro.Problem(
+        OBJECTIVES[name](*data, rng.uniform(0.2, 3, len(data[0])) if seed % 5 == 0 else None),
+        np.arange(n_robots),
+        graph,
+        int(rng.integers(0, max(n_robots // 2, 1) + 1)),
+        int(rng.integers(0, len(links) + 1)),
+        frozenset(i for i in range(n_robots) if held and rng.random() < 0.3),
+        frozenset(link for link in links if held and rng.random() < 0.2),
+    )
+    return problem, random_elements(rng, problem)
+
+
+def run_prices(problem, plan, **limits):
+    """The search itself, whatever ``worst_case_attack`` would choose for this team."""
+    values = PlanValues(problem, plan)
+    nothing = ro.Attack()
+    bracket, budget = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0), Budget(**limits)
+    search = PriceSearch(AttackTask(problem, values, bracket, budget), Team.of(problem.objective, values.plan))
+    try:
+        search.anneal()
+        stop = search.run()
+    except OutOfBudget as out:
+        stop = out.stop
+    return bracket, stop
+
+
+def check(problem, plan, bracket, expected):
+    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-10)
+    assert bracket.lower == pytest.approx(expected, rel=2e-10, abs=1e-10)
+    assert problem.team_value(plan, bracket.attack) == bracket.upper
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_against_the_definition(seed):
+    problem, plan = team_problem(seed, 3 + seed % 4)
+    bracket, stop = run_prices(problem, plan)
+    assert stop is ro.Stop.CLOSED
+    check(problem, plan, bracket, brute_force_worst_case(problem, plan))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_against_a_table_of_thresholds(seed):
+    families = (nx.gnp_random_graph(13, 0.4, seed=seed), nx.watts_strogatz_graph(13, 4, 0.2, seed=seed))
+    problem, plan = team_problem(seed, 13, graph=families[seed % 2])
+    bracket, stop = run_prices(problem, plan, time_limit=60)
+    assert stop is ro.Stop.CLOSED
+    check(problem, plan, bracket, ro.worst_case_attack(problem, plan).upper)
+
+
+@pytest.mark.parametrize("nodes", [0, 1, 100, 2_000])
+def test_a_bracket_that_is_stopped_is_valid(nodes):
+    problem, plan = team_problem(1, 13, graph=nx.gnp_random_graph(13, 0.5, seed=1))
+    exact = ro.worst_case_attack(problem, plan).upper
+    bracket, _ = run_prices(problem, plan, max_nodes=nodes)
+    assert bracket.lower <= exact * (1 + 1e-12)
+    assert exact <= bracket.upper * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_weak_subsets_against_all_of_them(seed):
+    problem, plan = team_problem(seed, 8)
+    team, links = Team.of(problem.objective, plan), Links.of(problem.threat)
+    group = np.random.default_rng(seed).random(8) < 0.8
+    members = np.flatnonzero(group).tolist()
+    free = [i for i in members if not links.seeing[i]]
+    for blinded in range(len(free) + 1):
+        values = [problem.objective([plan[i] for i in members if i not in out]) for out in combinations(free, blinded)]
+        least = min(values)
+        for threshold in (least * 0.999, least * 1.001) if least > 1e-6 else (1e-3,):
+            found = np.zeros(8, dtype=np.bool_)
+            answer = weak_subset(team, links.seeing, group, blinded, threshold, 10**6, found)
+            assert answer == (WEAK if least < threshold else ABSENT)
+            if answer == WEAK:
+                left = [plan[i] for i in members if not found[i]]
+                assert found.sum() == blinded
+                assert problem.objective(left) < threshold
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_enumeration_lists_every_group_that_pays(seed):
+    """Against all connected groups and all blindings, at random prices."""
+    rng = np.random.default_rng(seed)
+    problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
+    team, links = Team.of(problem.objective, plan), Links.of(problem.threat)
+    whole = problem.objective(plan)
+    threshold, blinded, robot = whole * rng.uniform(0.4, 0.9), rng.uniform(0.2, 2), rng.uniform(0, 2, 7)
+    sets = [s for k in range(8) for s in combinations(range(7), k)]
+    largest = max(len(s) for s in sets if problem.objective(plan[list(s)]) < threshold)
+    prices = Prices(robot, blinded, np.ones(7), float(largest), blinded, np.array([1.0, 0.5, 0.0]))
+    question = Question(threshold, problem.threat.n_blinded, 0.5, rng.permutation(7), 10**6, 10**6)
+    stack = Stack.of(7, len(links.robot), 3)
+    listed = (np.zeros((200, 7), np.bool_), np.zeros((200, 7), np.bool_), np.zeros((200, 2), np.int64), np.zeros(200))
+    assert enumerate_groups(team, links, prices, question, stack, 10**6, listed) == FINISHED
+    found = {tuple(np.flatnonzero(row)): need for row, need in zip(listed[0], listed[2], strict=True) if row.any()}
+    expected = paying_groups(problem, plan, (threshold, 0.5), (robot, blinded))
+    assert set(found) == set(expected)
+    assert all(tuple(found[group]) == (need, need) for group, need in expected.items())
+
+
+def paying_groups(problem, plan, question, prices):
+    """Connected groups and the fewest blinded robots they need, by the definition."""
+    (threshold, limit), (robot, blinded), answer = question, prices, {}
+    graph, protected = problem.communication, problem.protected_robots
+    for group in (s for k in range(1, 8) for s in combinations(range(7), k)):
+        crossing = [link for link in graph.links if (link[0] in group) != (link[1] in group)]
+        if len(graph.groups_among(frozenset(group))) > 1 or set(crossing) & problem.protected_links:
+            continue
+        free = [i for i in group if i not in protected]
+        needs = (
+            k
+            for k in range(min(len(free), problem.threat.n_blinded) + 1)
+            if any(
+                problem.objective([plan[i] for i in group if i not in out]) < threshold for out in combinations(free, k)
+            )
+        )
+        need = next(needs, None)
+        if need is not None and len(crossing) / 2 + blinded * need - robot[list(group)].sum() <= limit:
+            answer[group] = need
+    return answer
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_covers_against_all_choices_of_groups(seed):
+    rng = np.random.default_rng(seed)
+    masks = rng.choice(np.arange(1, 32), size=12, replace=False)
+    groups = np.array([[bool(mask >> i & 1) for i in range(5)] for mask in masks])
+    groups = groups[np.argsort(groups.argmax(axis=1), kind="stable")]
+    costs, budgets = rng.integers(0, 4, (12, 3)).astype(float), rng.integers(2, 7, 3).astype(float)
+    expected = {
+        chosen
+        for k in range(1, 6)
+        for chosen in combinations(range(12), k)
+        if (groups[list(chosen)].sum(axis=0) == 1).all() and (costs[list(chosen)].sum(axis=0) <= budgets).all()
+    }
+    first = np.searchsorted(groups.argmax(axis=1), np.arange(6))
+    position, depth = np.full(7, -1), np.zeros(1, dtype=np.int64)
+    state = (position, np.zeros((7, 5), dtype=np.bool_), np.zeros((7, 3)), depth, first)
+    found = []
+    while (code := next_cover(groups, costs, budgets, state, int(rng.integers(1, 20)))) != cover.FINISHED:
+        if code == cover.FOUND:
+            found.append(tuple(sorted(position[: depth[0] + 1].tolist())))
+    assert len(found) == len(set(found))
+    assert set(found) == expected
