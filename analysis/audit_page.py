@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING
 
 from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.report.findings import Finding, findings
-from ratt_opt.audit.report.markdown_page import finding_lines
-from ratt_opt.audit.report.words import title
+from ratt_opt.audit.report.findings import Finding, findings, title
+from ratt_opt.audit.report.pages import finding_lines
 from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ratt_opt.audit.report.document import LedgerDocument, WorstRecord
+    from ratt_opt.audit.report.records import LedgerDocument, WorstRecord
 
 __all__ = ["CASES", "page", "ratio_table", "realistic_table"]
 
@@ -47,7 +46,7 @@ CASES = (
 
 OPENING = """# What the audit settles
 
-Theorem 1 of the paper rests on an appendix of about ninety numbered lines. `ratt-opt audit` decides every one of them
+Theorem 1 of the paper rests on an appendix of 87 numbered lines. `ratt-opt audit` decides every one of them
 by machine, twice: as a *step* (this line from the one before) and *cumulatively* (this line from the start of its
 chain). A statement "for every set function of this class with these roles" is a linear program over the function's
 values: a feasible dual is a proof, a feasible primal a counterexample. Both are rounded to rationals and checked

@@ -12,8 +12,8 @@ import networkx as nx
 import numpy as np
 
 from analysis.tables import print_table, write_csv
-from ratt_opt.graph.caa import caa
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.survivor_sizes import caa
 
 LARGEST_PARTITIONED = 30
 

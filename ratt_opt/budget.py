@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import inf
+from numbers import Real
 from time import monotonic
 
 from ratt_opt._validation import check_integer
@@ -55,8 +56,9 @@ class Budget:
     def __post_init__(self) -> None:
         if self.max_nodes is not None:
             self.max_nodes = check_integer("max_nodes", self.max_nodes, low=0)
-        if self.time_limit is not None and not (isinstance(self.time_limit, (int, float)) and self.time_limit >= 0):
-            raise InputError("time_limit", "must be a number of seconds >= 0", self.time_limit)
+        given = self.time_limit
+        if given is not None and (isinstance(given, bool) or not isinstance(given, Real) or not given >= 0):
+            raise InputError("time_limit", "must be a number of seconds >= 0", given)
 
     @classmethod
     def inside(cls, outer: Budget | None, time_limit: float | None = None, max_nodes: int | None = None) -> Budget:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["Claim", "LinearProgram", "Rows", "rows_of"]
+__all__ = ["ClaimedSolution", "LinearProgram", "Rows", "rows_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def rows_of(entries: Sequence[tuple[Sequence[int], Sequence[float]]], lower: Arr
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Claim:
+class ClaimedSolution:
     """What HiGHS says; nothing here is proved.
 
     ``is_optimal`` : it claims an optimum. ``x`` (columns,) and ``duals`` (rows,) : what it has; empty where nothing.
@@ -153,14 +153,14 @@ class LinearProgram:
         """Forget the last basis."""
         self._highs.clearSolver()
 
-    def solve(self, seconds: float = inf) -> Claim:
+    def solve(self, seconds: float = inf) -> ClaimedSolution:
         """Run HiGHS for at most so many seconds and return what it claims."""
         if seconds < inf:
             # HiGHS counts the time of all its runs.
             self._highs.setOptionValue("time_limit", self._highs.getRunTime() + max(seconds, 0.0))
         self._highs.run()
         solution, info = self._highs.getSolution(), self._highs.getInfo()
-        return Claim(
+        return ClaimedSolution(
             is_optimal=self._highs.getModelStatus() == self._highspy.HighsModelStatus.kOptimal,
             x=np.array(solution.col_value, dtype=np.float64),
             duals=np.array(solution.row_dual, dtype=np.float64),

@@ -13,10 +13,10 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from ratt_opt.problem import Problem
+from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.table import TableFunction
 
 OBJECTIVES = {"trace": TraceObjective, "logdet": LogDetObjective, "maxeig": MaxEigenvalueObjective}
 

@@ -61,7 +61,15 @@ def test_an_interrupt_is_heard_by_the_search_and_all_around_and_inside_it(inner_
 
 
 @pytest.mark.parametrize(
-    "limits", [{"time_limit": -1}, {"time_limit": math.nan}, {"time_limit": "1"}, {"max_nodes": -1}, {"max_nodes": 1.5}]
+    "limits",
+    [
+        {"time_limit": -1},
+        {"time_limit": math.nan},
+        {"time_limit": "1"},
+        {"time_limit": True},
+        {"max_nodes": -1},
+        {"max_nodes": 1.5},
+    ],
 )
 def test_limits_that_are_no_numbers_from_zero_are_refused(limits):
     with pytest.raises(InputError, match=r"time_limit|max_nodes"):

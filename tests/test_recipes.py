@@ -7,7 +7,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
 from ratt_opt.bounds.guarantees import NON_DECREASING, Guarantee
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.sensor import jacobian

@@ -20,12 +20,10 @@ import numpy as np
 
 from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
-from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group

@@ -14,7 +14,7 @@ import numpy as np
 from analysis.studies.command import Entry, main
 from analysis.studies.plots import new_figure, save
 from analysis.studies.study import Case, Cell, Seeds, Study
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.survivor_sizes import caa
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -11,7 +11,7 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from analysis.studies.study import Case, Cell, Seeds, Study
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
 
 __all__ = ["DRAWS", "measure"]
 

@@ -18,11 +18,9 @@ from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, random_plan
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin.solve import solve_maxmin
-from ratt_opt.solvers.nonrobust import nonrobust_optimum
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
+from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
 
     from analysis.studies.study import Case, Seeds
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Attack
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.scenario.simulation import Tracking

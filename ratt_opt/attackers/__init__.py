@@ -1,7 +1,7 @@
 """The inner minimisation: the attack that leaves a plan least, exactly or with a bracket.
 
 Open ``exact.py`` first: it chooses between the searches of ``by_size`` (complete graphs), ``by_partition`` and
-``by_prices`` (others) and the bound of ``forced_group.py``; ``weakest_set`` answers what they ask about one group,
-and ``heuristics`` finds first attacks. ``survey.py``, ``criticality.py`` and ``breaking_budgets.py`` ask the exact
-attacker many questions.
+``by_prices`` (others) and the bound of ``forced_group.py``; ``weakest_set`` answers what they ask about one group, and
+``heuristics`` finds first attacks. ``criticality.py`` asks the exact attacker many questions; ``task.py`` is what all
+share.
 """

@@ -1,13 +1,15 @@
-"""Which robots and links a plan hangs on, and what they are worth protecting."""
+"""Which robots and links a plan hangs on, what they are worth protecting, and how much it takes to break the plan."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
+from ratt_opt._validation import check_finite
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
 from ratt_opt.budget import Budget
 
 if TYPE_CHECKING:
@@ -15,20 +17,19 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.graph.communication import Link
-    from ratt_opt.problem import Problem
+    from ratt_opt.problem import Attack, Problem
 
-__all__ = ["Criticality", "criticality_ranking"]
+__all__ = ["BreakingBudget", "Criticality", "breaking_budgets", "criticality_ranking"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
     """One robot or link of a plan [values in the unit of the objective].
 
-    ``loss`` : team value lost when it alone is attacked and nothing else is.
-    ``gain_lower``, ``gain_upper`` : bracket on the worst-case value gained when it alone is protected
-    (equal up to rounding where the exact attacker closes).
+    ``loss`` : team value lost when it alone is attacked and nothing else is. ``gain_lower``, ``gain_upper`` : bracket
+    on the worst-case value gained when it alone is protected (equal up to rounding where the exact attacker closes).
     """
 
     target: int | Link
@@ -63,11 +64,8 @@ def criticality_ranking(
     InputError : the plan is not one element per robot, a link does not exist, or a budget is not a number >= 0.
     """
     values = PlanValues(problem, elements)
-    whole = Budget.inside(budget)
-
-    def attacked(asked: Problem) -> AttackResult:
-        return worst_case_attack(asked, values.plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
-
+    plan, whole = values.plan, Budget.inside(budget)
+    attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
     base = attacked(problem)
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
@@ -98,3 +96,72 @@ def _protected(
     if isinstance(target, int):
         return attacked(replace(problem, protected_robots=problem.protected_robots | {target}))
     return attacked(replace(problem, protected_links=problem.protected_links | {target}))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BreakingBudget:
+    """``attack`` blinds ``alpha_s`` robots and cuts ``alpha_c`` links at most and leaves ``value``.
+
+    ``is_proved`` says that with one link fewer (and as many robots) the value demanded cannot be reached;
+    otherwise the attacker's bracket did not decide that within its budget.
+    """
+
+    alpha_s: int
+    alpha_c: int
+    attack: Attack
+    value: float
+    is_proved: bool
+
+
+def breaking_budgets(
+    problem: Problem,
+    elements: ArrayLike,
+    value: float,
+    *,
+    max_nodes: int | None = None,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
+) -> tuple[BreakingBudget, ...]:
+    """Smallest attack budgets that push a plan strictly below ``value``: none in the list contains another.
+
+    For each number of blinded robots, ascending, the fewest cut links are found by doubling and bisection (a
+    larger budget never helps the team); the problem's own budgets are not used. Empty when even blinding all
+    unprotected robots and cutting all unprotected links leaves ``value`` or more.
+
+    Parameters
+    ----------
+    value : [unit of the objective]
+    max_nodes, time_limit, budget : as for :func:`criticality_ranking`
+
+    Raises
+    ------
+    InputError : the plan is not one element per robot, ``value`` is not finite, or a budget is not a number >= 0.
+    """
+    plan = problem.check_plan(elements)
+    goal = float(check_finite("value", value, ndim=0))
+    whole = Budget.inside(budget)
+    attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
+    found: list[BreakingBudget] = []
+    most_links = len(problem.communication.links)
+    for alpha_s in range(problem.n_robots + 1):
+        best = attacked(replace(problem, alpha_s=alpha_s, alpha_c=most_links))
+        if best.upper >= goal:
+            continue
+        low, high, proved, step = 0, most_links, True, 1
+        while low < high:
+            # From few links upwards: large budgets are slow to attack exactly, and seldom needed.
+            middle = min(low + step - 1, (low + high) // 2)
+            step *= 2
+            result = attacked(replace(problem, alpha_s=alpha_s, alpha_c=middle))
+            if result.upper < goal:
+                best, high = result, middle
+            else:
+                low = middle + 1
+                proved = proved and result.lower >= goal
+        found.append(
+            BreakingBudget(alpha_s=alpha_s, alpha_c=high, attack=best.attack, value=best.upper, is_proved=proved)
+        )
+        if high == 0:
+            break
+        most_links = high - 1
+    return tuple(found)

@@ -1,23 +1,23 @@
-"""The exact worst-case attack on a plan, with a bracket at any time."""
+"""The exact worst-case attack on a plan, with a bracket at any time; and all attackers side by side."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.unprotected_links import unprotected_bound
+from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
+from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.result import AttackResult
-from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -29,11 +29,10 @@ if TYPE_CHECKING:
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
-__all__ = ["worst_case_attack"]
+__all__ = ["attack_survey", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-
 BOUND_SHARE, PARTITION_SHARE = 0.3, 0.5
 """Of what is left of the budget, for the weakest group of the forced size and for partitions; prices get the rest."""
 
@@ -60,7 +59,7 @@ def worst_case_attack(
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
-      protected links too (``unprotected_links.py``). Relies on a non-decreasing objective, as above.
+      protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above leave them open: annealed attacks, and prices
       that no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of budget. Relies
       on a non-decreasing objective, as above; targets of any dimension.
@@ -75,8 +74,7 @@ def worst_case_attack(
     ----------
     problem : N robots, E elements
     elements : (N,) element chosen for each robot
-    max_nodes : nodes that may be explored; unlimited by default
-    time_limit : seconds, checked between nodes; unlimited by default
+    max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -90,34 +88,28 @@ def worst_case_attack(
     bracket = None
     try:
         first = bounded_rational_attack(problem, values.plan)
-        bracket = AttackBracket(first.attack, first.upper, first.lower)
+        bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
         stop = _search(AttackTask(problem, values, bracket, own))
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
-    bracket = bracket or _without_attack(problem, values)
+    if bracket is None:  # what no attack at all gives
+        values.evaluations += len(problem.communication.groups())
+        bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
+    attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
     return AttackResult(
-        attack=bracket.attack,
-        lower=min(bracket.lower, bracket.upper),
-        upper=bracket.upper,
-        stop=stop,
-        evaluations=values.evaluations,
-        nodes=own.nodes,
+        attack=attack, lower=lower, upper=upper, stop=stop, evaluations=values.evaluations, nodes=own.nodes
     )
-
-
-def _without_attack(problem: Problem, values: PlanValues) -> AttackBracket:
-    """The bracket that no attack at all gives."""
-    values.evaluations += len(problem.communication.groups())
-    return AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
 
 
 def _search(task: AttackTask) -> Stop:
     problem, plan = task.problem, task.values.plan
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(task)
+    if isinstance(problem.objective, InformationObjective):
+        task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
     team = PlanarTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
@@ -185,3 +177,31 @@ def _few_groups(problem: Problem, team: PlanarTeam | None) -> SeparableGroups | 
 
     few = FEW_GROUPS if problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
     return separable_groups(problem.threat, few)
+
+
+def attack_survey(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    time_limit: float | None = None,
+    seed: int = 0,
+    budget: Budget | None = None,
+) -> dict[str, AttackResult]:
+    """Attack one plan exactly and with every heuristic: name -> result.
+
+    Parameters
+    ----------
+    time_limit : seconds for the exact attack; unlimited by default
+    seed : of the random attack
+    budget : an outer search's budget: its seconds and interrupts count too
+
+    Raises
+    ------
+    InputError : the plan is not one element per robot.
+    """
+    return {
+        "exact": worst_case_attack(problem, elements, time_limit=time_limit, budget=budget),
+        "bounded rational": bounded_rational_attack(problem, elements),
+        "greedy": greedy_attack(problem, elements),
+        "random": random_attack(problem, elements, seed=seed),
+    }

@@ -47,7 +47,14 @@ def forced_group_bound(task: AttackTask, team: PlanarTeam | None) -> Stop:
     if size:
         task.bracket.raise_lower(float(np.sort(single)[size - 1]))
     if team is not None and size:
-        _weakest_set(task, team, size)
+        from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch  # compiles
+
+        search = WeakestSetSearch(team, size, task.bracket.upper, task.bracket.lower)
+        for found in search.run(task.budget):
+            if found is not None:
+                search.threshold = min(search.threshold, team.value(found))
+            task.bracket.raise_lower(min(search.lower, search.threshold * (1 - 1e-12)))
+        task.bracket.raise_lower(search.threshold * (1 - 1e-12))
     return Stop.CLOSED if task.bracket.is_closed else Stop.HEURISTIC
 
 
@@ -64,15 +71,3 @@ def _offer_cut(task: AttackTask, single: FloatArray) -> None:
             break
         blinded.add(min(best, key=lambda i: (-single[i], i)))
     task.offer(Attack(frozenset(blinded), cut))
-
-
-def _weakest_set(task: AttackTask, team: PlanarTeam, size: int) -> None:
-    from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch  # compiles
-
-    bracket = task.bracket
-    search = WeakestSetSearch(team, size, bracket.upper, bracket.lower)
-    for found in search.run(task.budget):
-        if found is not None:
-            search.threshold = min(search.threshold, team.value(found))
-        bracket.raise_lower(min(search.lower, search.threshold * (1 - 1e-12)))
-    bracket.raise_lower(search.threshold * (1 - 1e-12))

@@ -1,21 +1,123 @@
-"""What every exact attacker is given: one plan to attack, what is known of it, and what may be spent."""
+"""What attackers are given (one plan, what is known of it, and what may be spent), and what they return."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ratt_opt._values import Shown, plain
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.base import SetFunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.attackers.bracket import AttackBracket
-    from ratt_opt.attackers.plan_values import PlanValues
+    from numpy.typing import ArrayLike
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
+    from ratt_opt.stopping import Stop
 
-__all__ = ["AttackTask"]
+__all__ = ["AttackBracket", "AttackResult", "AttackTask", "PlanValues"]
+
+LARGEST_CHUNK = 4096
+"""Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
+
+
+class PlanValues(SetFunction):
+    """``phi`` of the elements that a set of robots has in one plan; counts what it was asked.
+
+    ``problem`` : N robots, E elements; ``elements`` : (N,) element chosen for each robot
+    """
+
+    __slots__ = ("evaluations", "objective", "plan")
+
+    def __init__(self, problem: Problem, elements: ArrayLike) -> None:
+        self.plan: IntArray = problem.check_plan(elements)
+        self.objective: SetFunction = problem.objective
+        self.evaluations = 0
+
+    @property
+    def n(self) -> int:
+        """Number of robots N."""
+        return len(self.plan)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the sets of robots in the rows of ``membership`` (K, N)."""
+        self.evaluations += len(membership)
+        values = np.empty(len(membership))
+        for start in range(0, len(membership), LARGEST_CHUNK):
+            rows = membership[start : start + LARGEST_CHUNK]
+            selected = np.zeros((len(rows), self.objective.n), dtype=np.bool_)
+            selected[:, self.plan] = rows
+            values[start : start + len(rows)] = self.objective.evaluate(selected)
+        return values
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttackResult(Shown):
+    """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
+
+    ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is ``EXHAUSTED`` or ``CLOSED``; it
+    is 0 (the value of no measurement) for a heuristic. Results are equal when all their fields are.
+    """
+
+    attack: Attack
+    lower: float
+    upper: float
+    stop: Stop
+    evaluations: int
+    nodes: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data: unknown numbers are ``None``."""
+        ends = {"lower": plain(self.lower), "upper": plain(self.upper)}
+        cost = {"evaluations": self.evaluations, "nodes": self.nodes}
+        return {**ends, **self.attack.to_dict(), "stop": self.stop.value, **cost}
+
+    def __repr__(self) -> str:
+        attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"
+        cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
+        return f"AttackResult([{self.lower:.6g}, {self.upper:.6g}], {attack}, {self.stop.value}, {cost})"
+
+
+CLOSED_WIDTH = 1e-10
+"""Relative width that counts as closed: attacks that are worse for the team by less are not looked for. Values computed
+in different orders differ by some 1e-13; a narrower width would ask for proofs within rounding."""
+
+
+@dataclass(slots=True)
+class AttackBracket:
+    """``lower <= worst-case value <= upper`` at any moment; ``attack`` attains ``upper``."""
+
+    attack: Attack
+    upper: float
+    lower: float
+    rounding: float = 0.0
+    """Values that differ by no more are equal: a relative width alone never closes on a worst case of 0."""
+
+    @property
+    def goal(self) -> float:
+        """Only a value below this counts as a worse attack; a lower bound that reaches it closes the bracket."""
+        return self.upper - max(CLOSED_WIDTH * abs(self.upper), self.rounding)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the bounds meet but for rounding."""
+        return self.lower >= self.goal
+
+    def offer(self, attack: Attack, value: float) -> bool:
+        """Keep an attack of strictly smaller value; return whether it is one."""
+        if better := value < self.upper:
+            self.attack, self.upper = attack, float(value)
+        return better
+
+    def raise_lower(self, bound: float) -> None:
+        """Keep a larger lower bound."""
+        self.lower = max(self.lower, float(bound))
 
 
 @dataclass(frozen=True, slots=True)

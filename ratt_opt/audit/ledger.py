@@ -2,43 +2,50 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt._files import output_directory, write_atomically, write_json
-from ratt_opt.audit.appendix import pattern1, pattern2, submodular
-from ratt_opt.audit.appendix.chain import entries_of
-from ratt_opt.audit.appendix.dominance import dominance_entries
-from ratt_opt.audit.appendix.lemmas import lemmas
-from ratt_opt.audit.appendix.readings import readings_of_sets, readings_of_the_attack
+from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EnumeratedEntry, entries_of
+from ratt_opt.audit.appendix.patterns import pattern1_chains, pattern2_chains, submodular_chains
+from ratt_opt.audit.appendix.readings import dominance_entries, readings_of_sets, readings_of_the_attack
 from ratt_opt.audit.appendix.team_lines import team_lines
-from ratt_opt.audit.appendix.theorems import closing_lines, theorems
-from ratt_opt.audit.decided import decide_one
-from ratt_opt.audit.engine.decide import CURVATURE_GRID, Verdict
-from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries
+from ratt_opt.audit.appendix.theorems import closing_lines, lemmas, theorems
+from ratt_opt.audit.engine.decide import CURVATURE_GRID, Verdict, best_factors, decide
+from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries, smallest_team_entries
 from ratt_opt.audit.enumeration.running_time import running_time_entries
 from ratt_opt.audit.enumeration.size_claims import size_entries
-from ratt_opt.audit.enumeration.smallest_teams import smallest_team_entries
 from ratt_opt.audit.enumeration.tightness import tightness_entries
+from ratt_opt.audit.real_objectives.search import search_real_objectives
 from ratt_opt.audit.report.findings import findings
-from ratt_opt.audit.report.html_page import html_report
-from ratt_opt.audit.report.markdown_page import markdown_report
-from ratt_opt.audit.report.records import entry_record
-from ratt_opt.audit.report.words import per_chain
+from ratt_opt.audit.report.pages import html_report, markdown_report, per_chain
+from ratt_opt.audit.report.records import begun, claim_record, factor_record, real_record
 from ratt_opt.budget import Budget
+from ratt_opt.problem import Problem
+from ratt_opt.solvers.ratt import bait_and_greedy
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from ratt_opt.audit.appendix.entry import Entry, Reference
-    from ratt_opt.audit.report.document import EntryRecord, LedgerDocument, OtherEntry
+    from ratt_opt.audit.appendix.entry import Detour, Entry, Reference, SizedClaim
+    from ratt_opt.audit.appendix.roles import Team
+    from ratt_opt.audit.engine.claim import Claim
+    from ratt_opt.audit.engine.decide import Decision
+    from ratt_opt.audit.engine.evidence import Witness
     from ratt_opt.audit.report.findings import Finding
+    from ratt_opt.audit.report.records import EntryRecord, LedgerDocument, OtherEntry
 
 __all__ = ["Ledger", "all_entries", "decide_entry", "run_audit"]
 
 FORMAT = "ratt-opt audit, version 1"
+ENUMERATED = "exhaustive enumeration"
+BY_CONE = "linear programming over the set-function cone, re-checked exactly"
+QUICK_ROBOTS = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +88,7 @@ class Ledger:
 def all_entries() -> Iterator[Entry]:
     """Yield every entry in the paper's order: readings, Pattern 1, Pattern 2, closing lines, the rest."""
     yield from readings_of_the_attack()
-    for one in (*pattern1.chains(), *pattern2.chains(), *submodular.chains()):
+    for one in (*pattern1_chains(), *pattern2_chains(), *submodular_chains()):
         yield from entries_of(one)
     yield from chain(readings_of_sets(), team_lines(), closing_lines(), dominance_entries(), theorems(), lemmas())
     yield from chain(arrangement_entries(), smallest_team_entries(), size_entries())
@@ -89,8 +96,79 @@ def all_entries() -> Iterator[Entry]:
 
 
 def decide_entry(entry: Entry, *, quick: bool = False) -> EntryRecord:
-    """Decide one entry and return its record (JSON data); ``quick`` as in :func:`run_audit`."""
-    return entry_record(decide_one(entry, quick=quick))
+    """Decide one entry and return its record (JSON data), without what other entries say about it.
+
+    ``quick`` keeps the sizes with at most three robots, else the smallest size, and one case of more than four robots;
+    it leaves out best factors and the search on EKF objectives.
+    """
+    start = time.perf_counter()
+    if isinstance(entry, EnumeratedEntry):
+        counted = entry.enumerate_cases()
+        record = begun(entry, counted.verdict, ENUMERATED)
+        record["sizes"], record["detail"] = counted.sizes, counted.detail
+        record["counterexamples"], record["claims"] = list(counted.cases), []
+    else:
+        assert isinstance(entry, ClaimEntry)
+        claims = _quick_claims(entry) if quick else entry.claims
+        decisions = [decide(sized.claim) for sized in claims]
+        record = begun(entry, _verdict(decisions), BY_CONE)
+        _add_claims(record, claims, decisions)
+        if not quick:
+            _add_what_remains(record, entry, [each.claim for each in decisions if each.witness is not None])
+    record["seconds"] = time.perf_counter() - start
+    return record
+
+
+def _quick_claims(entry: ClaimEntry) -> tuple[SizedClaim, ...]:
+    smallest = min(sized.robots for sized in entry.claims)
+    claims = tuple(sized for sized in entry.claims if sized.robots <= max(QUICK_ROBOTS, smallest))
+    return claims[:1] if smallest > QUICK_ROBOTS + 1 else claims
+
+
+def _add_claims(record: EntryRecord, claims: Sequence[SizedClaim], decisions: Sequence[Decision]) -> None:
+    robots = [sized.robots for sized in claims]
+    record["function_class"] = claims[0].claim.function_class.value
+    in_play = f"{min(robots)} to {max(robots)} robots in play, {len(robots)} cases"
+    record["sizes"] = f"for all functions of the class, {in_play}"
+    record["curvature"] = sorted({decision.scope for decision in decisions})
+    record["claims"] = [
+        claim_record(sized, decision, _ratt_chooses_the_roles(sized.team, decision.witness))
+        for sized, decision in zip(claims, decisions, strict=True)
+    ]
+
+
+def _ratt_chooses_the_roles(team: Team | None, witness: Witness | None) -> bool | None:
+    """Run RATT's bait and greedy rules on the witness: are its choices the elements that the claim calls its own?"""
+    if team is None or witness is None:
+        return None
+    problem = Problem(witness.function(), np.array(team.ground.owner), None, 0, 0)
+    plan = bait_and_greedy(problem, len(team.bait))
+    return bool((plan.elements == np.arange(len(team.robots))).all())
+
+
+def _verdict(decisions: Sequence[Decision]) -> Verdict:
+    """One refuted size refutes; all sizes must be proved to prove."""
+    found = {decision.verdict for decision in decisions}
+    order = (Verdict.REFUTED, Verdict.UNDECIDED, Verdict.NO_VIOLATION)
+    return next((verdict for verdict in order if verdict in found), Verdict.PROVED)
+
+
+def _add_what_remains(record: EntryRecord, entry: ClaimEntry, broken: Sequence[Claim]) -> None:
+    """Best factors of the refuted claims, what EKF objectives say, and the latest earlier line that serves directly."""
+    factors = () if entry.kind is EntryKind.AS_WRITTEN else best_factors(broken)
+    record["best_factors"] = [factor_record(best) for best in factors]
+    real = search_real_objectives(entry.claims, refuted=bool(broken))
+    record["realistic"] = None if real is None else real_record(real)
+    if broken and entry.detours is not None:
+        record["follows_from"] = _latest(entry.detours())
+
+
+def _latest(detours: Iterator[Detour]) -> str | None:
+    """The latest earlier line from which the refuted one is proved directly, at every size."""
+    for detour in detours:
+        if all(decide(sized.claim).verdict is Verdict.PROVED for sized in detour.claims):
+            return detour.start
+    return None
 
 
 def run_audit(

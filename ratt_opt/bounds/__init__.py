@@ -1,6 +1,7 @@
 """What no plan can exceed, and what RATT's plan keeps at least, known before or without a search.
 
-Open ``guarantees.py`` first: one function per theorem, with its proof; ``instance.py`` has one for a single plan.
-Apart from these, ``cuts.py`` bounds a group's value for all plans, and ``relaxation.py`` the optimum against given
-attacks, against all of them in ``lazy_relaxation.py``; ``relaxed_plans.py`` says what a relaxed plan sees.
+Open ``guarantees.py`` first: one function per theorem, with its proof; ``group_size.py`` has one from how few robots an
+attack leaves together, ``instance.py`` one for a single plan, and ``applicable.py`` says which apply. Apart from these,
+``cuts.py`` bounds a group's value for all plans and says what a relaxed plan sees, and ``relaxation.py`` bounds the
+optimum against given attacks, or all of them.
 """

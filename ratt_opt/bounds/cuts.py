@@ -1,8 +1,7 @@
 """Linear upper bounds on the value of one group, valid for every plan.
 
-All three criteria are concave in the posterior information ``Lambda``, and ``Lambda`` is linear
-in the elements chosen. A supergradient at any point therefore bounds the value of
-every plan by a constant plus one score per chosen element:
+All three criteria are concave in the posterior information ``Lambda``, and ``Lambda`` is linear in the elements chosen.
+A supergradient at any point therefore bounds the value of every plan by a constant plus one score per chosen element:
 
     phi(elements of the group's robots) <= constant + sum over robots i of the group of scores[e_i].
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Problem
 
-__all__ = ["GroupCut", "combined_bound", "tangent_cut"]
+__all__ = ["GroupCut", "combined_bound", "mixed_information", "tangent_cut", "uniform_selection"]
 
 ROUNDING = 64 * np.finfo(np.float64).eps
 """Relative margin added to every bound: sums of at most a few thousand terms lose less."""
@@ -76,14 +75,10 @@ def combined_bound(
 ) -> tuple[float, FloatArray]:
     """Largest value of a convex combination of cuts over plans with elements in ``choices``.
 
-    Parameters
-    ----------
-    constants : (K,); scores : (K, E); weights : (K,) >= 0, not all zero (normalised here)
-    choices : per robot, the elements that remain
+    ``constants`` : (K,); scores : (K, E); weights : (K,) >= 0, not all zero (normalised here)
+    ``choices`` : per robot, the elements that remain
 
-    Returns
-    -------
-    The bound, and the (E,) combined scores it came from.
+    Returns the bound, and the (E,) combined scores it came from.
     """
     share = weights / weights.sum()
     combined = share @ scores
@@ -91,3 +86,21 @@ def combined_bound(
     constant = float(share @ constants)
     magnitude = abs(constant) + float(np.abs(share * constants).sum()) + sum(map(abs, terms))
     return constant + sum(terms) + ROUNDING * magnitude, combined
+
+
+def uniform_selection(problem: Problem) -> FloatArray:
+    """(E,) every robot mixes its elements equally."""
+    selection = np.empty(problem.objective.n)
+    for choice in problem.choices:
+        selection[choice] = 1 / len(choice)
+    return selection
+
+
+def mixed_information(problem: Problem, selection: FloatArray) -> FloatArray:
+    """(N, M, d, d) information of each robot under weights (E,) of the elements of an information criterion."""
+    information = problem.information_objective.information
+    chosen = np.flatnonzero(selection)
+    owner = np.zeros((problem.n_robots, len(chosen)))
+    owner[problem.robot[chosen], np.arange(len(chosen))] = selection[chosen]
+    flat = owner @ information[chosen].reshape(len(chosen), -1)
+    return np.asarray(flat.reshape(-1, *information.shape[1:]))

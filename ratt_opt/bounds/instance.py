@@ -9,7 +9,7 @@ import numpy as np
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
 from ratt_opt.budget import Budget
 from ratt_opt.curvatures.curvature import SECONDS, total_curvature
-from ratt_opt.curvatures.domains import domain_of
+from ratt_opt.curvatures.domains import domain_of, over_subsets
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["instance_bound"]
 
-LARGEST_TABLE = 16
+MOST_ROBOTS = 16
 """Most robots whose subsets are all looked at: one table of 2**16 marginals a robot."""
 
 
@@ -100,7 +100,7 @@ def _on_top(problem: Problem, plan: IntArray) -> Callable[[IntArray, int], float
 def _smallest_within(problem: Problem, plan: IntArray, budget: Budget) -> Callable[[IntArray, int], float]:
     """Smallest marginals of a robot's element over subsets of some others'."""
     f, robots = problem.objective, len(plan)
-    if robots > LARGEST_TABLE:
+    if robots > MOST_ROBOTS:
         # The domain's elements ascend; the plan's are in the order of the robots.
         order = np.argsort(np.argsort(plan, kind="stable"), kind="stable")
         lower = total_curvature(f, plan=plan, gap=0.1, time_limit=None, budget=budget).marginals.smallest_lower[order]
@@ -108,7 +108,8 @@ def _smallest_within(problem: Problem, plan: IntArray, budget: Budget) -> Callab
     domain = domain_of(f, None, plan)
     position = {int(name): axis for axis, name in enumerate(domain.names)}
     values = domain.values()
-    tables = [_running_minimum(np.diff(values, axis=position[int(e)]).squeeze(position[int(e)])) for e in plan]
+    axes_of = [position[int(e)] for e in plan]
+    tables = [over_subsets(np.minimum, np.diff(values, axis=axis).squeeze(axis)) for axis in axes_of]
 
     def within(before: IntArray, robot: int) -> float:
         own = position[int(plan[robot])]
@@ -116,12 +117,3 @@ def _smallest_within(problem: Problem, plan: IntArray, budget: Budget) -> Callab
         return float(tables[robot][tuple(int(axis in axes) for axis in range(robots - 1))])
 
     return within
-
-
-def _running_minimum(gain: FloatArray) -> FloatArray:
-    """Smallest entry over all subsets of each set."""
-    smallest = gain.copy()
-    for axis in range(gain.ndim):
-        view = np.moveaxis(smallest, axis, 0)
-        np.minimum(view[1:], view[:1], out=view[1:])
-    return smallest

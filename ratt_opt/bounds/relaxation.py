@@ -1,27 +1,32 @@
-"""The concave relaxation over a set of attacks, as a conic program."""
+"""The concave relaxation over a set of attacks, as a conic program, and over all attacks, which enter one by one."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt._values import ByValue
-from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
-from ratt_opt.bounds.relaxed_plans import uniform_selection
+from ratt_opt.bounds.cuts import GroupCut, combined_bound, mixed_information, tangent_cut, uniform_selection
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
+from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.problem import Problem
 
-__all__ = ["RelaxationBound", "relaxation_bound"]
+__all__ = ["RelaxationBound", "relaxation_bound", "relaxation_bounds"]
 
 TARGETS_A_GROUP = 6
+"""Targets of a group whose tangents enter (max-eigenvalue): more can only strengthen the bound. Not measured."""
 AVERAGING_STEPS = 12
+"""Conditional-gradient steps on a smaller group: more can only strengthen its bound. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -66,7 +71,7 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
         return RelaxationBound(upper=nothing, claimed=nothing, selection=selection, status="an attack leaves nobody")
     claimed, selection, status = _solve(problem, largest)
     cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection)]
-    upper = max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)])
+    upper = float(max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)]))
     return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
 
 
@@ -106,15 +111,10 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]]) -> tuple[float, 
 def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:
     """One affine (d, d) expression per target."""
     objective = problem.information_objective
-    inside = np.flatnonzero(np.isin(problem.robot, group))
-    d = objective.dimension
-    matrices = []
-    for j in range(objective.n_targets):
-        constant = objective.prior_information[j]
-        flat = objective.information[inside, j].reshape(len(inside), -1)
-        mixed = (flat.T @ z[inside]).reshape((d, d), order="C")
-        matrices.append(constant + mixed)
-    return matrices
+    inside, shape = np.flatnonzero(np.isin(problem.robot, group)), (objective.dimension, objective.dimension)
+    of_target = objective.information[inside].reshape(len(inside), objective.n_targets, -1).transpose(1, 2, 0)
+    mixed = [(flat @ z[inside]).reshape(shape, order="C") for flat in of_target]
+    return [prior + information for prior, information in zip(objective.prior_information, mixed, strict=True)]
 
 
 def _cuts_at(problem: Problem, group: tuple[int, ...], selection: FloatArray) -> list[GroupCut]:
@@ -161,3 +161,43 @@ def _group_bound(problem: Problem, group: tuple[int, ...]) -> float:
         vertex[[choice[combined[choice].argmax()] for choice in problem.choices]] = 1.0
         selection += 2 / (step + 2) * (vertex - selection) if step else 0.5 * (vertex - selection)
     return upper
+
+
+MOST_OUTCOMES = 20_000
+"""Every outcome is evaluated in every round."""
+
+
+def relaxation_bounds(
+    problem: Problem, *, tolerance: float = 1e-7, budget: Budget | None = None
+) -> Iterator[RelaxationBound]:
+    """Yield bounds on the optimum as the attack that hurts the relaxed plan most enters, round by round.
+
+    Ends once no attack leaves the relaxed plan less than the program claims, up to ``tolerance`` relative to
+    the claim: the last item then is the bound of the relaxation over all attacks. Every item is a valid bound.
+    A spent ``budget`` (an outer search's) ends them early.
+
+    Raises
+    ------
+    InputError : the objective is no information criterion, or the team is too large to list its outcomes.
+    """
+    objective = problem.information_objective
+    whole, outcomes = Budget.inside(budget), list(islice(non_dominated_outcomes(problem.threat), MOST_OUTCOMES + 1))
+    if len(outcomes) > MOST_OUTCOMES:
+        rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
+        raise InputError("problem", rule, f"{problem.n_robots} robots")
+    robots = np.arange(problem.n_robots)
+    rows = np.array([np.isin(robots, list(group)) for outcome in outcomes for group in outcome], dtype=np.float64)
+    starts = np.cumsum([0, *(len(outcome) for outcome in outcomes[:-1])])
+    entered: list[int] = []
+    selection, level = uniform_selection(problem), np.inf
+    while True:
+        sums = rows @ mixed_information(problem, selection).reshape(problem.n_robots, -1)
+        points = sums.reshape(-1, *objective.prior.shape) + objective.prior_information
+        left = np.maximum.reduceat(objective.value(points), starts)
+        worst = int(left.argmin())
+        if whole.stop() is not None or worst in entered or left[worst] >= level - tolerance * abs(level):
+            return
+        entered.append(worst)
+        bound = relaxation_bound(problem, [Attack(*realise(problem.threat, outcomes[k])) for k in entered])
+        yield bound
+        selection, level = bound.selection, bound.claimed

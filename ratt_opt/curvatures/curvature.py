@@ -14,14 +14,20 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.budget import Budget
-from ratt_opt.curvatures.brackets import bracket_marginals
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
-from ratt_opt.curvatures.marginals import Marginals, MeasuredMarginals, check_monotone, enumerate_marginals
+from ratt_opt.curvatures.marginals import (
+    MarginalBrackets,
+    Marginals,
+    MeasuredMarginals,
+    check_monotone,
+    enumerate_marginals,
+)
+from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
+from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.properties import Violation, find_submodularity_violation
-from ratt_opt.setfunctions.table import TableFunction
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -79,7 +85,7 @@ def total_curvature(
     """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
 
     Exact where the domain can be enumerated (up to 2**24 sets), else for information criteria a certified bracket,
-    tightened by branch and bound: see :mod:`ratt_opt.curvatures.brackets`. An interrupt returns the bracket.
+    tightened by branch and bound. An interrupt returns the bracket.
 
     Parameters
     ----------
@@ -150,14 +156,18 @@ def curvature_over(domain: Domain, *, total: bool, gap: float, budget: Budget) -
 
 
 def _measured(domain: Domain, gap: float, budget: Budget, *, against_own: bool) -> MeasuredMarginals:
+    """``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal."""
     f = domain.restricted
     if domain.count <= LARGEST_ENUMERATION:
         marginals = enumerate_marginals(domain)
         return MeasuredMarginals(marginals=marginals, how="every context enumerated", stop=Stop.EXHAUSTED, nodes=0)
-    if isinstance(f, InformationObjective):
-        return bracket_marginals(f, domain.owners, gap=gap, budget=budget, against_own=against_own)
-    need = f"{domain.count:.3g} contexts, {domain.count * 8 / 2**30:.3g} GiB"
-    raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
+    if not isinstance(f, InformationObjective):
+        need = f"{domain.count:.3g} contexts, {domain.count * 8 / 2**30:.3g} GiB"
+        raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
+    kind: type[MarginalBrackets] = SeparableBrackets if f.planar_levels() is None else PlanarBrackets
+    brackets = kind(f, domain.owners, gap=gap, budget=budget, against_own=against_own)
+    stop, how = brackets.run(), f"{brackets.rests_on} and attained contexts"
+    return MeasuredMarginals(marginals=brackets.marginals(), how=how, stop=stop, nodes=budget.nodes)
 
 
 def _submodularity(domain: Domain) -> str:
@@ -177,11 +187,7 @@ def _submodularity(domain: Domain) -> str:
 def _top_of_lattice(f: SetFunction) -> Marginals:
     """Marginals on top of all other elements."""
     everything = np.arange(f.n)
-    if isinstance(f, TableFunction):
-        top = f.values[-1] - f.values[(2**f.n - 1) ^ (1 << everything)]
-    else:
-        membership = ~np.eye(f.n, dtype=np.bool_)
-        top = finite_values(np.array([f(everything)])) - finite_values(f.evaluate(membership))
+    top = finite_values(np.array([f(everything)])) - finite_values(f.evaluate(~np.eye(f.n, dtype=np.bool_)))
     contexts = tuple(tuple(int(e) for e in everything if e != x) for x in everything)
     nothing: tuple[tuple[int, ...], ...] = ((),) * f.n
     single = finite_values(f.singletons())

@@ -9,9 +9,8 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_subset
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import check_table_size, finite_values
+from ratt_opt.setfunctions.base import TableFunction, check_table_size, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.setfunctions.table import TableFunction
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "values_over"]
+__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "over_subsets", "values_over"]
 
 LARGEST_ENUMERATION = 2**24
 """Most sets of a domain that are enumerated (128 MiB of values)."""
@@ -69,8 +68,6 @@ class Domain:
 def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) -> Domain:
     """Return the domain that the arguments of a curvature describe.
 
-    Raises
-    ------
     InputError : owners of the wrong shape, or a plan that repeats or exceeds the elements.
     """
     error, everything = _rounding(f), np.arange(f.n)
@@ -97,7 +94,7 @@ def values_over(f: SetFunction, groups: list[IntArray]) -> FloatArray:
     for start in range(0, size, BLOCK):
         index = np.arange(start, min(start + BLOCK, size))
         membership = np.zeros((len(index), f.n), dtype=np.bool_)
-        for group, picks in zip(groups, np.unravel_index(index, shape), strict=True):
+        for group, picks in zip(groups, np.unravel_index(index, shape) if groups else (), strict=True):
             rows = np.flatnonzero(picks)
             membership[rows, group[picks[rows] - 1]] = True
         values[index] = f.evaluate(membership)
@@ -130,10 +127,7 @@ def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
     if isinstance(f, InformationObjective):
         return f.restricted_to(chosen)
     check_table_size(len(chosen))
-    masks = np.arange(2 ** len(chosen))
-    membership = np.zeros((len(masks), f.n), dtype=np.bool_)
-    membership[:, chosen] = masks[:, None] >> np.arange(len(chosen)) & 1
-    return TableFunction(f.evaluate(membership))
+    return TableFunction(values_over(f, list(chosen[:, None])).ravel(order="F"))  # the first element is the lowest bit
 
 
 def _rounding(f: SetFunction) -> float:
@@ -143,3 +137,12 @@ def _rounding(f: SetFunction) -> float:
     if isinstance(f, InformationObjective):
         size += f.prior_magnitude
     return ROUNDING * size
+
+
+def over_subsets(extreme: np.ufunc, table: FloatArray) -> FloatArray:
+    """Smallest (``np.minimum``) or largest (``np.maximum``) entry over all subsets of each set, one axis an owner."""
+    found = table.copy()
+    for axis in range(table.ndim):
+        view = np.moveaxis(found, axis, 0)
+        extreme(view[1:], view[:1], out=view[1:])
+    return found

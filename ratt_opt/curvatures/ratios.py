@@ -20,8 +20,8 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.budget import Budget
 from ratt_opt.curvatures.curvature import GAP, SECONDS, curvature_over
-from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, values_over
-from ratt_opt.curvatures.marginals import enumerate_marginals
+from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
+from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.stopping import Stop
 
@@ -43,8 +43,6 @@ SAMPLES = 200
 SAMPLED_SIZE = 8
 """Elements of each: 3**8 nested pairs take 0.1 ms compiled, so that all samples take a fraction of a second."""
 
-Context = tuple[int, ...]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SubmodularityRatio:
@@ -61,10 +59,7 @@ class SubmodularityRatio:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GeneralisedCurvature:
-    """Claim: ``lower <= alpha <= upper`` over ``domain``; ``element`` on ``small`` and on ``large`` attains ``lower``.
-
-    ``small`` is a subset of ``large``.
-    """
+    """Claim: ``lower <= alpha <= upper`` over ``domain``; ``element`` on ``small``, in ``large``, attains ``lower``."""
 
     lower: float
     upper: float
@@ -92,13 +87,7 @@ def submodularity_ratio(
     criteria: 1 where theory proves submodularity (log-det), else at least ``1 - total curvature``. The upper end is
     attained, by a seeded search.
 
-    Parameters
-    ----------
-    f, owners, plan, budget : see :func:`ratt_opt.total_curvature`; seed : of the search beyond enumeration
-
-    Raises
-    ------
-    InputError : not non-decreasing, or too large and no bracket is known for ``f``.
+    Arguments and errors are those of :func:`ratt_opt.total_curvature`; ``seed`` : of the search beyond enumeration.
 
     Source: Bian, Buhmann, Krause, Tschiatschek 2017, Definition 1 (after Das and Kempe 2011).
     """
@@ -111,7 +100,7 @@ def submodularity_ratio(
         found = _smallest_ratio(values, groups)
         return _ratio(min(found[0], 1.0), found, domain, "every nested pair of sets", Stop.EXHAUSTED)
     found = _sampled_ratio(domain, seed, inner)
-    lower = min(_later_marginals(values), 1.0, found[0])
+    lower = min(_later_marginals(values, groups), 1.0, found[0])
     return _ratio(lower, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
@@ -129,13 +118,7 @@ def generalised_curvature(
     information criteria: at most the total curvature (submodular ones: the curvature), at least what a seeded search
     attains.
 
-    Parameters
-    ----------
-    f, owners, plan, budget : see :func:`ratt_opt.total_curvature`; seed : of the search beyond enumeration
-
-    Raises
-    ------
-    InputError : not non-decreasing, or too large and no bracket is known for ``f``.
+    Arguments and errors are those of :func:`ratt_opt.total_curvature`; ``seed`` : of the search beyond enumeration.
 
     Source: Bian, Buhmann, Krause, Tschiatschek 2017, Definition 2.
     """
@@ -149,15 +132,10 @@ def generalised_curvature(
         found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner)
         kept, element, small, large = _searched_kept(domain, found, seed, inner)
         upper, how, stop = found.upper, f"at most the curvature ({found.how}); a searched pair", found.stop
+    lower, upper, small, large = max(min(1.0 - kept, upper), 0.0), max(upper, 0.0), *map(domain.named, (small, large))
+    x, name = None if element is None else domain.element(element), domain.name
     return GeneralisedCurvature(
-        lower=max(min(1.0 - kept, upper), 0.0),
-        upper=max(upper, 0.0),
-        domain=domain.name,
-        element=None if element is None else domain.element(element),
-        small=domain.named(small),
-        large=domain.named(large),
-        how=how,
-        stop=stop,
+        lower=lower, upper=upper, domain=name, element=x, small=small, large=large, how=how, stop=stop
     )
 
 
@@ -174,16 +152,8 @@ def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget) -> Submodul
 def _ratio(
     lower: float, found: tuple[float, Context, Context], domain: Domain, how: str, stop: Stop
 ) -> SubmodularityRatio:
-    ratio, base, added = found
-    return SubmodularityRatio(
-        lower=lower,
-        upper=min(ratio, 1.0),
-        domain=domain.name,
-        base=domain.named(base),
-        added=domain.named(added),
-        how=how,
-        stop=stop,
-    )
+    upper, name, (base, added) = min(found[0], 1.0), domain.name, map(domain.named, found[1:])
+    return SubmodularityRatio(lower=lower, upper=upper, domain=name, base=base, added=added, how=how, stop=stop)
 
 
 def _monotone_values(domain: Domain) -> FloatArray:
@@ -199,7 +169,7 @@ def _smallest_ratio(values: FloatArray, groups: list[IntArray]) -> tuple[float, 
     ratio, top, part = smallest_gain_ratio(np.ravel(values), np.array(values.shape, dtype=np.int64))
     if not np.isfinite(ratio):
         return 1.0, (), ()
-    whole = _elements(np.unravel_index(int(top), values.shape), groups)
+    whole = elements_at(np.unravel_index(int(top), values.shape), groups)
     base = tuple(e for bit, e in enumerate(reversed(whole)) if int(part) >> bit & 1)
     return float(ratio), base, tuple(e for e in whole if e not in base)
 
@@ -207,44 +177,28 @@ def _smallest_ratio(values: FloatArray, groups: list[IntArray]) -> tuple[float, 
 def _smallest_kept(values: FloatArray, groups: list[IntArray]) -> tuple[float, int | None, Context, Context]:
     """Smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 where no gain is positive); ``i``, ``A`` and ``B``."""
     best: tuple[float, int | None, Context, Context] = (1.0, None, (), ())
-    for axis, own in enumerate(groups):
-        slices = np.moveaxis(values, axis, 0)
-        rest = [g for k, g in enumerate(groups) if k != axis]
-        for position, i in enumerate(own.tolist(), start=1):
-            gain = slices[position] - slices[0]
-            earlier = _running_maximum(gain)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                kept = np.where(earlier > 0, gain / earlier, np.inf)
-            where = int(kept.argmin())
-            if kept.flat[where] < best[0]:
-                index = np.unravel_index(where, kept.shape)
-                small = _attaining_subset(gain, index, float(earlier[index]))
-                best = (float(kept[index]), i, _elements(small, rest), _elements(index, rest))
+    for i, gain, rest in each_marginal(values, groups):
+        earlier = over_subsets(np.maximum, gain)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            kept = np.where(earlier > 0, gain / earlier, np.inf)
+        where = int(kept.argmin())
+        if kept.flat[where] < best[0]:
+            index = np.unravel_index(where, kept.shape)
+            small = _attaining_subset(gain, index, float(earlier[index]))
+            best = (float(kept[index]), i, elements_at(small, rest), elements_at(index, rest))
     return best
 
 
-def _running_maximum(gain: FloatArray) -> FloatArray:
-    """Largest entry over all subsets of each set."""
-    largest = gain.copy()
-    for axis in range(gain.ndim):
-        view = np.moveaxis(largest, axis, 0)
-        np.maximum(view[1:], view[:1], out=view[1:])
-    return largest
-
-
-def _later_marginals(values: FloatArray) -> float:
+def _later_marginals(values: FloatArray, groups: list[IntArray]) -> float:
     """Smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``, where that is positive."""
     best = np.inf
-    for axis in range(values.ndim):
-        slices = np.moveaxis(values, axis, 0)
-        for position in range(1, len(slices)):
-            gain = slices[position] - slices[0]
-            later = gain.copy()
-            for other in range(gain.ndim):
-                view = np.moveaxis(later, other, 0)
-                np.maximum(view[0], view.max(axis=0), out=view[0])
-            useful = later > 0
-            best = min(best, float((gain[useful] / later[useful]).min(initial=np.inf)))
+    for _, gain, _ in each_marginal(values, groups):
+        later = gain.copy()
+        for axis in range(gain.ndim):
+            view = np.moveaxis(later, axis, 0)
+            np.maximum(view[0], view.max(axis=0), out=view[0])
+        useful = later > 0
+        best = min(best, float((gain[useful] / later[useful]).min(initial=np.inf)))
     return best
 
 
@@ -254,11 +208,6 @@ def _attaining_subset(gain: FloatArray, index: tuple[np.intp, ...], value: float
     local = gain[options]
     where = np.unravel_index(int((local == value).argmax()), local.shape)
     return tuple(int(pick) if chosen else 0 for pick, chosen in zip(index, where, strict=True))
-
-
-def _elements(index: tuple[int | np.intp, ...], groups: list[IntArray]) -> Context:
-    """Elements of a set, group by group."""
-    return tuple(int(group[pick - 1]) for group, pick in zip(groups, index, strict=True) if pick > 0)
 
 
 def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatArray, list[IntArray]]]:
@@ -275,9 +224,8 @@ def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatA
 
 
 def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> tuple[float, Context, Context]:
-    nothing: tuple[float, Context, Context] = (1.0, (), ())
     tried = (_smallest_ratio(values, groups) for values, groups in _samples(domain, seed, budget))
-    return min(tried, default=nothing)
+    return min(tried, default=(1.0, (), ()))
 
 
 def _searched_kept(

@@ -10,7 +10,7 @@ import networkx as nx
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 __all__ = ["CommunicationGraph", "Link", "neighbour_masks"]
 
@@ -37,13 +37,10 @@ class CommunicationGraph:
     n_robots: int
     links: frozenset[Link]
     is_complete: bool = field(init=False)
-    _graph: nx.Graph = field(init=False, repr=False, compare=False)
+    _neighbours: tuple[int, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        graph: nx.Graph = nx.Graph()
-        graph.add_nodes_from(range(self.n_robots))
-        graph.add_edges_from(self.links)
-        object.__setattr__(self, "_graph", graph)
+        object.__setattr__(self, "_neighbours", tuple(neighbour_masks(self.n_robots, self.links)))
         complete = len(self.links) == self.n_robots * (self.n_robots - 1) // 2
         object.__setattr__(self, "is_complete", complete)
 
@@ -56,9 +53,7 @@ class CommunicationGraph:
     def from_networkx(cls, graph: object, n_robots: int) -> CommunicationGraph:
         """Check and convert a ``networkx.Graph`` on nodes ``0..N-1``.
 
-        Raises
-        ------
-        InputError : not an undirected simple graph, wrong nodes, or a self-loop.
+        Raises ``InputError`` : not an undirected simple graph, wrong nodes, or a self-loop.
         """
         if not isinstance(graph, nx.Graph) or graph.is_directed() or graph.is_multigraph():
             raise InputError("graph", "must be an undirected networkx.Graph", type(graph).__name__)
@@ -72,16 +67,17 @@ class CommunicationGraph:
 
     def groups(self, cut: Iterable[Link] = ()) -> tuple[frozenset[int], ...]:
         """Connected components left when the links of ``cut`` are gone, by lowest robot."""
-        rest = self._graph.copy()
-        rest.remove_edges_from(cut)
-        return tuple(sorted((frozenset(group) for group in nx.connected_components(rest)), key=min))
+        neighbours = list(self._neighbours)
+        for i, j in cut:
+            neighbours[i] &= ~(1 << j)
+            neighbours[j] &= ~(1 << i)
+        return _components(neighbours, (1 << self.n_robots) - 1)
 
     def groups_among(self, robots: frozenset[int]) -> tuple[frozenset[int], ...]:
         """Connected components of ``robots`` once all others are cut off, by lowest robot."""
         if self.is_complete:
             return (robots,) if robots else ()
-        found = nx.connected_components(self._graph.subgraph(robots))
-        return tuple(sorted((frozenset(group) for group in found), key=min))
+        return _components(self._neighbours, sum(1 << i for i in robots))
 
     def links_between(self, groups: Iterable[Iterable[int]]) -> frozenset[Link]:
         """Links between robots of different groups; every robot is in one group."""
@@ -90,4 +86,25 @@ class CommunicationGraph:
 
     def links_of(self, robot: int) -> frozenset[Link]:
         """The links of one robot."""
-        return frozenset((min(robot, j), max(robot, j)) for j in self._graph[robot])
+        return frozenset((min(robot, j), max(robot, j)) for j in _bits(self._neighbours[robot]))
+
+
+def _components(neighbours: Sequence[int], robots: int) -> tuple[frozenset[int], ...]:
+    """Connected components among the robots of a mask, by lowest robot; bit masks are many times as fast as sets."""
+    groups = []
+    while robots:
+        group = new = robots & -robots
+        while new:
+            reached = 0
+            for i in _bits(new):
+                reached |= neighbours[i]
+            new = reached & robots & ~group
+            group |= new
+        groups.append(frozenset(_bits(group)))
+        robots &= ~group
+    return tuple(groups)
+
+
+def _bits(mask: int) -> list[int]:
+    """Positions of the bits that are set, ascending."""
+    return [i for i, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]

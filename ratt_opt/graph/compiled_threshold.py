@@ -14,6 +14,7 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
+from ratt_opt.graph.separable_groups import count_ones
 from ratt_opt.graph.threshold import LARGEST_COMPILED, UNREACHABLE, GroupSplit, fewest_blinded, largest_survivors
 
 if TYPE_CHECKING:
@@ -34,32 +35,23 @@ def _links_inside(neighbours: Any) -> Any:
     inside = np.zeros(1 << n_robots, dtype=np.int16)
     for i in range(n_robots):
         for mask in range(1 << i):
-            common, count = mask & neighbours[i], 0
-            while common:
-                common &= common - 1
-                count += 1
-            inside[mask | (1 << i)] = inside[mask] + count
+            inside[mask | (1 << i)] = inside[mask] + count_ones(mask & neighbours[i])
     return inside
-
-
-@numba.njit(cache=True)
-def _is_connected(mask: int, neighbours: Any) -> bool:
-    reached, fresh = mask & -mask, mask & -mask
-    while fresh:
-        grown = 0
-        for i in range(len(neighbours)):
-            if (fresh >> i) & 1:
-                grown |= neighbours[i]
-        fresh = grown & mask & ~reached
-        reached |= fresh
-    return reached == mask
 
 
 @numba.njit(cache=True)
 def _connected(masks: Any, neighbours: Any) -> Any:
     answer = np.zeros(len(masks), dtype=np.bool_)
-    for k in range(len(masks)):
-        answer[k] = _is_connected(masks[k], neighbours)
+    for k, mask in enumerate(masks):
+        reached, fresh = mask & -mask, mask & -mask
+        while fresh:
+            grown = 0
+            for i in range(len(neighbours)):
+                if (fresh >> i) & 1:
+                    grown |= neighbours[i]
+            fresh = grown & mask & ~reached
+            reached |= fresh
+        answer[k] = reached == mask
     return answer
 
 
@@ -73,15 +65,8 @@ def _group_of(mask: int, groups: Any, is_group: Any, start: Any, best: Any, tabl
     width, pick = len(best), -1
     low = mask & -mask
     others, position = mask ^ low, 0
-    lowest = 0
-    while (low >> lowest) & 1 == 0:
-        lowest += 1
+    lowest, size = count_ones(low - 1), count_ones(others)
     listed = start[lowest + 1] - start[lowest]
-    size = 0
-    left = others
-    while left:
-        left &= left - 1
-        size += 1
     by_list = size >= 30 or listed < (1 << size)
     best[:] = FAR
     part = others
@@ -123,14 +108,7 @@ def _fill(masks: Any, groups: Any, is_group: Any, start: Any, tables: Any) -> No
 class CompiledThresholdTest:
     """Decides for one plan whether an attack can push the team value to a threshold; see ``ThresholdTest``.
 
-    Parameters
-    ----------
-    threat : N robots, at most ``LARGEST_COMPILED``
-    values : (2**N,) value of every set of robots, by bit mask
-
-    Raises
-    ------
-    InputError : too many robots.
+    ``threat`` : N robots, at most ``LARGEST_COMPILED``; ``values`` : (2**N,) value of every set of robots, by bit mask
     """
 
     def __init__(self, threat: Threat, values: FloatArray) -> None:

@@ -38,12 +38,7 @@ class SubsetLattice:
 
     @classmethod
     def of(cls, threat: Threat) -> SubsetLattice:
-        """Tabulate the graph of ``threat``.
-
-        Raises
-        ------
-        InputError : more than ``LARGEST_LATTICE`` robots.
-        """
+        """Tabulate the graph of ``threat``."""
         n_robots = threat.graph.n_robots
         if n_robots > LARGEST_LATTICE:
             rule = f"must have at most {LARGEST_LATTICE} robots to enumerate connected groups (use worst_case_attack)"
@@ -78,12 +73,7 @@ def _connected(neighbours: list[int], masks: IntArray) -> BoolArray:
 
 
 def connected_partitions(threat: Threat) -> Iterator[tuple[int, ...]]:
-    """Yield every partition into connected groups that the link budget can leave, as bit masks by lowest robot.
-
-    Raises
-    ------
-    InputError : more than ``LARGEST_LATTICE`` robots.
-    """
+    """Yield every partition into connected groups that the link budget can leave, as bit masks by lowest robot."""
     lattice = SubsetLattice.of(threat)
     full = 2**lattice.n_robots - 1
     return _split(lattice, full, threat.alpha_c, {})
@@ -129,23 +119,15 @@ def finest_partitions(threat: Threat) -> list[tuple[int, ...]]:
 
     Undoing one step of a refinement keeps groups connected and cuts fewer links, so a partition is
     finest exactly when the cheapest cut of each of its groups exceeds the budget that is left.
-
-    Raises
-    ------
-    InputError : more than ``LARGEST_LATTICE`` robots.
     """
     lattice = SubsetLattice.of(threat)
     cheapest: dict[int, int] = {}
     finest = []
     for partition in _split(lattice, 2**lattice.n_robots - 1, threat.alpha_c, {}):
-        left = threat.alpha_c - _cut(lattice, partition)
+        left = threat.alpha_c - int(lattice.links[-1] - lattice.links[list(partition)].sum())
         if all(_cheapest_split(lattice, group, cheapest) > left for group in partition):
             finest.append(partition)
     return sorted(finest)
-
-
-def _cut(lattice: SubsetLattice, partition: tuple[int, ...]) -> int:
-    return int(lattice.links[-1]) - sum(int(lattice.links[group]) for group in partition)
 
 
 def _cheapest_split(lattice: SubsetLattice, group: int, known: dict[int, int]) -> int:

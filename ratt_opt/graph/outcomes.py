@@ -1,9 +1,8 @@
 """Which robots can still pool measurements after an attack: non-dominated outcomes.
 
-An outcome is the family of groups of non-blinded robots that an attack leaves. One
-outcome dominates another when it refines it (every group of the first lies in a group
-of the second): a non-decreasing objective is then no larger on the first. An attack that
-blinds as many robots as it may dominates one that blinds fewer.
+An outcome is the family of groups of non-blinded robots that an attack leaves. One outcome dominates another when it
+refines it (every group of the first lies in a group of the second): a non-decreasing objective is then no larger on the
+first. An attack that blinds as many robots as it may dominates one that blinds fewer.
 """
 
 from __future__ import annotations
@@ -42,13 +41,15 @@ def non_dominated_outcomes(threat: Threat) -> Iterator[Outcome]:
 
     Raises
     ------
-    InputError : another graph, with more than ``LARGEST_ENUMERATION`` robots.
+    InputError : another graph that can be attacked, with more than ``LARGEST_ENUMERATION`` robots.
     """
     n_robots = threat.graph.n_robots
     if threat.n_blinded == n_robots:
         return iter([(frozenset(),)])
     if threat.links_alike:
         return _by_sizes(threat)
+    if threat.n_blinded == 0 and threat.alpha_c == 0:
+        return iter([threat.graph.groups()])
     if n_robots > LARGEST_ENUMERATION:
         rule = (
             f"must have at most {LARGEST_ENUMERATION} robots to enumerate outcomes unless it is complete "

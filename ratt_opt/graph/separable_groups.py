@@ -18,13 +18,13 @@ from ratt_opt.graph.communication import neighbour_masks
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
 
 LARGEST_MASK = 60
 """Most robots: a group is a bit mask of 64."""
-
 IMPOSSIBLE = 10_000
 """Blinded robots that no budget holds."""
 
@@ -75,7 +75,8 @@ def separable_groups(threat: Threat, most: int) -> SeparableGroups | None:
 
 
 @numba.njit(cache=True)
-def _count(mask: int) -> int:
+def count_ones(mask: int) -> int:
+    """Bits of a mask that are set."""
     ones = 0
     while mask:
         mask &= mask - 1
@@ -96,7 +97,7 @@ def _enumerate(neighbours: Any, locked: Any, budget: int, most: int) -> Any:
     stack = np.zeros((2 * n_robots + 2, 3), dtype=np.int64)  # inside, outside, links between them
     for first in range(n_robots):
         below = (1 << first) - 1
-        stack[0, 0], stack[0, 1], stack[0, 2] = 1 << first, below, _count(neighbours[first] & below)
+        stack[0, 0], stack[0, 1], stack[0, 2] = 1 << first, below, count_ones(neighbours[first] & below)
         top = 1 if locked[first] & below == 0 else 0
         while top:
             top -= 1
@@ -105,10 +106,10 @@ def _enumerate(neighbours: Any, locked: Any, budget: int, most: int) -> Any:
                 continue
             pick, most_links = -1, -1
             for i in range(n_robots):
-                links = _count(neighbours[i] & inside)
+                links = count_ones(neighbours[i] & inside)
                 if (inside | outside) >> i & 1 or links == 0:
                     continue
-                links += _count(neighbours[i] & outside)
+                links += count_ones(neighbours[i] & outside)
                 if links > most_links:
                     pick, most_links = i, links
             if pick < 0:
@@ -121,11 +122,11 @@ def _enumerate(neighbours: Any, locked: Any, budget: int, most: int) -> Any:
                 continue
             if locked[pick] & inside == 0:
                 stack[top, 0], stack[top, 1] = inside, outside | (1 << pick)
-                stack[top, 2] = cost + _count(neighbours[pick] & inside)
+                stack[top, 2] = cost + count_ones(neighbours[pick] & inside)
                 top += 1
             if locked[pick] & outside == 0:
                 stack[top, 0], stack[top, 1] = inside | (1 << pick), outside
-                stack[top, 2] = cost + _count(neighbours[pick] & outside)
+                stack[top, 2] = cost + count_ones(neighbours[pick] & outside)
                 top += 1
     return found[:count], True
 
@@ -135,7 +136,7 @@ def _links_between(group: int, others: int, neighbours: Any) -> int:
     links = 0
     while group:
         lowest = group & -group
-        links += _count(neighbours[_count(lowest - 1)] & others)
+        links += count_ones(neighbours[count_ones(lowest - 1)] & others)
         group ^= lowest
     return links
 
@@ -163,7 +164,7 @@ def _search(groups: Any, need: Any, budgets: Any, limit: int, state: Any, counte
     depth = _still_within(need, budgets[0], state, counters[0])
     while depth >= 0:
         left = state[depth, 0]
-        lowest = _count((left & -left) - 1)
+        lowest = count_ones((left & -left) - 1)
         position, end = max(state[depth, 3], start[lowest]), start[lowest + 1]
         chosen, others, links = -1, 0, 0
         while position < end:
@@ -200,9 +201,7 @@ def _search(groups: Any, need: Any, budgets: Any, limit: int, state: Any, counte
 class PartitionSearch:
     """All partitions of the team into separable groups within both budgets, one after the other; resumable.
 
-    Parameters
-    ----------
-    need : (G,) robots to blind in each group, at least; may be raised between calls, never lowered
+    ``need`` : (G,) robots to blind in each group, at least; may be raised between calls, never lowered
     """
 
     def __init__(self, groups: SeparableGroups, need: IntArray) -> None:
@@ -218,6 +217,13 @@ class PartitionSearch:
     def nodes(self) -> int:
         """Groups tried."""
         return int(self._counters[1])
+
+    def next_within(self, nodes: int, budget: Budget) -> list[int] | None:
+        """Spend up to ``nodes`` more of the budget on :meth:`next`; raises ``OutOfBudget`` where none is left."""
+        before = self.nodes
+        chosen = self.next(before + budget.nodes_left(nodes))
+        budget.nodes += self.nodes - before
+        return chosen
 
     def next(self, limit: int) -> list[int] | None:
         """Groups of the next partition; ``None`` once ``finished`` or at ``limit`` nodes in all."""

@@ -1,23 +1,73 @@
-"""Sizes of the groups of seeing robots that an attack on a complete graph can leave.
+"""Sizes of the groups that an attack on a complete graph can leave: CAA, and those of the seeing robots.
 
-On a complete graph every robot and link is alike, so an outcome is feasible or not by its group
-sizes alone. ``b`` blinded robots still hold links and may stand in any group; the links kept,
-``sum_k C(size_k, 2)``, are convex in where they stand, so the cheapest place for all of them is
-the largest group.
+On a complete graph every robot and link is alike, so an outcome is feasible or not by its group sizes alone. ``b``
+blinded robots still hold links and may stand in any group; the links kept, ``sum_k C(size_k, 2)``, are convex in where
+they stand, so the cheapest place for all of them is the largest group.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from math import comb, factorial
 from typing import TYPE_CHECKING
 
-from ratt_opt.graph.caa import links_within
+from ratt_opt._validation import check_integer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["cheapest_cut", "feasible_sizes", "forced_group_size", "labelled_count", "non_dominated_sizes"]
+__all__ = [
+    "CaaResult",
+    "caa",
+    "cheapest_cut",
+    "forced_group_size",
+    "iterate_non_dominated_sizes",
+    "labelled_count",
+    "non_dominated_sizes",
+    "sizes_of_largest",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaaResult:
+    """``n_max``: size of the largest group left; ``alpha_cs = N - n_max``: equivalent sensing attacks."""
+
+    n_max: int
+    alpha_cs: int
+
+
+def links_within(n_robots: int, group: int) -> int:
+    """Links kept when a complete graph is split into as many groups of size ``group`` as fit, and one of the rest.
+
+    Source: ratt.tex, eq:bar_en.
+    """
+    full, rest = divmod(n_robots, group)
+    return full * (group * (group - 1) // 2) + rest * (rest - 1) // 2
+
+
+def caa(n_robots: int, alpha_c: int) -> CaaResult:
+    """Return the smallest possible largest group of a complete graph with ``alpha_c`` links cut.
+
+    Parameters
+    ----------
+    n_robots : N >= 1
+    alpha_c : links the attacker may cut, in ``[0, N (N - 1) / 2]``
+
+    Raises
+    ------
+    InputError : a number is out of range.
+
+    Source: ratt.tex, Algorithm 2 (CAA). Exact for complete graphs: agrees with the
+    enumeration of integer partitions for every N <= 30.
+    """
+    n_robots = check_integer("n_robots", n_robots, low=1)
+    links = n_robots * (n_robots - 1) // 2
+    alpha_c = check_integer("alpha_c", alpha_c, low=0, high=links)
+    remaining = links - alpha_c
+    n_max = next(n for n in range(1, n_robots + 1) if remaining <= links_within(n_robots, n))
+    return CaaResult(n_max=n_max, alpha_cs=n_robots - n_max)
+
 
 Sizes = tuple[int, ...]
 """Non-increasing positive group sizes; empty when every robot is blinded."""
@@ -31,52 +81,54 @@ def cheapest_cut(n_blinded: int, sizes: Sizes) -> int:
     return comb(total, 2) - comb(sizes[0] + n_blinded, 2) - sum(comb(size, 2) for size in sizes[1:])
 
 
-def feasible_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> Iterator[Sizes]:
-    """Yield every vector of group sizes that ``alpha_c`` cut links can leave, largest first group first."""
-    survivors = n_robots - n_blinded
-    if survivors == 0:
-        yield ()
-        return
-    links_to_keep = comb(n_robots, 2) - alpha_c
-    for first in range(survivors, 0, -1):
-        missing = links_to_keep - comb(first + n_blinded, 2)
-        for rest in _partitions(survivors - first, first, missing):
-            yield (first, *rest)
-
-
-def _partitions(robots: int, largest: int, links: int) -> Iterator[Sizes]:
-    """Partitions of ``robots`` into parts up to ``largest`` that keep at least ``links`` links."""
-    if robots == 0:
-        if links <= 0:
-            yield ()
-        return
-    for part in range(min(robots, largest), 0, -1):
-        # Equal parts as large as allowed keep the most links (convexity); smaller parts only keep fewer.
-        if links_within(robots, part) < links:
-            return
-        for rest in _partitions(robots - part, part, links - comb(part, 2)):
-            yield (part, *rest)
-
-
 def non_dominated_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> list[Sizes]:
-    """Feasible size vectors that no other feasible vector refines, in descending lexicographic order.
+    """Feasible size vectors that no other feasible vector refines, in descending lexicographic order."""
+    return list(iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c))
 
-    Merging two groups of a feasible vector never cuts more links, so a vector is dominated exactly
-    when splitting one of its groups in two is feasible.
+
+def iterate_non_dominated_sizes(n_robots: int, n_blinded: int, alpha_c: int) -> Iterator[Sizes]:
+    """Yield the same one by one, without going through the feasible vectors: there may be very many."""
+    if n_robots == n_blinded:
+        yield ()
+    for first in range(n_robots - n_blinded, 0, -1):
+        yield from sizes_of_largest(n_robots, n_blinded, alpha_c, first)
+
+
+def sizes_of_largest(n_robots: int, n_blinded: int, alpha_c: int, first: int) -> Iterator[Sizes]:
+    """Yield the non-dominated vectors whose largest group has ``first`` robots.
+
+    Merging two groups of a feasible vector never cuts more links, so a vector is dominated exactly when splitting one
+    of its groups in two is feasible. The split that keeps most links takes one robot off the smallest group
+    of at least two, ``q`` robots and those blinded that stand with it: it loses ``q - 1`` links. So the links kept
+    exceed those to keep by 0 to ``q - 2``, which leaves little to go through on the way down.
     """
-    return [
-        sizes
-        for sizes in feasible_sizes(n_robots, n_blinded, alpha_c)
-        if not any(cheapest_cut(n_blinded, finer) <= alpha_c for finer in _splits(sizes))
-    ]
+    survivors = n_robots - n_blinded
+    missing = comb(n_robots, 2) - alpha_c - comb(first + n_blinded, 2)
+    if missing > 0:
+        for rest in _tight(survivors - first, first, missing):
+            yield (first, *rest)
+    elif first == 1 or -missing < first + n_blinded - 1:
+        # The largest group keeps enough on its own, and could not be split: the others stand alone.
+        yield (first, *(1,) * (survivors - first))
 
 
-def _splits(sizes: Sizes) -> Iterator[Sizes]:
-    for k, size in enumerate(sizes):
-        if k and sizes[k - 1] == size:
+def _tight(robots: int, largest: int, missing: int) -> Iterator[Sizes]:
+    """Partitions of ``robots`` into parts up to ``largest`` that keep ``missing > 0`` links, and hardly more.
+
+    The excess must stay below ``q - 1`` for the smallest part ``q >= 2``.
+    """
+    for part in range(min(robots, largest), 1, -1):
+        # Equal parts as large as allowed keep the most links (convexity); smaller parts only keep fewer.
+        if links_within(robots, part) < missing:
+            return
+        left = missing - comb(part, 2)
+        if left <= 0:
+            # Whatever follows keeps more: the others stand alone.
+            if -left < part - 1:
+                yield (part, *(1,) * (robots - part))
             continue
-        for part in range(1, size // 2 + 1):
-            yield tuple(sorted((*sizes[:k], *sizes[k + 1 :], size - part, part), reverse=True))
+        for rest in _tight(robots - part, part, left):
+            yield (part, *rest)
 
 
 def forced_group_size(n_robots: int, n_blinded: int, alpha_c: int) -> int:

@@ -9,8 +9,6 @@ from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from ratt_opt.graph.communication import CommunicationGraph, Link
 
 __all__ = ["Threat"]
@@ -23,9 +21,7 @@ class Threat:
     Robots in ``protected_robots`` cannot be blinded and links in ``protected_links`` cannot
     be cut. Budgets may exceed what can be attacked (at most N robots and all links).
 
-    Raises
-    ------
-    InputError : a budget is out of range, or a protected robot or link does not exist.
+    Raises ``InputError`` : a budget is out of range, or a protected robot or link does not exist.
     """
 
     graph: CommunicationGraph
@@ -41,7 +37,10 @@ class Threat:
         set_field(self, "alpha_c", check_integer("alpha_c", self.alpha_c, low=0, high=len(links)))
         robots = (check_integer("protected robot", i, low=0, high=n_robots - 1) for i in self.protected_robots)
         set_field(self, "protected_robots", frozenset(robots))
-        set_field(self, "protected_links", _check_links(self.protected_links, self.graph))
+        ordered = frozenset((min(int(i), int(j)), max(int(i), int(j))) for i, j in self.protected_links)
+        for link in sorted(ordered - links):
+            raise InputError("protected link", "must be a link of the graph", link)
+        set_field(self, "protected_links", ordered)
 
     @property
     def n_blinded(self) -> int:
@@ -57,10 +56,3 @@ class Threat:
     def is_symmetric(self) -> bool:
         """Whether all robots and links are alike to the adversary (complete graph, nothing protected)."""
         return self.links_alike and not self.protected_robots
-
-
-def _check_links(links: Iterable[tuple[int, int]], graph: CommunicationGraph) -> frozenset[Link]:
-    ordered = frozenset((min(int(i), int(j)), max(int(i), int(j))) for i, j in links)
-    for link in sorted(ordered - graph.links):
-        raise InputError("protected link", "must be a link of the graph", link)
-    return ordered

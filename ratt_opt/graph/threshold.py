@@ -28,7 +28,6 @@ __all__ = ["LARGEST_COMPILED", "GroupSplit", "ThresholdTest", "fewest_blinded", 
 
 LARGEST_COMPILED = 20
 """Most robots for which the compiled form of this test tabulates all sets (2**20 sets, up to 1.7e9 pairs per test)."""
-
 UNREACHABLE = np.int16(10_000)
 """Links that no budget holds."""
 
@@ -73,15 +72,8 @@ class _Level:
 class ThresholdTest:
     """Decides for one plan whether an attack can push the team value to a threshold.
 
-    Parameters
-    ----------
-    threat : N robots, at most ``LARGEST_LATTICE``
-    values : (2**N,) value of every set of robots, by bit mask
-    largest_group : consider only attacks whose groups, blinded robots included, have at most so many robots
-
-    Raises
-    ------
-    InputError : too many robots.
+    ``threat`` : N robots, at most ``LARGEST_LATTICE``; ``values`` : (2**N,) value of every set of robots, by bit mask;
+    ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most so many robots
     """
 
     def __init__(self, threat: Threat, values: FloatArray, *, largest_group: int | None = None) -> None:

@@ -2,40 +2,72 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import partial
+from time import monotonic
+from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from ratt_opt._validation import readonly
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.bounds.guarantees import all_guarantees, inapplicable_guarantees
+from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import certify_if_possible
+from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
+from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
-from ratt_opt.main_job.steps import Steps
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic, random_plan
-from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
-from ratt_opt.solvers.nonrobust import nonrobust_search
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
+from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from ratt_opt.attackers.result import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["bound"]
+__all__ = ["Steps", "bound"]
+
+SECONDS_BETWEEN_LINES = 1.0
+"""A search tells where it stands at most so often: about as fast as a person reads a line."""
+
+
+@dataclass(slots=True)
+class Steps:
+    """``tell`` : called with one line of text, or ``None``; ``seconds`` : wall time of each step that has ended."""
+
+    tell: Callable[[str], None] | None
+    seconds: dict[str, float] = field(default_factory=dict)
+    _last_line: float = -SECONDS_BETWEEN_LINES
+
+    @contextmanager
+    def __call__(self, step: str) -> Iterator[None]:
+        """Tell that a step begins, and keep how long it takes."""
+        self._say(step)
+        began = monotonic()
+        yield
+        self.seconds[step] = monotonic() - began
+
+    def search_line(self, nodes: int, lower: float, upper: float) -> None:
+        """Tell where a search stands, unless that was told just now."""
+        if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
+            self._last_line = monotonic()
+            self._say(f"  {nodes} nodes: between {lower:.8g} and {upper:.8g}")
+
+    def _say(self, line: str) -> None:
+        if self.tell is not None:
+            self.tell(line)
+
+
+T = TypeVar("T")
 
 ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
@@ -68,6 +100,8 @@ def bound(
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
+    An interrupt (Ctrl-C) once RATT has planned ends every search; the report holds what is proved so far.
+
     Parameters
     ----------
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
@@ -80,27 +114,35 @@ def bound(
 
     Raises
     ------
-    InputError : an argument breaks its rule, or the certificate cannot be written.
+    InputError : an argument breaks its rule. A certificate that cannot be written is a reason in the report.
     ProofError : the verifier finds a fault in the search's own proof.
     """
     check_limits(gap, time_limit)
+    began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
     budget, steps = Budget(time_limit), Steps(progress)
     with steps("RATT and the baselines"):
         plan = ratt(problem)
         alpha_cs = plan.alpha_cs
         assert alpha_cs is not None  # RATT's own plan says what it took the link attacks to be worth
-        robust = assess(problem, "ratt", plan, budget.part(ATTACK_SHARE))
-        baselines = tuple(_baselines(problem, budget))
+        robust = _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+        baselines = _kept(budget, lambda: tuple(_baselines(problem, budget)))
     with steps("the best possible plan"):
-        part = budget.part(OPTIMUM_SHARE)
-        optimum = solve_maxmin(problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, budget=part)
-        best = _assess_optimum(problem, optimum, budget.part(ATTACK_SHARE))
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
+        optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
+        found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
+        known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
+        best = _kept(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
+    with steps("other attacks on the recommended plan"):
+        shown = recommended((robust, best, *baselines))
+        views = _kept(budget, lambda: views_of(problem, shown, budget.part(ATTACK_SHARE)))
     with steps("curvature and guarantees"):
-        k, c = _curvatures(problem, budget.part(CURVATURE_SHARE))
-        guarantees = _guarantees(problem, robust, alpha_cs, budget.part(CURVATURE_SHARE), k=k, c=c)
+        k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
+        part = budget.part(CURVATURE_SHARE)
+        guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
-        proof = certify_if_possible(problem, optimum, certificate)
+        interrupted = budget.stop() is Stop.INTERRUPTED
+        proof = INTERRUPTED if interrupted else certify_if_possible(problem, optimum, certificate)
     return BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -114,30 +156,21 @@ def bound(
         inapplicable=inapplicable_guarantees(problem, alpha_cs),
         certificate=proof,
         seconds=steps.seconds,
+        created=began.isoformat(timespec="seconds"),
+        source=None if isinstance(scenario_or_problem, Problem) else scenario_or_problem,
+        views=views,
+        seeds={"random": RANDOM_SEED},
+        interrupted=interrupted,
     )
 
 
-def assess(
-    problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
-) -> PlanAssessment:
-    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
-    elements = plan.elements
-    worst = known or worst_case_attack(problem, elements, budget=budget)
-    seeing, f = problem.best_group(elements, worst.attack), problem.objective
-    posterior = None
-    if isinstance(f, InformationObjective):
-        posterior = readonly(np.linalg.inv(f.posterior_information(elements[sorted(seeing)])))
-    return PlanAssessment(
-        name=name,
-        elements=elements,
-        controls=tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True)),
-        bait=plan.bait,
-        worst_case=worst,
-        evaluations=plan.evaluations,
-        groups=problem.communication.groups(worst.attack.links),
-        best_group=seeing,
-        posterior=posterior,
-    )
+def _kept(budget: Budget, step: Callable[[], T]) -> T:
+    """What a step returns; interrupted outside its own searches, what it can say at once."""
+    try:
+        return step()
+    except KeyboardInterrupt:
+        budget.interrupt()
+        return step()
 
 
 def _problem_of(given: HasProblem | Problem, objective: str | None) -> Problem:
@@ -161,11 +194,6 @@ def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
 
 
-def _assess_optimum(problem: Problem, optimum: MaxMinResult, budget: Budget) -> PlanAssessment:
-    plan = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-    return assess(problem, "maxmin", plan, budget, known=optimum.worst_case)
-
-
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
     """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
     f, owners = problem.objective, problem.robot
@@ -175,19 +203,18 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
         submodular = False
     else:
         return None, None
-    if submodular:
-        return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
-    return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+    try:
+        if submodular:
+            return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
+        return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+    except InputError:
+        if not isinstance(f, InformationObjective):
+            raise
+        return None, None  # non-decreasing by its formula, not in floating point: nothing can be said about ratios
 
 
 def _guarantees(
-    problem: Problem,
-    robust: PlanAssessment,
-    alpha_cs: int,
-    budget: Budget,
-    *,
-    k: Curvature | None,
-    c: Curvature | None,
+    problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
     found = all_guarantees(problem, alpha_cs, k=k, c=c)

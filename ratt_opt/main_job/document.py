@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from typing import TYPE_CHECKING, Any
+
+from ratt_opt._version import __version__
+from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.breaking_budgets import BreakingBudget
-    from ratt_opt.attackers.criticality import Criticality
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.criticality import BreakingBudget, Criticality
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job.result import BoundReport, PlanAssessment
@@ -20,15 +24,21 @@ __all__ = ["FORMAT", "VERSION", "attack_document", "plan_document", "report_docu
 
 FORMAT = "ratt-opt report"
 VERSION = 1
-"""Raised when a field changes its meaning or disappears; new fields alone do not raise it."""
+"""Raised when a field changes its meaning or disappears; new fields alone do not raise it. Readers accept every
+version up to their own, and take a field that an older file lacks as unknown."""
 
 
 def report_document(report: BoundReport) -> dict[str, Any]:
-    """Return what ``report.json`` holds: everything that the tables and figures show but the scenario itself."""
+    """Return what ``report.json`` holds: everything that the tables and figures show, and the input they are about."""
     problem, optimum = report.problem, report.optimum
     return {
         "format": FORMAT,
         "version": VERSION,
+        "software": f"ratt-opt {__version__}",
+        "created": report.created,
+        "seeds": dict(report.seeds),
+        "input": _input(report.source),
+        **_cast(report),
         "n_robots": problem.n_robots,
         "n_targets": report.n_targets,
         "n_links": len(problem.communication.links),
@@ -47,6 +57,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
             "stop": optimum.stop.value,
             **_shared(report, report.best),
         },
+        "interrupted": report.interrupted,
         "certificate": _certificate(report.certificate),
         "certified_ratio": _number(report.certified_ratio),
         "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
@@ -54,6 +65,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
         "inapplicable": dict(report.inapplicable),
         "guaranteed_share": report.guaranteed_share,
         "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
+        "views": {name: plan_document(view) for name, view in report.views.items()},
         "seconds": {name: _number(value) for name, value in report.seconds.items()},
         "curvature": _curvature(report.curvature),
         "total_curvature": _curvature(report.total_curvature),
@@ -73,7 +85,7 @@ def attack_document(
         "version": VERSION,
         "objective": objective,
         "elements": elements.tolist(),
-        "attacks": {name: _worst_case(result) for name, result in results.items()},
+        "attacks": {name: result.to_dict() for name, result in results.items()},
     }
     if critical:
         document["critical"] = [_critical(row) for row in critical]
@@ -104,7 +116,7 @@ def plan_document(plan: PlanAssessment) -> dict[str, Any]:
         "elements": plan.elements.tolist(),
         "controls": list(plan.controls),
         "bait": list(plan.bait),
-        "worst_case": _worst_case(plan.worst_case),
+        "worst_case": plan.worst_case.to_dict(),
         "evaluations": plan.evaluations,
         "groups": [sorted(group) for group in plan.groups],
         "best_group": sorted(plan.best_group),
@@ -117,13 +129,29 @@ def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
     return {**plan_document(plan), "share": _number(report.share(plan))}
 
 
-def _worst_case(result: AttackResult) -> dict[str, Any]:
+def _input(source: object) -> dict[str, Any] | None:
+    """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` where a problem was given."""
+    dump = getattr(source, "model_dump", None)
+    if dump is None:
+        return None
+    document = dump(mode="json")
+    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return {"sha256": hashlib.sha256(canonical.encode()).hexdigest(), "document": document}
+
+
+def _cast(report: BoundReport) -> dict[str, Any]:
+    """Who and what the indices stand for: robots, targets, elements, links."""
+    problem, known = report.problem, describe(report.problem, report.source)
     return {
-        "lower": _number(result.lower),
-        "upper": _number(result.upper),
-        "sensing": sorted(result.attack.sensing),
-        "links": [list(link) for link in sorted(result.attack.links)],
-        "stop": result.stop.value,
+        "robot_names": list(known.robot_names),
+        "target_names": None if known.target_names is None else list(known.target_names),
+        "weights": None if known.weights is None else known.weights.tolist(),
+        "owners": problem.robot.tolist(),
+        "labels": None if known.labels is None else list(known.labels),
+        "control_values": None if known.controls is None else known.controls.tolist(),
+        "links": [list(link) for link in sorted(problem.communication.links)],
+        "protected_robots": sorted(problem.protected_robots),
+        "protected_links": [list(link) for link in sorted(problem.protected_links)],
     }
 
 
@@ -148,7 +176,8 @@ def _certificate(given: Certification) -> dict[str, Any]:
 def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:
     if bracket is None:
         return None
-    return {"lower": _number(bracket.lower), "upper": _number(bracket.upper), "domain": bracket.domain}
+    ends = {"lower": _number(bracket.lower), "upper": _number(bracket.upper)}
+    return {**ends, "domain": bracket.domain, "stop": bracket.stop.value}
 
 
 def _number(value: float) -> float | None:

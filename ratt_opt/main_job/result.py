@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.main_job.document import plan_document, report_document
+from ratt_opt.report.figure import plan_figure
+from ratt_opt.report.notebook import plan_view, report_view
+from ratt_opt.report.picture import picture_of
+from ratt_opt.report.write import write_report
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
@@ -46,6 +53,9 @@ class PlanAssessment:
         """The plan as plain data, as ``report.json`` has it."""
         return plan_document(self)
 
+    def _repr_html_(self) -> str:
+        return plan_view(self)
+
     def __repr__(self) -> str:
         return f"PlanAssessment({self.name}, keeps {self.worst_case.lower:.8g} to {self.worst_case.upper:.8g})"
 
@@ -68,9 +78,14 @@ class BoundReport:
     ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
     ``inapplicable`` : the guarantees that do not apply here, and why.
     ``certificate`` : the verified proof file of ``optimum``, or why there is none.
-    ``seconds`` : wall time of each step.
+    ``seconds`` : wall time of each step; ``created`` : when the call began (UTC, ISO 8601).
+    ``source`` : the scenario or model-free input that was given, ``None`` for a problem.
+    ``views`` : the recommended plan under other attacks too, for maps: its ``worst`` case; the worst found that spares
+    one of the robots or links which that attacks (``next worst``, where the worst attacks anything); and ``none``.
+    ``seeds`` : of everything drawn at random.
+    ``interrupted`` : the user ended the searches; the brackets hold all the same.
 
-    Two reports are equal when they say the same, whatever time it took.
+    Two reports are equal when they say the same, whenever that was and whatever time it took.
     """
 
     problem: Problem
@@ -85,6 +100,11 @@ class BoundReport:
     inapplicable: Mapping[str, str]
     certificate: Certification
     seconds: Mapping[str, float]
+    created: str = ""
+    source: object = None
+    views: Mapping[str, PlanAssessment] = field(default_factory=dict)
+    seeds: Mapping[str, int] = field(default_factory=dict)
+    interrupted: bool = False
 
     @property
     def objective(self) -> str:
@@ -140,6 +160,25 @@ class BoundReport:
         """The report as plain data, which is what ``report.json`` holds: unknown numbers are ``None``."""
         return report_document(self)
 
+    def save(self, directory: str | Path) -> list[Path]:
+        """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
+
+        ``report.json`` (all of it), ``report.html`` (to read), ``plan.csv`` (to execute), ``plan.png``, ``plan.svg``,
+        and a copy of the certificate where there is one.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        return write_report(self, directory)
+
+    def plot(self) -> Figure:
+        """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""
+        return plan_figure(self, picture_of(self.source, self))
+
+    def _repr_html_(self) -> str:
+        return report_view(self)
+
     def __repr__(self) -> str:
         best = f"the best plan keeps {self.optimum.lower:.8g} to {self.upper:.8g}"
         return f"BoundReport({self.objective}, {self.problem.n_robots} robots, {best}, {self.recommended!r})"
@@ -147,6 +186,7 @@ class BoundReport:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, BoundReport):
             return NotImplemented
-        return self.to_dict() | {"seconds": None} == other.to_dict() | {"seconds": None}
+        apart = {"seconds": None, "created": None}
+        return self.to_dict() | apart == other.to_dict() | apart
 
     __hash__ = None  # type: ignore[assignment]  # equal reports may hold different, unhashable mappings

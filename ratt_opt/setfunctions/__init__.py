@@ -1,7 +1,7 @@
 """What a set function is worth at any set, and which properties it has, each violation with its witness.
 
 Open ``base.py`` first (the interface of every set function), then ``information.py`` and ``criteria/`` (the criteria
-of posterior information). ``table.py`` and ``reference.py`` are the other functions, ``zoo.py`` draws those with known
-answers. ``properties.py`` finds violations, by whole tables (``lattice.py``) or by ``sampling.py``; ``minorants.py``
-holds the records in which a criterion bounds marginals.
+of posterior information; ``criterion_parts.py`` is what one may state of itself). ``reference.py`` has textbook
+functions, ``zoo.py`` draws those with known answers. ``properties.py`` finds violations, by whole tables
+(``lattice.py``) or by ``sampling.py``.
 """

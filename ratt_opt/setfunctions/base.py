@@ -1,4 +1,4 @@
-"""The interface of every set function."""
+"""The interface of every set function, and the function that is given by all its values."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_subset
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, check_subset
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["SetFunction", "check_table_size", "finite_values"]
+    from numpy.typing import ArrayLike
+
+__all__ = ["SetFunction", "SizedFunction", "TableFunction", "check_table_size", "finite_values"]
 
 LARGEST_TABLE = 26
 """Largest ground set that :meth:`SetFunction.table` accepts (512 MiB of float64)."""
@@ -56,18 +58,14 @@ class SetFunction(ABC):
     def n(self) -> int:
         """Size of the ground set."""
 
+    @property
+    def rounding(self) -> float:
+        """Values that differ by no more may be equal but for rounding; 0 where nothing is known of that."""
+        return 0.0
+
     @abstractmethod
     def evaluate(self, membership: BoolArray) -> FloatArray:
-        """Values of many subsets at once.
-
-        Parameters
-        ----------
-        membership : (K, n) True where the element belongs to the subset
-
-        Returns
-        -------
-        (K,) values
-        """
+        """(K,) values of many subsets; ``membership`` (K, n) is True where the element belongs to the subset."""
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(n={self.n})"
@@ -81,10 +79,8 @@ class SetFunction(ABC):
                 object.__setattr__(self, name, value)
 
     def __call__(self, subset: Iterable[int]) -> float:
-        """Value of the subset with the given element indices (in any order, each once).
+        """Value of the subset with the given element indices, in any order.
 
-        Raises
-        ------
         InputError : an index is outside ``[0, n)`` or given twice.
         """
         membership = np.zeros((1, self.n), dtype=np.bool_)
@@ -92,16 +88,9 @@ class SetFunction(ABC):
         return float(self.evaluate(membership)[0])
 
     def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
-        """Values ``f(base + {e})`` for each candidate ``e``.
+        """(C,) values ``f(base + {e})`` for each candidate ``e``.
 
-        Parameters
-        ----------
-        base : (B,) distinct element indices (not checked)
-        candidates : (C,) element indices outside ``base`` (not checked)
-
-        Returns
-        -------
-        (C,) values
+        ``base`` : (B,) distinct element indices; ``candidates`` : (C,) others, outside ``base``. Neither is checked.
         """
         membership = np.zeros((len(candidates), self.n), dtype=np.bool_)
         membership[:, base] = True
@@ -115,8 +104,6 @@ class SetFunction(ABC):
     def table(self) -> FloatArray:
         """(2**n,) values of all subsets; the subset of index ``mask`` holds the elements whose bit is set.
 
-        Raises
-        ------
         InputError : the table cannot fit in memory (the text says how much it would need).
         """
         check_table_size(self.n)
@@ -127,3 +114,41 @@ class SetFunction(ABC):
             masks = np.arange(start, start + chunk)
             values[start : start + chunk] = self.evaluate((masks[:, None] >> bits & 1).astype(np.bool_))
         return values
+
+
+class SizedFunction(SetFunction):
+    """A set function whose data say how large its ground set is."""
+
+    __slots__ = ("_n",)
+
+    _n: int
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return self._n
+
+
+class TableFunction(SizedFunction):
+    """The set function with ``values[mask]`` at the subset whose elements are the set bits of ``mask``.
+
+    ``values`` : (2**n,). InputError : the length is not a power of two, or a value is not finite.
+    """
+
+    __slots__ = ("values",)
+
+    def __init__(self, values: ArrayLike) -> None:
+        self.values: FloatArray = check_finite("values", values, ndim=1)
+        length = len(self.values)
+        if length == 0 or length & (length - 1):
+            raise InputError("values", "must have a power of two as length", length)
+        self._n = length.bit_length() - 1
+        check_table_size(self._n)
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        return self.values[membership @ (1 << np.arange(self._n, dtype=np.int64))]
+
+    def table(self) -> FloatArray:
+        """(2**n,) the values themselves, read-only."""
+        return self.values

@@ -11,21 +11,22 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.minorants import SeparableMinorant
-from ratt_opt.setfunctions.proof_parts import ProofParts, lacking
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import SetFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
-    from ratt_opt.setfunctions.minorants import Choices
+    from ratt_opt.setfunctions.criteria.maxeig import PlanarLevels
 
-__all__ = ["CriterionParts", "Tangent"]
+__all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent"]
 
 ROUNDING = 1e-12
 """Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
+VALUE_ROUNDING = 1e-14
+"""Error of a value in the same sense: some dozens of units in the last place cover sums over a few hundred targets."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,28 +37,70 @@ class Tangent:
     offset: float
 
 
-OPTIONAL_PARTS = (
-    "combine",
-    "compiled_code",
-    "conic_value",
-    "cut_values",
-    "fenchel_point",
-    "is_submodular",
-    "is_worst_axis",
-    "marginal_ends",
-    "marginal_minorant",
-    "name",
-    "planar_criterion",
-    "planar_gradient",
-    "planar_levels",
-    "prior_criterion",
-    "prior_eigenvalue",
-    "tangent",
-    "tangent_targets",
-    "unit",
-    "verifier_averages",
-)
-"""Parts that hold for a criterion's own formula only: a subclass with another formula does not inherit them."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Choices:
+    """The elements of the owners other than ``x``'s: K elements of R owners about M targets, d by d.
+
+    ``elements`` : (K,); ``owners`` : (K,) position of the owner; ``first`` : (R,) where each owner's elements begin.
+    ``inverse`` : (K, M, d, d) of their ``information``, zero where it is not ``regular`` (K, M).
+    """
+
+    elements: IntArray
+    owners: IntArray
+    first: IntArray
+    information: FloatArray
+    inverse: FloatArray
+    regular: BoolArray
+
+    def mixed(self, share: FloatArray) -> FloatArray:
+        """(M, d, d) information of a relaxed context: ``share`` (K,) sums to at most 1 over each owner's elements."""
+        return np.asarray(np.tensordot(share, self.information, axes=1))
+
+    def scores(self, slope: FloatArray) -> FloatArray:
+        """(K,) inner products of each element's information with a slope (M, d, d)."""
+        return np.asarray(self.information.reshape(len(self.information), -1) @ slope.ravel())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeparableMinorant:
+    """A lower bound ``constant - sum of scores`` on one element's marginal over every context.
+
+    One score for each choice of each other owner, ``score`` (K,) of its elements or ``absent`` (R,) of none of them: it
+    is smallest owner by owner, whatever the joint choice.
+    """
+
+    constant: float
+    score: FloatArray
+    absent: FloatArray
+
+
+def lacking(criterion: object, part: str, what: str) -> InputError:
+    """The refusal of a criterion that leaves a part out which is asked for."""
+    return InputError("objective", f"must define {part}, the {what}", type(criterion).__name__)
+
+
+class ProofParts(SetFunction):
+    """Parts that the library's own criteria have; another may, where it is to be relaxed or certified."""
+
+    __slots__ = ()
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:  # noqa: ARG002
+        """The value as a concave cvxpy expression of each target's information: M expressions of shape (d, d)."""
+        raise lacking(self, "conic_value(posterior)", "value as a concave cvxpy expression")
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002
+        """What a certificate states of the tangent at ``point`` (M, d, d): the verifier derives its bound from it."""
+        raise lacking(self, "fenchel_point(point, target)", "tangent as the verifier knows it")
+
+    @property
+    def prior_eigenvalue(self) -> float | None:
+        """An irrational number of the prior that a certificate states as a narrow range, where it needs one."""
+        return None
+
+    @property
+    def verifier_averages(self) -> bool:
+        """Whether the verifier bounds values, and so averages of them; else it compares each with a level."""
+        return True
 
 
 class CriterionParts(ProofParts):
@@ -75,16 +118,13 @@ class CriterionParts(ProofParts):
     name: ClassVar[str] = ""
     """What files, tables and the command line call it; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
-    is_worst_axis: ClassVar[bool] = False
-    """Whether the team's criterion is ``max_j w_j v' Lambda_j^{-1} v`` over targets and unit vectors ``v``: one axis of
-    one target decides. Otherwise it is a sum over targets."""
     compiled_code: ClassVar[int | None] = None
     """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         if {"criterion", "value", "gradient"} & set(vars(cls)):
-            for part in set(OPTIONAL_PARTS) - set(vars(cls)):
+            for part in OPTIONAL_PARTS - set(vars(cls)):
                 setattr(cls, part, getattr(CriterionParts, part))
 
     @classmethod
@@ -118,8 +158,7 @@ class CriterionParts(ProofParts):
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
         """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
-        rows = np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
-        return self.criterion(rows)
+        return self.criterion(np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2))
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
         """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
@@ -149,6 +188,11 @@ class CriterionParts(ProofParts):
         """Sum of the targets' absolute criteria before any measurement: values are differences from it."""
         return float(np.abs(self._baseline).sum())
 
+    @property
+    def rounding(self) -> float:
+        """Values are differences of sums of a few hundred numbers from :attr:`prior_magnitude`."""
+        return VALUE_ROUNDING * self.prior_magnitude
+
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """(n,) proved lower bounds on the smallest and upper bounds on the largest marginals of the elements.
 
@@ -166,12 +210,7 @@ class CriterionParts(ProofParts):
         floor = above - below - ROUNDING * (np.abs(above) + np.abs(below)) - 2 * slack
         return np.maximum(floor, 0.0), self.singletons() * (1 + 10 * ROUNDING)
 
-    def marginal_minorant(
-        self,
-        added: FloatArray,  # noqa: ARG002
-        others: Choices,
-        share: FloatArray,  # noqa: ARG002
-    ) -> SeparableMinorant:
+    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:  # noqa: ARG002
         """Bound the marginal of information ``added`` (M, d, d) over all contexts, best at a relaxed one.
 
         Valid for any ``share`` (K,), which sums to at most 1 over each owner's elements. By default 0: none is less.
@@ -181,3 +220,8 @@ class CriterionParts(ProofParts):
     def planar_levels(self) -> PlanarLevels | None:
         """The data as levels, where the value is one over their smallest (max-eigenvalue, at most two coordinates)."""
         return None
+
+
+_PUBLIC = (name for owner in (ProofParts, CriterionParts) for name in vars(owner) if not name.startswith("_"))
+OPTIONAL_PARTS = {"is_submodular", *_PUBLIC} - {"criterion", "gradient", "value", "states", "prior_magnitude"}
+"""Parts that hold for a criterion's own formula only: a subclass with another formula does not inherit them."""

@@ -8,19 +8,22 @@ is normalised, non-decreasing in ``S`` and concave in ``Lambda``; each has a fil
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from ratt_opt._validation import BoolArray, FloatArray, IntArray, readonly
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
+from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import check_table_size
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
-from ratt_opt.setfunctions.matrix_input import check_information, check_prior, check_weights
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["InformationObjective"]
+__all__ = ["InformationObjective", "packed", "symmetric_inverse"]
+
+SYMMETRY_TOLERANCE = 1e-9
+"""Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
 
 
 class InformationObjective(CriterionParts):
@@ -50,16 +53,13 @@ class InformationObjective(CriterionParts):
     """Added information is positive semidefinite, up to the rounding that the input rule admits."""
 
     def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
-        checked = check_prior(prior)
-        targets, dimension, _ = checked.shape
-        self.prior: FloatArray = readonly(checked)
-        self.information: FloatArray = readonly(check_information(information, targets, dimension))
-        self.weights: FloatArray = readonly(check_weights(weights, targets))
-        inverse = np.linalg.inv(checked)
-        self.prior_information: FloatArray = readonly((inverse + np.swapaxes(inverse, -1, -2)) / 2)
+        self.prior: FloatArray = readonly(_check_prior(prior))
+        self.information: FloatArray = readonly(_check_information(information, self.n_targets, self.dimension))
+        self.weights: FloatArray = readonly(_check_weights(weights, self.n_targets))
+        self.prior_information: FloatArray = readonly(symmetric_inverse(self.prior))
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
         states_value_alone = self.states("value") and not self.states("criterion")
-        baseline = np.zeros(targets) if states_value_alone else self.criterion(self.prior_information)
+        baseline = np.zeros(self.n_targets) if states_value_alone else self.criterion(self.prior_information)
         self._baseline: FloatArray = readonly(baseline)
 
     def __repr__(self) -> str:
@@ -87,14 +87,9 @@ class InformationObjective(CriterionParts):
         return restricted
 
     def with_information(self, information: ArrayLike) -> Self:
-        """The same criterion of other elements: (E, M, d, d), checked.
-
-        Raises
-        ------
-        InputError : as for a criterion made anew.
-        """
+        """The same criterion of other elements: (E, M, d, d), checked."""
         other = copy(self)
-        other.information = readonly(check_information(information, self.n_targets, self.dimension))
+        other.information = readonly(_check_information(information, self.n_targets, self.dimension))
         return other
 
     def posterior_information(self, subset: IntArray) -> FloatArray:
@@ -104,16 +99,14 @@ class InformationObjective(CriterionParts):
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
-        flat = self.information.reshape(self.n, -1)
-        shape = (len(membership), *self.prior.shape)
         if len(membership) == 1:
             return self.value(self.posterior_information(np.flatnonzero(membership[0]))[None])
         # Elements are added one by one so that every batch size rounds alike.
+        flat = self.information.reshape(self.n, self.prior.size)
         total = np.broadcast_to(self.prior_information.reshape(1, -1), (len(membership), flat.shape[1])).copy()
         for e in np.flatnonzero(membership.any(axis=0)):
-            rows = membership[:, e]
-            total[rows] += flat[e]
-        return self.value(total.reshape(shape))
+            total[membership[:, e]] += flat[e]
+        return self.value(total.reshape(len(membership), *self.prior.shape))
 
     def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
         """(C,) values ``f(base + {e})`` for each candidate ``e`` outside ``base``."""
@@ -139,3 +132,71 @@ class InformationObjective(CriterionParts):
         for i, step in enumerate(steps):
             sums[1 << i : 2 << i] = sums[: 1 << i] + step
         return sums
+
+
+def symmetric_inverse(matrices: FloatArray) -> FloatArray:
+    """Inverses, symmetric to the last digit."""
+    inverse = np.linalg.inv(matrices)
+    return np.asarray((inverse + np.swapaxes(inverse, -1, -2)) / 2)
+
+
+def packed(matrices: FloatArray) -> list[Any]:
+    """Lower triangles by rows, the form in certificates: (..., d, d) -> nested lists (..., d (d + 1) / 2)."""
+    rows, columns = np.tril_indices(matrices.shape[-1])
+    triangles: list[Any] = matrices[..., rows, columns].tolist()
+    return triangles
+
+
+def _check_symmetric(argument: str, matrices: FloatArray) -> FloatArray:
+    """Return the symmetric part of matrices that are symmetric up to rounding."""
+    transposed = np.swapaxes(matrices, -1, -2)
+    defect = np.abs(matrices - transposed).max(axis=(-1, -2))
+    bad = np.argwhere(defect > SYMMETRY_TOLERANCE * np.abs(matrices).max(axis=(-1, -2)))
+    if len(bad):
+        where = tuple(bad[0].tolist())
+        raise InputError(f"{argument}[{', '.join(map(str, where))}]", "must be symmetric", matrices[where].tolist())
+    return (matrices + transposed) / 2
+
+
+def _check_prior(value: ArrayLike) -> FloatArray:
+    """Return (M, d, d) symmetric positive definite matrices."""
+    prior = check_finite("prior", value, ndim=3)
+    if prior.shape[0] < 1:
+        raise InputError("prior", "must hold at least one target", f"shape {prior.shape}")
+    if prior.shape[1] != prior.shape[2] or prior.shape[1] < 1:
+        raise InputError("prior", "must have shape (M, d, d)", f"shape {prior.shape}")
+    prior = _check_symmetric("prior", prior)
+    for j, eigenvalues in enumerate(np.linalg.eigvalsh(prior)):
+        if eigenvalues[0] <= np.finfo(np.float64).eps * abs(eigenvalues[-1]):
+            raise InputError(f"prior[{j}]", "must be positive definite", f"smallest eigenvalue {eigenvalues[0]:.6g}")
+    return prior
+
+
+def _check_information(value: ArrayLike, targets: int, dimension: int) -> FloatArray:
+    """Return (E, M, d, d) matrices, symmetric positive semidefinite up to rounding."""
+    information = check_finite("information", value, ndim=4)
+    if information.shape[0] < 1:
+        raise InputError("information", "must hold at least one element", f"shape {information.shape}")
+    if information.shape[1:] != (targets, dimension, dimension):
+        rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
+        raise InputError("information", rule, f"shape {information.shape}")
+    information = _check_symmetric("information", information)
+    eigenvalues = np.linalg.eigvalsh(information)
+    bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
+    if len(bad):
+        e, j = bad[0].tolist()
+        shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
+        raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
+    return information
+
+
+def _check_weights(value: ArrayLike | None, targets: int) -> FloatArray:
+    """Return (M,) positive numbers; ones by default."""
+    if value is None:
+        return np.ones(targets)
+    weights = check_finite("weights", value, ndim=1)
+    if weights.shape != (targets,):
+        raise InputError("weights", f"must have shape ({targets},) to match prior", f"shape {weights.shape}")
+    if (weights <= 0).any():
+        raise InputError("weights", "must be positive", float(weights.min()))
+    return weights

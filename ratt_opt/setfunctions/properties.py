@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.setfunctions.base import finite_values
-from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample
+from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -27,6 +27,7 @@ __all__ = [
     "find_normalisation_violation",
     "find_subadditivity_violation",
     "find_submodularity_violation",
+    "mask_without",
 ]
 
 LARGEST_EXACT = 24
@@ -51,10 +52,7 @@ def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> V
 def find_negativity(
     f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
 ) -> Violation | NotFound | None:
-    """Return the set with the most negative value, if one is negative.
-
-    Parameters are those of :func:`find_monotonicity_violation`.
-    """
+    """Return the set with the most negative value, if any; parameters as in :func:`find_monotonicity_violation`."""
     tolerance = check_number("tolerance", tolerance, low=0)
     if f.n > LARGEST_EXACT:
         return sample(f, "non-negative", tolerance, trials=trials, seed=seed)
@@ -67,14 +65,10 @@ def find_monotonicity_violation(
 ) -> Violation | NotFound | None:
     """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
 
-    Parameters
-    ----------
-    tolerance : how negative counts, relative to the largest absolute value of the function
-    trials, seed : of the sampled search, where the ground set has more than 24 elements
+    ``tolerance`` : how negative counts, relative to the largest absolute value of the function
+    ``trials``, ``seed`` : of the sampled search, where the ground set has more than 24 elements
 
-    Returns
-    -------
-    The witness; ``None`` where there is none, by a look at every set (up to 24 elements) or by theory
+    Returns the witness; ``None`` where there is none, by a look at every set (up to 24 elements) or by theory
     (information criteria: added information is positive semidefinite, up to the rounding their input rule admits);
     otherwise :class:`NotFound`, which is false and proves nothing.
 
@@ -83,9 +77,7 @@ def find_monotonicity_violation(
     rule = "non-decreasing"
     tolerance = check_number("tolerance", tolerance, low=0)
     if f.n > LARGEST_EXACT:
-        if f.is_non_decreasing:
-            return None
-        return sample(f, rule, tolerance, trials=trials, seed=seed)
+        return None if f.is_non_decreasing else sample(f, rule, tolerance, trials=trials, seed=seed)
     from ratt_opt.setfunctions.lattice import marginal_ends
 
     values = finite_values(f.table())
@@ -93,7 +85,7 @@ def find_monotonicity_violation(
         return None
     x = int(marginal_ends(values, f.n)[0].argmin())
     sets = values.reshape(-1, 2, 1 << x)
-    base = _mask_without(int((sets[:, 1] - sets[:, 0]).argmin()), x)
+    base = mask_without(int((sets[:, 1] - sets[:, 0]).argmin()), x)
     return _witness(f, rule, (base, 1 << x), values, tolerance)
 
 
@@ -170,11 +162,11 @@ def _worst_pair(values: FloatArray, i: int, j: int, rule: str) -> tuple[int, int
     v = values.reshape(-1, 2, 1 << (j - i - 1), 2, 1 << i)
     slack = (v[:, 0, :, 1] - v[:, 0, :, 0]) - (v[:, 1, :, 1] - v[:, 1, :, 0])
     where = int((-np.abs(slack) if rule == "modular" else slack).argmin())
-    base = _mask_without(_mask_without(where, i), j)
+    base = mask_without(mask_without(where, i), j)
     return base | 1 << i, base | 1 << j
 
 
-def _mask_without(position: int, bit: int) -> int:
+def mask_without(position: int, bit: int) -> int:
     """The ``position``-th mask among those without one bit."""
     low = position & ((1 << bit) - 1)
     return (position ^ low) << 1 | low
@@ -184,16 +176,10 @@ def _witness(
     f: SetFunction, rule: str, masks: tuple[int, int], values: FloatArray, tolerance: float
 ) -> Violation | None:
     """Return the pair of sets as a violation, its slack recomputed from the table."""
-    a, b = masks
-    slack = {
-        "non-negative": lambda: values[a],
-        "non-decreasing": lambda: values[a | b] - values[a],
-        "subadditive": lambda: values[a] + values[b] - values[a | b],
-        "submodular": lambda: values[a] + values[b] - values[a | b] - values[a & b],
-        "modular": lambda: -abs(values[a] + values[b] - values[a | b] - values[a & b]),
-    }[rule]()
+    first, second = (np.array([mask]) for mask in masks)
+    slack = float(slack_of(values.take, rule, first, second)[0])
     limit = tolerance * max(float(values.max()), -float(values.min()))
     if slack >= -limit:
         return None
     members = [tuple(e for e in range(f.n) if mask >> e & 1) for mask in masks]
-    return Violation(rule=rule, a=members[0], b=members[1], slack=float(slack), tolerance=limit)
+    return Violation(rule=rule, a=members[0], b=members[1], slack=slack, tolerance=limit)

@@ -1,7 +1,4 @@
-"""Set functions of textbook families: their properties and curvatures are known from theory.
-
-A family is a class with its data as attributes; :mod:`ratt_opt.setfunctions.zoo` states what is known of each.
-"""
+"""Set functions of textbook families, a class each; ``zoo.py`` states the properties that theory knows of them."""
 
 from __future__ import annotations
 
@@ -11,105 +8,68 @@ import numpy as np
 
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, check_integer, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt.setfunctions.base import SizedFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
-__all__ = [
-    "ConcaveOfModular",
-    "Coverage",
-    "Cut",
-    "FacilityLocation",
-    "Modular",
-    "PartitionMatroidRank",
-    "nonnegative",
-]
+__all__ = ["ConcaveOfModular", "Coverage", "Cut", "FacilityLocation", "Modular", "PartitionMatroidRank"]
 
 
-def nonnegative(argument: str, value: ArrayLike, ndim: int) -> FloatArray:
-    """Return a read-only array of finite numbers that are at least 0."""
+def _nonnegative(argument: str, value: ArrayLike, ndim: int) -> FloatArray:
     array = check_finite(argument, value, ndim=ndim)
     if (array < 0).any():
         raise InputError(argument, "must not be negative", float(array.min()))
     return array
 
 
-class Modular(SetFunction):
-    """``f(S) = sum of weights[e]``.
-
-    Parameters
-    ----------
-    weights : (n,) finite numbers of any sign
-
-    Raises
-    ------
-    InputError : a weight is not finite.
-    """
+class Modular(SizedFunction):
+    """``f(S) = sum of weights[e]``, ``weights`` (n,) of any sign; InputError : one is not finite."""
 
     __slots__ = ("weights",)
 
     def __init__(self, weights: ArrayLike) -> None:
         self.weights: FloatArray = check_finite("weights", weights, ndim=1)
-
-    @property
-    def n(self) -> int:
-        """Size of the ground set."""
-        return len(self.weights)
+        self._n = len(self.weights)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
         return membership @ self.weights
 
 
-class Coverage(SetFunction):
+class Coverage(SizedFunction):
     """``f(S) =`` total weight of the items that some element of ``S`` covers.
 
-    Parameters
-    ----------
-    covers : (n, items) truth values; item_weights : (items,) non-negative
-
-    Raises
-    ------
-    InputError : a shape or sign rule is broken.
+    ``covers`` : (n, items) truth values; ``item_weights`` : (items,) non-negative. InputError : it is not so.
     """
 
     __slots__ = ("covers", "item_weights")
 
     def __init__(self, covers: ArrayLike, item_weights: ArrayLike) -> None:
         self.covers: BoolArray = readonly(np.asarray(covers, dtype=np.bool_))
-        self.item_weights: FloatArray = nonnegative("item_weights", item_weights, 1)
+        self.item_weights: FloatArray = _nonnegative("item_weights", item_weights, 1)
         if self.covers.ndim != 2 or self.covers.shape[1] != len(self.item_weights):
             raise InputError("covers", f"must have shape (n, {len(self.item_weights)})", f"shape {self.covers.shape}")
-
-    @property
-    def n(self) -> int:
-        """Size of the ground set."""
-        return len(self.covers)
+        self._n = len(self.covers)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
         return ((membership.astype(np.float64) @ self.covers) > 0) @ self.item_weights
 
 
-class PartitionMatroidRank(SetFunction):
+class PartitionMatroidRank(SizedFunction):
     """Weighted rank: the heaviest part of ``S`` with at most ``capacity[b]`` elements of each block ``b``.
 
-    Parameters
-    ----------
-    weights : (n,) non-negative; block : (n,) block of each element; capacity : (blocks,) at least 0
-
-    Raises
-    ------
-    InputError : a shape, sign or range rule is broken.
+    ``weights`` : (n,) non-negative; ``block`` : (n,) of each element; ``capacity`` : (blocks,) at least 0.
+    InputError : it is not so.
     """
 
     __slots__ = ("_order", "block", "capacity", "weights")
 
     def __init__(self, weights: ArrayLike, block: ArrayLike, capacity: ArrayLike) -> None:
-        self.weights: FloatArray = nonnegative("weights", weights, 1)
+        self.weights: FloatArray = _nonnegative("weights", weights, 1)
         self.capacity: IntArray = readonly(np.asarray(capacity, dtype=np.int64))
         self.block: IntArray = readonly(np.asarray(block, dtype=np.int64))
         if self.block.shape != self.weights.shape:
@@ -118,12 +78,7 @@ class PartitionMatroidRank(SetFunction):
             check_integer("block", b, low=0, high=len(self.capacity) - 1)
         if (self.capacity < 0).any():
             raise InputError("capacity", "must not be negative", int(self.capacity.min()))
-        self._order = np.argsort(-self.weights, kind="stable")
-
-    @property
-    def n(self) -> int:
-        """Size of the ground set."""
-        return len(self.weights)
+        self._n, self._order = len(self.weights), np.argsort(-self.weights, kind="stable")
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values: the greedy algorithm, heaviest first, which is exact for a matroid."""
@@ -136,27 +91,17 @@ class PartitionMatroidRank(SetFunction):
         return value
 
 
-class FacilityLocation(SetFunction):
+class FacilityLocation(SizedFunction):
     """``f(S) = sum over customers of the best utility any element of S has for it`` (0 without one).
 
-    Parameters
-    ----------
-    utility : (n, customers) non-negative
-
-    Raises
-    ------
-    InputError : an entry is negative or not finite.
+    ``utility`` : (n, customers) non-negative. InputError : an entry is negative or not finite.
     """
 
     __slots__ = ("utility",)
 
     def __init__(self, utility: ArrayLike) -> None:
-        self.utility: FloatArray = nonnegative("utility", utility, 2)
-
-    @property
-    def n(self) -> int:
-        """Size of the ground set."""
-        return len(self.utility)
+        self.utility: FloatArray = _nonnegative("utility", utility, 2)
+        self._n = len(self.utility)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
@@ -167,31 +112,21 @@ class FacilityLocation(SetFunction):
         return np.asarray(best.sum(axis=1))
 
 
-class Cut(SetFunction):
+class Cut(SizedFunction):
     """``f(S) =`` weight of the edges between ``S`` and the rest: submodular, symmetric, not monotone.
 
-    Parameters
-    ----------
-    weights : (n, n) symmetric, non-negative; the diagonal does not count
-
-    Raises
-    ------
-    InputError : not square, not symmetric, or negative.
+    ``weights`` : (n, n), the diagonal does not count. InputError : not square, not symmetric, or negative.
     """
 
     __slots__ = ("weights",)
 
     def __init__(self, weights: ArrayLike) -> None:
-        self.weights: FloatArray = nonnegative("weights", weights, 2)
+        self.weights: FloatArray = _nonnegative("weights", weights, 2)
         if self.weights.shape[0] != self.weights.shape[1]:
             raise InputError("weights", "must be square", f"shape {self.weights.shape}")
         if (self.weights != self.weights.T).any():
             raise InputError("weights", "must be symmetric", "an asymmetric matrix")
-
-    @property
-    def n(self) -> int:
-        """Size of the ground set."""
-        return len(self.weights)
+        self._n = len(self.weights)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
@@ -199,30 +134,18 @@ class Cut(SetFunction):
         return np.asarray(((inside @ self.weights) * (1 - inside)).sum(axis=1))
 
 
-class ConcaveOfModular(SetFunction):
+class ConcaveOfModular(SizedFunction):
     """``f(S) = shape(total weight of S) - shape(0)`` for a concave ``shape``: submodular.
 
-    Nothing checks that ``shape`` is concave: with a convex one the function is supermodular.
-
-    Parameters
-    ----------
-    weights : (n,) non-negative; shape : maps (K,) totals to (K,) values
-
-    Raises
-    ------
-    InputError : a weight is negative or not finite.
+    Nothing checks that ``shape`` (maps (K,) totals to (K,) values) is concave: with a convex one the function is
+    supermodular. ``weights`` : (n,). InputError : one is negative or not finite.
     """
 
     __slots__ = ("shape", "weights")
 
     def __init__(self, weights: ArrayLike, shape: Callable[[FloatArray], FloatArray] = np.sqrt) -> None:
-        self.weights: FloatArray = nonnegative("weights", weights, 1)
-        self.shape = shape
-
-    @property
-    def n(self) -> int:
-        """Size of the ground set."""
-        return len(self.weights)
+        self.weights: FloatArray = _nonnegative("weights", weights, 1)
+        self.shape, self._n = shape, len(self.weights)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""

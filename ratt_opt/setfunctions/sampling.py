@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -11,10 +11,14 @@ from ratt_opt._validation import check_integer
 from ratt_opt.setfunctions.base import finite_values
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, FloatArray
+    from collections.abc import Callable
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["INEQUALITIES", "TRIALS", "NotFound", "Violation", "sample", "slack_of", "violation"]
+__all__ = ["TRIALS", "NotFound", "Violation", "sample", "slack_of"]
+
+Sets = TypeVar("Sets", "BoolArray", "IntArray")
 
 INEQUALITIES = {
     "normalised": "f({}) = 0",
@@ -76,28 +80,19 @@ class NotFound:
         return False
 
 
-def slack_of(f: SetFunction, rule: str, a: BoolArray, b: BoolArray) -> FloatArray:
-    """(K,) slack of one inequality for each pair of rows of ``a`` and ``b`` (K, n)."""
-    first = finite_values(f.evaluate(a))
+def slack_of(value: Callable[[Sets], FloatArray], rule: str, a: Sets, b: Sets) -> FloatArray:
+    """(K,) slack of one inequality for K pairs of sets, as rows of membership (K, n) or as masks (K,) of a table."""
+    first = finite_values(value(a))
     if rule == "non-negative":
         return first
-    union = finite_values(f.evaluate(a | b))
+    union = finite_values(value(a | b))
     if rule == "non-decreasing":
         return np.asarray(union - first)
-    both = first + finite_values(f.evaluate(b)) - union
+    both = first + finite_values(value(b)) - union
     if rule == "subadditive":
         return np.asarray(both)
-    slack = both - finite_values(f.evaluate(a & b))
+    slack = both - finite_values(value(a & b))
     return np.asarray(-np.abs(slack) if rule == "modular" else slack)
-
-
-def violation(f: SetFunction, rule: str, a: BoolArray, b: BoolArray, tolerance: float) -> Violation | None:
-    """Return the pair (n,), (n,) as a witness if it breaks the rule by more than ``tolerance``; evaluated afresh."""
-    slack = float(slack_of(f, rule, a[None], b[None])[0])
-    if slack >= -tolerance:
-        return None
-    first, second = (tuple(int(e) for e in np.flatnonzero(s)) for s in (a, b))
-    return Violation(rule=rule, a=first, b=second, slack=slack, tolerance=tolerance)
 
 
 def sample(f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: int) -> Violation | NotFound:
@@ -111,16 +106,19 @@ def sample(f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: in
     pair = np.zeros((2, f.n), dtype=np.bool_)
     while seen < trials:
         a, b = _random_pairs(rng, rule, f.n, min(BATCH, trials - seen))
-        slack = slack_of(f, rule, a, b)
+        slack = slack_of(f.evaluate, rule, a, b)
         scale = max(scale, float(np.abs(f.evaluate(a | b)).max()))
         seen += len(a)
         k = int(slack.argmin())
         if slack[k] < worst:
             worst, pair = float(slack[k]), np.stack([a[k], b[k]])
     worst, pair, climbed = _climb(f, rule, worst, pair)
-    seen += climbed
-    found = violation(f, rule, pair[0], pair[1], tolerance * scale)
-    return found or NotFound(rule=rule, trials=seen, smallest_slack=worst, tolerance=tolerance * scale)
+    limit = tolerance * scale
+    alone = float(slack_of(f.evaluate, rule, pair[:1], pair[1:])[0])  # afresh: a batch may round in another way
+    if alone >= -limit:
+        return NotFound(rule=rule, trials=seen + climbed, smallest_slack=worst, tolerance=limit)
+    first, second = (tuple(np.flatnonzero(members).tolist()) for members in pair)
+    return Violation(rule=rule, a=first, b=second, slack=alone, tolerance=limit)
 
 
 def _random_pairs(rng: np.random.Generator, rule: str, n: int, count: int) -> tuple[BoolArray, BoolArray]:
@@ -143,12 +141,10 @@ def _climb(f: SetFunction, rule: str, worst: float, pair: BoolArray) -> tuple[fl
     """Flip one element in both sets at a time while that lowers the slack."""
     same = np.flatnonzero(pair[0] == pair[1])
     tried = 0
-    if len(same) == 0:
-        return worst, pair, tried
-    for _ in range(CLIMBS):
+    for _ in range(CLIMBS if len(same) else 0):
         flips = np.zeros((len(same), f.n), dtype=np.bool_)
         flips[np.arange(len(same)), same] = True
-        slack = slack_of(f, rule, pair[0] ^ flips, pair[1] ^ flips)
+        slack = slack_of(f.evaluate, rule, pair[0] ^ flips, pair[1] ^ flips)
         tried += len(same)
         k = int(slack.argmin())
         if slack[k] >= worst:

@@ -5,13 +5,14 @@ Every generator takes a NumPy ``Generator`` and the size of the ground set, and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.reference import (
     ConcaveOfModular,
@@ -21,7 +22,6 @@ from ratt_opt.setfunctions.reference import (
     Modular,
     PartitionMatroidRank,
 )
-from ratt_opt.setfunctions.table import TableFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,34 +34,24 @@ __all__ = ["REFERENCE_FAMILIES", "Reference", "reference"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """A set function and what theory knows of it; ``None`` where theory says nothing.
+    """A set function and what theory knows of it, with the argument (``why``); ``None`` where theory says nothing.
 
-    ``curvature`` and ``total_curvature`` are over all subsets (``"elements"``) and are ``None`` also where the
-    function is not monotone (then neither is defined). ``why`` : the argument.
+    Both curvatures are over all subsets (``"elements"``), and ``None`` also where the function is not monotone (then
+    neither is defined).
     """
 
     family: str
     function: SetFunction
     non_decreasing: bool
-    submodular: bool | None
-    curvature: float | None
-    total_curvature: float | None
+    submodular: bool | None = None
+    curvature: float | None = None
+    total_curvature: float | None = None
     why: str
 
 
 def reference(family: str, n: int, rng: np.random.Generator) -> Reference:
-    """Draw one member of a family of :data:`REFERENCE_FAMILIES`.
+    """Draw one member of a family, named by a key of :data:`REFERENCE_FAMILIES`, of ``n`` elements.
 
-    Parameters
-    ----------
-    family : one of ``"modular"``, ``"coverage"``, ``"planted coverage"``, ``"matroid rank"``, ``"facility location"``,
-        ``"cut"``, ``"concave of modular"``, ``"convex of modular"``, ``"rank-one updates"``, ``"aligned rank-one"``,
-        ``"monotone table"``, ``"table"``
-    n : size of the ground set, at least 2
-    rng : where every draw comes from
-
-    Raises
-    ------
     InputError : an unknown family, or ``n < 2``.
     """
     if family not in REFERENCE_FAMILIES:
@@ -76,15 +66,8 @@ def _submodular(family: str, f: SetFunction, kept: FloatArray, alone: FloatArray
     """
     useful = alone > 0
     k = 1.0 - float((kept[useful] / alone[useful]).min()) if useful.any() else 0.0
-    return Reference(
-        family=family,
-        function=f,
-        non_decreasing=True,
-        submodular=True,
-        curvature=k,
-        total_curvature=k,
-        why=why,
-    )
+    known = Reference(family=family, function=f, non_decreasing=True, submodular=True, why=why)
+    return replace(known, curvature=k, total_curvature=k)
 
 
 def _modular(n: int, rng: np.random.Generator) -> Reference:
@@ -137,15 +120,8 @@ def _facility_location(n: int, rng: np.random.Generator) -> Reference:
 def _cut(n: int, rng: np.random.Generator) -> Reference:
     weights = np.triu(rng.integers(0, 4, (n, n)), 1).astype(np.float64)
     weights[0, 1] = 1.0  # at least one edge, or the function is 0
-    return Reference(
-        family="cut",
-        function=Cut(weights + weights.T),
-        non_decreasing=False,
-        submodular=True,
-        curvature=None,
-        total_curvature=None,
-        why="the whole set cuts nothing: not monotone, so no curvature is defined",
-    )
+    f, why = Cut(weights + weights.T), "the whole set cuts nothing: not monotone, so no curvature is defined"
+    return Reference(family="cut", function=f, non_decreasing=False, submodular=True, why=why)
 
 
 def _concave_of_modular(n: int, rng: np.random.Generator) -> Reference:
@@ -162,29 +138,17 @@ def _convex_of_modular(n: int, rng: np.random.Generator) -> Reference:
     total = weights.sum()
     # (w, w^2) -> marginals rise from w^2 to total^2 - (total - w)^2.
     c = 1.0 - float((weights**2 / (total**2 - (total - weights) ** 2)).min())
-    return Reference(
-        family="convex of modular",
-        function=ConcaveOfModular(weights, np.square),
-        non_decreasing=True,
-        submodular=False,
-        curvature=None,
-        total_curvature=c,
-        why="supermodular: marginals rise from the first to the last",
-    )
+    f, why = ConcaveOfModular(weights, np.square), "supermodular: marginals rise from the first to the last"
+    known = Reference(family="convex of modular", function=f, non_decreasing=True, why=why)
+    return replace(known, submodular=False, total_curvature=c)
 
 
 def _rank_one_updates(n: int, rng: np.random.Generator) -> Reference:
     direction = rng.normal(size=(n, 3, 2))
     information = direction[..., :, None] * direction[..., None, :]
-    return Reference(
-        family="rank-one updates",
-        function=TraceObjective(np.eye(2) * rng.uniform(1, 5, (3, 1, 1)), information),
-        non_decreasing=True,
-        submodular=None,
-        curvature=None,
-        total_curvature=None,
-        why="information only grows; the trace of the covariance need not be submodular",
-    )
+    f = TraceObjective(np.eye(2) * rng.uniform(1, 5, (3, 1, 1)), information)
+    why = "information only grows; the trace of the covariance need not be submodular"
+    return Reference(family="rank-one updates", function=f, non_decreasing=True, why=why)
 
 
 def _aligned_rank_one(n: int, rng: np.random.Generator) -> Reference:
@@ -208,30 +172,16 @@ def _monotone_table(n: int, rng: np.random.Generator) -> Reference:
     values[(0,) * n] = 0.0
     for i in range(n):
         np.maximum.accumulate(values, axis=i, out=values)
-    return Reference(
-        family="monotone table",
-        function=TableFunction(values.ravel()),
-        non_decreasing=True,
-        submodular=None,
-        curvature=None,
-        total_curvature=None,
-        why="a running maximum over subsets",
-    )
+    f, why = TableFunction(values.ravel()), "a running maximum over subsets"
+    return Reference(family="monotone table", function=f, non_decreasing=True, why=why)
 
 
 def _table(n: int, rng: np.random.Generator) -> Reference:
     """Random numbers with a full set below the empty one: not monotone."""
     values = rng.normal(size=2**n)
     values[-1] = values[0] - 1.0
-    return Reference(
-        family="table",
-        function=TableFunction(values),
-        non_decreasing=False,
-        submodular=None,
-        curvature=None,
-        total_curvature=None,
-        why="the full set is worth less than the empty one",
-    )
+    f, why = TableFunction(values), "the full set is worth less than the empty one"
+    return Reference(family="table", function=f, non_decreasing=False, why=why)
 
 
 REFERENCE_FAMILIES: dict[str, Callable[[int, np.random.Generator], Reference]] = {

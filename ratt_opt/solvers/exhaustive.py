@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.solvers.result import MaxMinResult
@@ -17,17 +18,21 @@ if TYPE_CHECKING:
 
     from ratt_opt.problem import Problem
 
-__all__ = ["exhaustive_optimum", "plan_values"]
+__all__ = ["exhaustive_optimum"]
 
 LARGEST_SEARCH = 5_000_000
 """Most plans that are enumerated (12**6 is about 3 million)."""
 
 
-def exhaustive_optimum(problem: Problem) -> MaxMinResult:
+def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> MaxMinResult:
     """Return the best plan by evaluating every plan against every non-dominated outcome.
 
-    Relies on a non-decreasing objective (not checked). Among equal plans the one with the
-    lowest elements, robot by robot, is returned.
+    Relies on a non-decreasing objective (not checked). Among equal plans the one with the lowest elements, robot by
+    robot, is returned. A spent budget or an interrupt returns the bracket that the outcomes evaluated by then prove.
+
+    Parameters
+    ----------
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
@@ -35,49 +40,63 @@ def exhaustive_optimum(problem: Problem) -> MaxMinResult:
 
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
-    shape = tuple(len(choice) for choice in problem.choices)
-    count = float(np.prod(np.array(shape, dtype=np.float64)))
-    if count > LARGEST_SEARCH:
+    shape = _shape(problem, range(problem.n_robots))
+    n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
+    if n_plans > LARGEST_SEARCH:
         rule = f"must have at most {LARGEST_SEARCH:,} plans for an exhaustive search (use solve_maxmin)"
-        raise InputError("problem", rule, f"{count:.3g} plans")
+        raise InputError("problem", rule, f"{n_plans:.3g} plans")
+    own, stop = Budget.inside(budget), Stop.EXHAUSTED
     worst = np.full(shape, np.inf)
     group_values: dict[frozenset[int], FloatArray] = {}
-    for outcome in non_dominated_outcomes(problem.threat):
-        team = np.full((1,) * len(shape), -np.inf)
-        for group in outcome:
-            if group not in group_values:
-                group_values[group] = plan_values(problem, group)
-            team = np.maximum(team, group_values[group])
-        worst = np.minimum(worst, team)
+    try:
+        for outcome in non_dominated_outcomes(problem.threat):
+            own.check()
+            team = np.full((1,) * len(shape), -np.inf)
+            for group in outcome:
+                if group not in group_values:
+                    group_values[group] = _plan_values(problem, group, own)
+                team = np.maximum(team, group_values[group])
+            worst = np.minimum(worst, team)
+    except OutOfBudget as out:
+        stop = out.stop
+    except KeyboardInterrupt:
+        stop = own.interrupt()
     best = np.unravel_index(int(worst.argmax()), shape)
-    elements = np.array([choice[k] for choice, k in zip(problem.choices, best, strict=True)])
-    value = float(worst[best])
+    picks = iter(best)
+    elements = np.array([choice[next(picks) if len(choice) > 1 else 0] for choice in problem.choices])
+    lower = upper = float(worst[best])
+    if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
+        lower, upper = problem.objective([]), min(upper, problem.objective(range(problem.objective.n)))
+    count = sum(values.size for values in group_values.values())
     return MaxMinResult(
-        elements=readonly(elements),
-        lower=value,
-        upper=value,
-        stop=Stop.EXHAUSTED,
-        evaluations=sum(values.size for values in group_values.values()),
-        nodes=worst.size,
+        elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size
     )
 
 
-def plan_values(problem: Problem, group: Iterable[int]) -> FloatArray:
+def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:
     """Value of one group's robots for each joint choice of theirs.
 
-    Returns
-    -------
-    Array with one axis per robot of the team: its number of elements where the robot
+    The array has one axis per robot of the team that has a choice: its number of elements where the robot
     belongs to ``group``, 1 elsewhere, so that arrays of different groups broadcast.
     """
     members = sorted(group)
-    shape = tuple(len(c) if i in set(members) else 1 for i, c in enumerate(problem.choices))
-    grids = np.meshgrid(*(problem.choices[i] for i in members), indexing="ij")
-    picks: IntArray = np.stack([g.ravel() for g in grids], axis=1) if members else np.zeros((1, 0), dtype=np.int64)
+    shape = _shape(problem, members)
+    varied = [problem.choices[i] for i in members if len(problem.choices[i]) > 1]
+    picks: IntArray = np.zeros((int(np.prod(shape)), len(members)), dtype=np.int64)
+    places = iter(np.indices([len(choice) for choice in varied]).reshape(len(varied), len(picks)))
+    for k, choice in enumerate(problem.choices[i] for i in members):
+        picks[:, k] = choice[next(places)] if len(choice) > 1 else choice[0]
     values = np.empty(len(picks))
     for start in range(0, len(picks), 8192):
+        budget.check()
         block = picks[start : start + 8192]
         membership = np.zeros((len(block), problem.objective.n), dtype=np.bool_)
         membership[np.arange(len(block))[:, None], block] = True
         values[start : start + 8192] = problem.objective.evaluate(membership)
     return values.reshape(shape)
+
+
+def _shape(problem: Problem, members: Iterable[int]) -> tuple[int, ...]:
+    """Axes of the robots with a choice (a team may be larger than arrays have axes)."""
+    inside = set(members)
+    return tuple(len(c) if i in inside else 1 for i, c in enumerate(problem.choices) if len(c) > 1)

@@ -1,4 +1,4 @@
-"""Robust active target tracking: bait for the attacked robots, greedy for the others."""
+"""Robust active target tracking: bait for the attacked robots, greedy for the others; and what it is compared with."""
 
 from __future__ import annotations
 
@@ -6,12 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
+from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "ratt"]
+__all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "greedy", "myopic", "random_plan", "ratt"]
 
+PLAIN_WORK = 30_000_000
+"""Criteria of single targets that the plain loop evaluates in about half a second; beyond, evaluation is lazy."""
 
 MILP_NODES = 1_000
 """Nodes of the integer program for ``n_max`` on large graphs that are not complete; keeps RATT deterministic."""
@@ -26,6 +30,8 @@ def equivalent_sensing_attacks(problem: Problem) -> int:
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
+    if problem.threat.links_alike:
+        return caa(problem.n_robots, problem.alpha_c).alpha_cs
     found = smallest_largest_group(
         problem.communication, problem.alpha_c, protected_links=problem.protected_links, max_nodes=MILP_NODES
     )
@@ -71,12 +77,17 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
 
     The first round needs no evaluation: its values are the individual ones.
     """
-    chosen = np.array([], dtype=np.int64)
     candidates = np.flatnonzero(np.isin(problem.robot, robots))
+    objective = problem.objective
+    if isinstance(objective, InformationObjective) and objective.compiled_code is not None and objective.dimension == 2:
+        rounds = len(robots) - 1
+        if rounds * len(candidates) / 2 * objective.n_targets > PLAIN_WORK:
+            return _lazy_greedy(problem, objective, candidates, elements)
+    chosen = np.array([], dtype=np.int64)
     evaluations = 0
     while len(candidates):
         if len(chosen):
-            values = problem.objective.extensions(chosen, candidates)
+            values = objective.extensions(chosen, candidates)
             evaluations += len(candidates)
         else:
             values = single[candidates]
@@ -85,3 +96,38 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
         chosen = np.append(chosen, pick)
         candidates = candidates[problem.robot[candidates] != problem.robot[pick]]
     return evaluations
+
+
+def _lazy_greedy(problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray) -> int:
+    """The same choices with few evaluations; the number is that of the algorithm as it stands."""
+    from ratt_opt.solvers.lazy_greedy import LazyGreedy  # compiles
+
+    is_open = np.zeros(objective.n, dtype=np.bool_)
+    is_open[candidates] = True
+    greedy, evaluations = LazyGreedy(objective, is_open), -len(candidates)
+    while (left := int(is_open.sum())) > 0:
+        evaluations += left
+        pick = greedy.choose()
+        elements[problem.robot[pick]] = pick
+        is_open[problem.choices[int(problem.robot[pick])]] = False
+    return evaluations
+
+
+def greedy(problem: Problem) -> Plan:
+    """Standard greedy plan that ignores attacks: RATT with ``alpha = 0``.
+
+    Source: Fisher, Nemhauser, Wolsey 1978; the algorithm Greedy of ratt.tex, Section VI.
+    """
+    return bait_and_greedy(problem, 0)
+
+
+def myopic(problem: Problem) -> Plan:
+    """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
+    return bait_and_greedy(problem, problem.n_robots)
+
+
+def random_plan(problem: Problem, *, seed: int) -> Plan:
+    """Uniformly random element of every robot. Source: the algorithm Random of ratt.tex, Section VI."""
+    rng = np.random.default_rng(check_integer("seed", seed, low=0))
+    elements = np.array([choice[rng.integers(len(choice))] for choice in problem.choices])
+    return Plan(elements=readonly(elements), evaluations=0)

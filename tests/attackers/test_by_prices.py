@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bracket import AttackBracket
 from ratt_opt.attackers.by_prices import cover
 from ratt_opt.attackers.by_prices.blinding import ABSENT, WEAK, weak_subset
 from ratt_opt.attackers.by_prices.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.cover import next_cover
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.team import Links, Team
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bracket import AttackBracket
+from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
+from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackTask
-from ratt_opt.attackers.weakest_set import branch_and_bound, node_bounds
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
@@ -47,7 +47,9 @@ def run_large(problem, elements, max_nodes=None):
 
 
 def only_branch(monkeypatch):
-    """Hardly any enumeration, so that bounds and branches decide."""
+    """No lists and hardly any enumeration, so that bounds and branches decide."""
+    monkeypatch.setattr(size_vector_search, "LISTED_WHOLE", 0)
+    monkeypatch.setattr(size_vector_search, "LONGEST_LIST", -1)
     monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
     monkeypatch.setattr(branch_and_bound, "SHORTEST_ENUMERATION", 1)
     monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
@@ -55,11 +57,16 @@ def only_branch(monkeypatch):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("branch", [False, True])
-def test_agrees_with_the_threshold_search(name, seed, branch, monkeypatch):
-    """Once by plain enumeration at the root, once with so little of it that branching decides."""
-    if branch:
+@pytest.mark.parametrize("way", ["lists", "divided", "branches"])
+def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
+    """By lists and a search for disjoint sets, by divided nodes and bounds alone, by branches with hardly any list."""
+    if way == "branches":
         only_branch(monkeypatch)
+    if way == "divided":
+        monkeypatch.setattr(vector_search, "LOOKS", 0)
+        monkeypatch.setattr(vector_search, "FEW_CHOICES", seed % 3)
+        monkeypatch.setattr(vector_search, "FEW_SETS", 10)
+        monkeypatch.setattr(size_vector_search, "SHAKEN", 0)
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
     expected = ro.worst_case_attack(problem, elements).upper
     bracket, _, stop = run_large(problem, elements)
@@ -71,9 +78,38 @@ def test_agrees_with_the_threshold_search(name, seed, branch, monkeypatch):
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(30))
+def test_first_bounds_hold(name, seed):
+    problem, elements = team_problem(seed, 3 + seed % 6, name, protect=seed % 2 == 0)
+    assert (
+        first_bound(problem.objective, elements, problem.threat)
+        <= ro.worst_case_attack(problem, elements).upper + 1e-12
+    )
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("blinded", [0, 2])
+def test_many_equal_groups_close(name, blinded):
+    """The class of budgets between the paper's: several groups of the same size, hardly anybody blinded."""
+    rng = np.random.default_rng(blinded)
+    n_robots = 14 + blinded
+    data = range_bearing(rng, n_robots, 6, 1)
+    groups = 14 * 3 // 2 + 2 * blinded
+    links = n_robots * (n_robots - 1) // 2
+    problem = ro.Problem(OBJECTIVES[name](*data), np.arange(n_robots), None, blinded, links - groups)
+    result = ro.worst_case_attack(problem, np.arange(n_robots), time_limit=60)
+    assert result.stop is ro.Stop.CLOSED
+    assert result.upper - result.lower <= 1e-9 * result.upper
+    assert result.upper <= ro.greedy_attack(problem, np.arange(n_robots)).upper
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", [1, 2])
-def test_the_bracket_is_valid_at_every_node_count(name, seed, monkeypatch):
-    only_branch(monkeypatch)
+@pytest.mark.parametrize("branch", [False, True])
+def test_the_bracket_is_valid_at_every_node_count(name, seed, branch, monkeypatch):
+    if branch:
+        only_branch(monkeypatch)
+    monkeypatch.setattr(low_lists, "NODES_OF_A_LOOK", 3)
     problem, elements = team_problem(seed, 8, name)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)
     expected = ro.worst_case_attack(problem, elements).upper
@@ -179,7 +215,7 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
             raise KeyboardInterrupt
         return affine_minorant(*arguments)
 
-    monkeypatch.setattr(node_bounds, "affine_minorant", interrupted)
+    monkeypatch.setattr(branch_and_bound, "affine_minorant", interrupted)
     result = ro.worst_case_attack(problem, np.arange(13))
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)

@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.bracket import AttackBracket
-from ratt_opt.attackers.by_partition import group_survivors
+from ratt_opt.attackers.by_partition import split_search
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.plan_values import PlanValues
-from ratt_opt.attackers.task import AttackTask
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -75,7 +73,7 @@ def test_value_is_the_definition_s(seed):
 )
 def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
     """Nine and ten robots: subsets found by plain enumeration, then all by branch and bound."""
-    monkeypatch.setattr(group_survivors, "PLAIN_NODES", plain)
+    monkeypatch.setattr(split_search, "PLAIN_NODES", plain)
     if not plain:
         monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
         monkeypatch.setattr(branch_and_bound, "SHORTEST_ENUMERATION", 1)
@@ -87,7 +85,7 @@ def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_bracket_is_valid_at_every_node_count(seed, monkeypatch):
-    monkeypatch.setattr(group_survivors, "PLAIN_NODES", 20)
+    monkeypatch.setattr(split_search, "PLAIN_NODES", 20)
     problem, elements = team_problem(seed, 7, density=0.4)
     problem = ro.Problem(problem.objective, problem.robot, problem.graph, 2, min(5, len(problem.communication.links)))
     expected = ro.worst_case_attack(problem, elements).upper

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.breaking_budgets import breaking_budgets
 from ratt_opt.attackers.by_partition.threshold_search import threshold_search
-from ratt_opt.attackers.criticality import criticality_ranking
+from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
 from ratt_opt.errors import InputError
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem

@@ -14,10 +14,9 @@ import pytest
 from ratt_opt.audit import ledger as ledger_module
 from ratt_opt.audit.appendix.entry import ClaimEntry, Entry
 from ratt_opt.audit.ledger import all_entries, decide_entry, run_audit
-from ratt_opt.audit.report.html_page import html_report
-from ratt_opt.audit.report.markdown_page import markdown_report
+from ratt_opt.audit.report.pages import html_report, markdown_report
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.setfunctions.base import TableFunction
 
 HERE = Path(__file__).parent
 PAPER = HERE.parents[2] / "shared" / "paper" / "ratt.tex"

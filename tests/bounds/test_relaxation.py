@@ -8,6 +8,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.bounds import relaxation
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from tests.oracles import all_attacks, brute_force_optimum
 from tests.strategies import OBJECTIVES, information_data, random_problem
@@ -98,3 +99,12 @@ def test_relaxing_over_all_attacks_needs_a_list_of_them():
         next(ro.relaxation_bounds(ro.random_scenario(30, 2, alpha_s=10, alpha_c=108, seed=0).problem()))
     with pytest.raises(InputError, match="criterion of information matrices"):
         next(ro.relaxation_bounds(ro.Problem(ro.TableFunction([0, 1]), [0], None, 0, 0)))
+
+
+def test_a_spent_budget_ends_the_rounds():
+    problem = random_problem(np.random.default_rng(1), 3, kind="trace")
+    budget = Budget()
+    rounds = ro.relaxation_bounds(problem, budget=budget)
+    assert next(rounds).upper >= ro.exhaustive_optimum(problem).lower
+    budget.interrupt()
+    assert list(rounds) == []

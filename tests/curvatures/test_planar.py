@@ -12,10 +12,8 @@ import ratt_opt as ro
 from ratt_opt.budget import Budget
 from ratt_opt.curvatures.planar import context_search
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
-from ratt_opt.curvatures.planar.descent import PlanarDescent
-from ratt_opt.curvatures.planar.level_inequalities import (
-    Average,
-    Forms,
+from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
+from ratt_opt.curvatures.planar.inequalities import (
     ceilings,
     least_enough,
     least_marginal,
@@ -23,7 +21,6 @@ from ratt_opt.curvatures.planar.level_inequalities import (
     most_marginal,
 )
 from ratt_opt.curvatures.planar.level_program import LevelProgram, Sector, own_direction
-from ratt_opt.curvatures.planar.options import Options, along, levels, marginals
 from ratt_opt.curvatures.planar.regions import Side
 from ratt_opt.stopping import Stop
 from tests.strategies import information_data, range_bearing
@@ -82,12 +79,12 @@ def test_ceilings_hold_for_every_context_of_the_sector():
             program.bound(slope + 0.5, FREE)
         found = program.bound(slope, FREE)
         other = Sector(0, rng.uniform(-4, 4), 0.3)
-        forms = Forms(np.array([0]), own_direction(np.array([other.middle]), np.array([other.half])))
-        recycled = ceilings(options, base, own_base, forms, [Average(found.average, slope)], allowed)[0, 0]
+        direction = own_direction(np.array([other.middle]), np.array([other.half]))
+        recycled = ceilings(options, base, own_base, np.array([0]), direction, [found], allowed)[0, 0]
         contexts = every_context(options)
         totals = options.parts[contexts[allowed[contexts].all(axis=1)]].sum(axis=1)
         exact = ((base + totals) * found.average).sum(axis=(1, 2))
-        exact -= slope * (own_base + totals)[:, :, 0] @ forms.direction[0]
+        exact -= slope * (own_base + totals)[:, :, 0] @ direction[0]
         assert recycled == pytest.approx(exact.max(), abs=1e-9 * (1 + np.abs(totals).max()))
         free = LevelProgram(options, base, own_base, None, allowed=allowed).bound(0.0, FREE).ceiling
         for picks in every_context(options):

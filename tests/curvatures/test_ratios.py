@@ -115,3 +115,9 @@ def test_a_domain_too_large_says_the_memory():
     for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
         with pytest.raises(InputError, match="8 GiB"):
             quantity(f)
+
+
+@pytest.mark.parametrize("f", [ro.Modular([1.0, 2.0]), ro.TraceObjective([np.eye(2)], [[np.eye(2)]])])
+def test_over_no_robots_nothing_is_restricted(f):
+    assert [ro.curvature(f, plan=[]).upper, ro.total_curvature(f, plan=[]).upper] == [0, 0]
+    assert (ro.submodularity_ratio(f, plan=[]).lower, ro.generalised_curvature(f, plan=[]).upper) == (1, 0)

@@ -9,8 +9,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.largest_group.enumeration import by_separable_groups
-from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.largest_group.smallest import by_separable_groups, smallest_largest_group
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from tests.strategies import random_graph, random_problem
 

@@ -1,10 +1,11 @@
 from __future__ import annotations
 
+from itertools import islice
 from math import comb
 
 import pytest
 
-from ratt_opt.graph.survivor_sizes import feasible_sizes, forced_group_size, non_dominated_sizes
+from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, non_dominated_sizes
 
 
 def partitions(total, largest):
@@ -36,12 +37,23 @@ def feasible_by_definition(n_robots, n_blinded, alpha_c):
     return found
 
 
+def splits(sizes):
+    """Vectors in which one group is divided in two."""
+    return {
+        tuple(sorted((*sizes[:k], *sizes[k + 1 :], size - part, part), reverse=True))
+        for k, size in enumerate(sizes)
+        for part in range(1, size)
+    }
+
+
 @pytest.mark.parametrize("n_robots", range(1, 10))
 def test_sizes_and_forced_group_against_the_definition(n_robots):
     for n_blinded in range(n_robots + 1):
         for alpha_c in range(comb(n_robots, 2) + 1):
             expected = feasible_by_definition(n_robots, n_blinded, alpha_c)
-            assert set(feasible_sizes(n_robots, n_blinded, alpha_c)) == expected
+            minimal = {sizes for sizes in expected if not expected & splits(sizes)}
+            found = non_dominated_sizes(n_robots, n_blinded, alpha_c)
+            assert found == sorted(minimal, reverse=True)
             forced = min(max(v, default=0) for v in expected)
             assert forced_group_size(n_robots, n_blinded, alpha_c) == forced
 
@@ -59,3 +71,10 @@ def test_sizes_and_forced_group_against_the_definition(n_robots):
 )
 def test_vectors_of_the_paper_s_larger_settings(budget, vectors):
     assert set(non_dominated_sizes(*budget)) == vectors
+
+
+@pytest.mark.parametrize("budget", [(1000, 143, 474525), (1000, 0, 300000), (100, 0, 4000)])
+def test_vectors_of_huge_teams_come_without_going_through_partitions(budget):
+    for sizes in islice(iterate_non_dominated_sizes(*budget), 200):
+        assert sum(sizes) == budget[0] - budget[1]
+        assert sizes[0] >= forced_group_size(*budget)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt.setfunctions.base import SetFunction, TableFunction
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.lattice import second_differences
@@ -19,7 +19,6 @@ from ratt_opt.setfunctions.properties import (
     find_subadditivity_violation,
     find_submodularity_violation,
 )
-from ratt_opt.setfunctions.table import TableFunction
 from tests.setfunctions.oracle import pair_slack, worst_slack
 from tests.strategies import information_data, monotone_table
 

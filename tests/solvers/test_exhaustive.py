@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, Problem, TableFunction, TraceObjective, exhaustive_optimum, worst_case_attack
+from ratt_opt.budget import Budget
 from ratt_opt.stopping import Stop
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import information_data, random_problem, range_bearing
@@ -52,3 +53,29 @@ def test_relabelling_robots_changes_no_value() -> None:
         order = rng.permutation(3)
         relabelled = Problem(problem.objective, order[problem.robot], None, problem.alpha_s, problem.alpha_c)
         assert exhaustive_optimum(relabelled).lower == pytest.approx(exhaustive_optimum(problem).lower, rel=1e-12)
+
+
+@pytest.mark.parametrize("calls", range(6))
+def test_an_interrupt_returns_the_bracket_so_far(calls: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_problem(np.random.default_rng([4, calls]), 4, kind="trace")
+    optimum = exhaustive_optimum(problem)
+    evaluate, asked = TraceObjective.evaluate, iter(range(calls))
+
+    def interrupted(self: TraceObjective, membership: np.ndarray) -> np.ndarray:
+        if len(membership) > 1 and next(asked, None) is None:
+            raise KeyboardInterrupt
+        return evaluate(self, membership)
+
+    monkeypatch.setattr(TraceObjective, "evaluate", interrupted)
+    outer = Budget()
+    result = exhaustive_optimum(problem, budget=outer)
+    assert result.lower <= optimum.lower
+    assert optimum.upper <= result.upper <= problem.objective(range(problem.objective.n))
+    assert result.stop is (outer.stop() or Stop.EXHAUSTED)
+
+
+def test_a_spent_budget_returns_what_monotonicity_proves() -> None:
+    problem = random_problem(np.random.default_rng(4), 3, kind="trace")
+    result = exhaustive_optimum(problem, budget=Budget(time_limit=0))
+    assert (result.lower, result.upper) == (0.0, problem.objective(range(problem.objective.n)))
+    assert result.stop is Stop.TIME

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -20,10 +21,11 @@ from ratt_opt import (
     ratt,
 )
 from ratt_opt.problem import Attack
-from ratt_opt.solvers import nonrobust
-from ratt_opt.solvers.nonrobust import nonrobust_search
+from ratt_opt.solvers import ratt as ratt_module
+from ratt_opt.solvers.maxmin import solve
+from ratt_opt.solvers.maxmin.solve import nonrobust_search
 from ratt_opt.stopping import Stop
-from tests.strategies import OBJECTIVES, random_problem
+from tests.strategies import OBJECTIVES, information_data, random_problem
 
 
 def algorithm_1(f: SetFunction, choices: list[list[int]], alpha: int) -> tuple[list[int], list[int]]:
@@ -104,7 +106,7 @@ def test_nonrobust_optimum_is_the_best_plan_without_attack(problem: Problem) -> 
 def test_nonrobust_optimum_by_search_equals_every_plan(kind: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     problem = random_problem(np.random.default_rng([8, seed]), 4, kind=kind)
     every = nonrobust_optimum(problem)
-    monkeypatch.setattr(nonrobust, "FEW_PLANS", 0)
+    monkeypatch.setattr(solve, "FEW_PLANS", 0)
     searched = nonrobust_optimum(problem)
     values = [problem.team_value(plan.elements, Attack()) for plan in (every, searched)]
     assert values[1] == pytest.approx(values[0], rel=1e-9)
@@ -147,3 +149,33 @@ def test_random_plan_is_reproducible_and_uses_every_element() -> None:
     plans = [tuple(random_plan(problem, seed=s).elements.tolist()) for s in range(40)]
     assert set(plans) == {(0, 2), (0, 3), (1, 2), (1, 3)}
     assert plans[7] == tuple(random_plan(problem, seed=7).elements.tolist())
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(12))
+def test_lazy_evaluation_changes_nothing(name: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Equal elements and robots, rank one, useless and overwhelming information included."""
+    rng = np.random.default_rng(seed)
+    prior, information = information_data(rng, 24, 5)
+    information *= 10.0 ** rng.integers(-6, 7, size=(24, 1, 1, 1)) if seed % 3 == 0 else 1.0
+    information[1], information[7], information[9] = information[0], information[0], 0.0
+    weights = rng.uniform(0.2, 3, 5) if seed % 2 else None
+    problem = Problem(OBJECTIVES[name](prior, information, weights), np.repeat(np.arange(8), 3), None, seed % 4, 0)
+    plain = ratt(problem)
+    monkeypatch.setattr(ratt_module, "PLAIN_WORK", -1)
+    lazy = ratt(problem)
+    assert lazy == plain
+
+
+@pytest.mark.parametrize("n_robots", [13, 65])
+@pytest.mark.parametrize("controls", [1, 2])
+def test_no_attack_needs_no_outcomes(n_robots: int, controls: int) -> None:
+    """Chains beyond the enumeration of outcomes, teams beyond an array's axes: few plans all the same."""
+    rng = np.random.default_rng(n_robots)
+    owners = np.concatenate([np.arange(n_robots), np.arange(13 * (controls - 1))])
+    objective = OBJECTIVES["trace"](*information_data(rng, len(owners), 2))
+    problem = Problem(objective, owners, nx.path_graph(n_robots), 1, 1)
+    found = nonrobust_search(problem)
+    assert found.stop is Stop.EXHAUSTED
+    assert found.lower == problem.objective(found.elements)
+    assert found.lower >= problem.objective(ratt(problem).elements) * (1 - 1e-12)

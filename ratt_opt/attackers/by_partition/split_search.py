@@ -1,20 +1,22 @@
 """The exact attacker of larger teams on sparse graphs: how is the team split, and who is blinded in each group?
 
-``graph/separable_groups.py`` lists every group an attack may leave. For a threshold, a group needs so many
-blinded robots that some subset of the others is worth less (``group_survivors.py``); the threshold is reachable
-exactly when the team can be partitioned into groups within the link budget whose needs add up to at most the
-robots that may be blinded. Needs are bounded from below first and computed only for groups that a partition
-asks for; a group needs at least what any group inside it needs. Thresholds are bisected, which narrows the
-bracket from both sides.
+``graph/separable_groups.py`` lists every group an attack may leave. For a threshold, a group needs so many blinded
+robots that some subset of the others is worth less (``GroupSurvivors``); the threshold is reachable exactly when the
+team can be partitioned into groups within the link budget whose needs add up to at most the robots that may be blinded.
+Needs are bounded from below first and computed only for groups that a partition asks for; a group needs at least what
+any group inside it needs. Thresholds are bisected, which narrows the bracket from both sides.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_partition.group_survivors import GroupSurvivors
+from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
+from ratt_opt.attackers.weakest_set.enumeration import AffineBound, Enumeration
+from ratt_opt.attackers.weakest_set.exchanges import exchanged
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
@@ -23,15 +25,71 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.task import AttackTask
+    from ratt_opt.attackers.weakest_set.minorant import Minorant
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.separable_groups import SeparableGroups
 
-__all__ = ["SplitSearch"]
+__all__ = ["GroupSurvivors", "SplitSearch"]
+
+PLAIN_NODES = 30_000
+"""Compiled nodes before a question is handed to the branch and bound, which bounds it afresh: easy questions are
+answered without a bound of their own, hard ones soon get one."""
+
+
+@dataclass(slots=True)
+class GroupSurvivors:
+    """Decides, for groups of one team, whether some subset of a given size is worth less than a threshold.
+
+    ``must`` : robots that cannot be blinded; ``minorants`` : by size, over all robots
+    """
+
+    team: PlanarTeam
+    must: frozenset[int]
+    minorants: dict[int, Minorant] = field(default_factory=dict)
+
+    def by_exchanges(self, group: frozenset[int], size: int) -> frozenset[int] | None:
+        """A weak subset: no claim; ``None`` where the size leaves no room for protected robots."""
+        fixed = self.must & group
+        if not len(fixed) <= size <= len(group):
+            return None
+        order = sorted(group - fixed, key=lambda i: (self.team.single[i], i))
+        return exchanged(self.team, fixed.union(order[: size - len(fixed)]), among=group, fixed=fixed)
+
+    def below(self, group: frozenset[int], size: int, threshold: float, budget: Budget) -> frozenset[int] | None:
+        """A subset of ``size`` robots of ``group`` worth less than ``threshold``; ``None`` proves there is none.
+
+        Spends nodes of ``budget``.
+        """
+        budget.spend()
+        quick = self.by_exchanges(group, size)
+        if quick is None or self.team.value(quick) < threshold:
+            return quick
+        fixed = self.must & group
+        if size in {len(fixed), len(group)}:
+            return None  # only one subset, looked at already
+        free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
+        left, minorant = size - len(fixed), self.minorants.get(size)
+        if minorant is None:
+            sets = Enumeration(self.team, free, fixed, left)
+        else:  # the team's minorant of this size holds for the subsets of every group
+            constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
+            affine = AffineBound(constant, minorant.scores[free])
+            sets = Enumeration.surest_first(self.team, free, fixed, left, affine)
+        while not sets.finished and sets.nodes < PLAIN_NODES:
+            found = sets.next_within(threshold, PLAIN_NODES - sets.nodes, budget)
+            if found is not None:
+                return found
+        if sets.finished:
+            return None
+        outside = frozenset(range(len(self.team.single))) - group
+        search = WeakestSetSearch(self.team, size, threshold, inside=fixed, outside=outside)
+        return next((found for found in search.run(budget) if found is not None), None)
+
 
 BISECTED = 2e-3
 """Relative width below which the incumbent is tested instead of the middle: where it is optimal, one refutation
 at its value closes the bracket for which bisection would take two dozen."""
-
 NODES_BETWEEN_LOOKS = 20_000
 """Groups tried between two looks at the budget: some hundredths of a second."""
 CHUNK = 4096
@@ -106,9 +164,7 @@ class SplitSearch:
         search = PartitionSearch(self.groups, need)
         exact: dict[int, frozenset[int]] = {}
         while not search.finished:
-            before = search.nodes
-            chosen = search.next(before + self.task.budget.nodes_left(NODES_BETWEEN_LOOKS))
-            self.task.budget.nodes += search.nodes - before
+            chosen = search.next_within(NODES_BETWEEN_LOOKS, self.task.budget)
             if chosen is not None and self._within(chosen, threshold, need, exact):
                 self._accept([(self.groups.members(group), exact[group]) for group in chosen])
                 return True

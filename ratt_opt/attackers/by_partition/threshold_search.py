@@ -10,10 +10,8 @@ from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.graph.compiled_threshold import CompiledThresholdTest
-    from ratt_opt.graph.threat import Threat
 
 __all__ = ["LARGEST_PLAIN", "threshold_search"]
 
@@ -31,7 +29,13 @@ def threshold_search(task: AttackTask) -> Stop:
     task.budget.check()
     table = task.values.table()
     levels = np.unique(table)
-    test = _test(task.problem.threat, table)
+    test: ThresholdTest | CompiledThresholdTest
+    if task.problem.n_robots <= LARGEST_PLAIN:
+        test = ThresholdTest(task.problem.threat, table)
+    else:
+        from ratt_opt.graph.compiled_threshold import CompiledThresholdTest  # compiles
+
+        test = CompiledThresholdTest(task.problem.threat, table)
     low, high = 0, int(np.searchsorted(levels, bracket.upper))  # the answer is in levels[low : high + 1]
     # The heuristic's value, computed alone, may round differently from the table's.
     high = min(high, len(levels) - 1)
@@ -48,11 +52,3 @@ def threshold_search(task: AttackTask) -> Stop:
         task.offer_split(split.members(), split.blinded)
     bracket.lower = bracket.upper
     return Stop.EXHAUSTED
-
-
-def _test(threat: Threat, table: FloatArray) -> ThresholdTest | CompiledThresholdTest:
-    if threat.graph.n_robots <= LARGEST_PLAIN:
-        return ThresholdTest(threat, table)
-    from ratt_opt.graph.compiled_threshold import CompiledThresholdTest  # compiles
-
-    return CompiledThresholdTest(threat, table)

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.enumeration import Enumeration
+from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
+from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["Packer", "Packing"]
 
-LONGEST_PACKING = 500_000
-"""Compiled nodes one packing question may take before it is left open: about a second. What is left open keeps the
-bracket from closing, so it trades proofs for time."""
+LONGEST_PACKING = 3_000_000
+"""Sets of the largest size to pack that are gone through; a packing question of more is left open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +36,9 @@ class Packer:
 
     team: PlanarTeam
     must: frozenset[int]
+    budget: Budget
 
-    def pack(self, available: frozenset[int], sizes: tuple[int, ...], threshold: float) -> Packing:
+    def pack(self, available: frozenset[int], sizes: Sizes, threshold: float) -> Packing:
         """Find disjoint groups of these sizes among ``available``, each worth less than ``threshold``.
 
         Weakest robots first; exact unless the search grows beyond ``LONGEST_PACKING`` nodes.
@@ -50,9 +54,7 @@ class Packer:
             return Packing(quick)
         return self._search(weak, sizes, threshold)
 
-    def _weakest(
-        self, available: frozenset[int], sizes: tuple[int, ...], threshold: float
-    ) -> tuple[frozenset[int], ...] | None:
+    def _weakest(self, available: frozenset[int], sizes: Sizes, threshold: float) -> tuple[frozenset[int], ...] | None:
         """The weakest robots in order, the largest group first."""
         order = sorted(available, key=lambda i: (i not in self.must, self.team.single[i], i))[: sum(sizes)]
         order.sort(key=lambda i: (self.team.single[i], i))
@@ -64,19 +66,11 @@ class Packer:
             groups.append(group)
         return tuple(groups)
 
-    def _search(self, available: frozenset[int], sizes: tuple[int, ...], threshold: float) -> Packing:
-        robots = np.array(sorted(available, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
-        sets = Enumeration(self.team, robots, frozenset(), sizes[0])
-        decided = True
-        while True:
-            found = sets.next_below(threshold, LONGEST_PACKING)
-            if found is None:
-                return Packing(None, decided and sets.finished)
-            if len(sizes) == 1:
-                if self.must & available <= found:
-                    return Packing((found,))
-                continue
-            rest = self.pack(available - found, sizes[1:], threshold)
-            if rest.groups is not None:
-                return Packing((found, *rest.groups))
-            decided = decided and rest.decided
+    def _search(self, available: frozenset[int], sizes: Sizes, threshold: float) -> Packing:
+        if len(available) > MOST_ROBOTS or comb(len(available), sizes[0]) > LONGEST_PACKING:
+            return Packing(None, decided=False)
+        lists = LowLists(self.team, np.array(sorted(available, key=lambda i: (-self.team.single[i], i))))
+        must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.must)
+        n_blinded = len(available) - sum(sizes)
+        search = VectorSearch(lists, sizes, n_blinded=n_blinded, must=must, threshold=threshold)
+        return Packing(next(search.run(self.budget), None), not search.is_open)

@@ -1,30 +1,65 @@
 """The exact attacker of large teams on a complete graph, two-dimensional targets.
 
-Outcomes are told apart by their group sizes (``graph/survivor_sizes.py``). For each size of the
-largest group, smallest first, the sets of that size are searched; a larger group contains
-smaller ones, so by monotonicity what bounds the smaller size bounds the larger. Whenever a set below the
+Outcomes are told apart by their group sizes (``graph/survivor_sizes.py``). Exchanges find a weak family of groups of
+each vector of sizes; then vector by vector, most promising first, all families are decided (``vector_search.py``)
+where the sets of a size can be listed.
+
+Elsewhere, for each size of the largest group, smallest first, the sets of that size are searched; a larger group
+contains smaller ones, so by monotonicity what bounds the smaller size bounds the larger. Whenever a set below the
 incumbent is found, the other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
 """
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import islice
+from math import comb
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
+from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
+from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size
 from ratt_opt.graph.outcomes import realise
-from ratt_opt.graph.survivor_sizes import non_dominated_sizes
+from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["SizeVectorSearch"]
+__all__ = ["SizeVectorSearch", "unprotected_bound"]
+
+MOST_VECTORS = 5_000
+"""Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
+Where there are more, some make attacks, and the bound is that of the forced size."""
+
+OF_EACH_SIZE, SOME_VECTORS = 4, 200
+"""Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
+
+EXCHANGES_SHARE = 0.3
+"""Of the time, at most spent on exchanges before the bounds: large teams get fewer vectors."""
+
+SHAKEN, SHAKES = 6, 40
+"""Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
+
+LATER_SHAKES = 400
+"""The same for vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
+
+LISTED_WHOLE = 34
+"""Up to so many robots, sets of any size are listed."""
+
+LONGEST_LIST = 10**8
+"""Sets of the largest group that are gone through, in larger teams: a few seconds."""
 
 
 class SizeVectorSearch:
@@ -33,40 +68,134 @@ class SizeVectorSearch:
     def __init__(self, task: AttackTask, team: PlanarTeam) -> None:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
-        self.vectors = non_dominated_sizes(task.problem.n_robots, self.threat.n_blinded, self.threat.alpha_c)
-        self.packer = Packer(team, self.threat.protected_robots)
+        n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
+        self.vectors = list(islice(iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c), MOST_VECTORS + 1))
+        self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
+        if not self.has_all_vectors:
+            self.vectors = self._some_vectors()
+        self.packer = Packer(team, self.threat.protected_robots, task.budget)
+        self.bounds: dict[Sizes, float] = {}
+        """What the families of each vector that is open are worth at least."""
         self.left_open = np.inf
         """Least value of a set whose packing question was given up; the proof cannot rise above it."""
         self.weakest = np.inf
         """Least value of any set found below the goal of its time."""
 
     def run(self) -> Stop:
-        """Search every size of the largest group; the bracket is valid whenever this stops."""
-        bracket = self.bracket
+        """Search every vector; the bracket is valid whenever this stops."""
         if self.vectors == [()]:
             self._accept((frozenset(),))
-            bracket.lower = bracket.upper
+            self.bracket.lower = self.bracket.upper
             return Stop.CLOSED
-        sizes = sorted({vector[0] for vector in self.vectors})
-        self._start(sizes)
-        floor = bracket.lower
-        for size in sizes:
+        families = self._exchanged()
+        if self.bracket.is_closed:
+            return Stop.CLOSED
+        if not self.has_all_vectors:
+            return self._weakest_of_forced_size()
+        self.bounds = dict.fromkeys(self.vectors, -np.inf)
+        self._decide_listed(families)
+        return self._decide_by_largest()
+
+    def _some_vectors(self) -> list[Sizes]:
+        """A few vectors of each size of the largest group, the smallest sizes first."""
+        n_robots, budgets = len(self.team.single), (self.threat.n_blinded, self.threat.alpha_c)
+        vectors: list[Sizes] = []
+        for first in range(forced_group_size(n_robots, *budgets), n_robots - budgets[0] + 1):
+            vectors.extend(islice(sizes_of_largest(n_robots, *budgets, first), OF_EACH_SIZE))
+            if len(vectors) >= SOME_VECTORS:
+                break
+        return vectors
+
+    # -- attacks -----------------------------------------------------------------------------------------------
+
+    def _exchanged(self) -> list[GroupExchanges]:
+        """A family of each vector that no exchange makes weaker, weakest first; each is an attack."""
+        must = np.isin(np.arange(len(self.team.single)), list(self.threat.protected_robots))
+        families: list[GroupExchanges] = []
+        part = self.task.budget.part(EXCHANGES_SHARE)
+        for sizes in self.vectors:
+            self.task.budget.check()
+            if families and part.stop() is not None:
+                break
+            family = GroupExchanges(self.team, sizes, must)
+            family.weakest()
+            families.append(family)
+        families.sort(key=lambda family: family.value)
+        for family in families[:SHAKEN]:
+            self.task.budget.check()
+            family.shake(SHAKES, self.task.budget)
+        families.sort(key=lambda family: family.value)
+        self._accept(families[0].groups())
+        return families
+
+    def _accept(self, groups: Iterable[frozenset[int]]) -> bool:
+        outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
+        return self.task.offer(Attack(*realise(self.threat, outcome)))
+
+    # -- vectors whose sets can be listed ----------------------------------------------------------------------
+
+    def _decide_listed(self, families: list[GroupExchanges]) -> None:
+        """Decide the families of every vector, as far as its sets can be listed."""
+        if len(self.team.single) > MOST_ROBOTS:
+            return
+        lists = LowLists(self.team, np.argsort(-self.team.single, kind="stable"))
+        must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.threat.protected_robots)
+        searches = {
+            sizes: VectorSearch(lists, sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal)
+            for sizes in dict.fromkeys([*(family.sizes for family in families), *self.vectors])
+            if self._is_listed(sizes[0])
+        }
+        for sizes, search in searches.items():
+            with self._noting(sizes, search):
+                search.bound(self.task.budget)
+        for family in families:
+            if family.sizes in searches and family.sizes in self.bounds:
+                self.task.budget.spend()
+                family.shake(LATER_SHAKES, self.task.budget)
+                if family.value < self.bracket.goal:
+                    self._accept(family.groups())
+        order = [family.sizes for family in sorted(families, key=lambda family: family.value)]
+        for sizes in dict.fromkeys([*order, *searches]):
+            if sizes not in searches or sizes not in self.bounds:
+                continue
+            with self._noting(sizes, searches[sizes]) as search:
+                search.threshold = self.bracket.goal
+                for groups in search.run(self.task.budget):
+                    self._accept(groups)
+                    search.threshold = min(search.threshold, self.bracket.goal)
+
+    @contextmanager
+    def _noting(self, sizes: Sizes, search: VectorSearch) -> Iterator[VectorSearch]:
+        """Whatever happens, what the search has proved counts."""
+        try:
+            yield search
+        finally:
+            self.bounds[sizes] = max(self.bounds[sizes], search.lower)
+            self._raise_lower()
+            if self.bounds[sizes] >= self.bracket.goal:
+                del self.bounds[sizes]
+
+    def _is_listed(self, largest: int) -> bool:
+        n_robots = len(self.team.single)
+        return n_robots <= LISTED_WHOLE or comb(n_robots, largest) <= LONGEST_LIST
+
+    def _raise_lower(self) -> None:
+        self.bracket.raise_lower(min([self.bracket.goal, *self.bounds.values()]))
+
+    # -- the others, by their largest group --------------------------------------------------------------------
+
+    def _decide_by_largest(self) -> Stop:
+        """Search the sets of every size of the largest group, smallest first."""
+        bracket, floor = self.bracket, self.bracket.lower
+        self.vectors = list(self.bounds)
+        for size in sorted({vector[0] for vector in self.vectors}):
             self._search(size, floor)
             # Larger groups contain sets of this size, all decided: none is worth less than this.
             floor = min(self.weakest, bracket.goal)
             if floor >= bracket.goal:
                 break
         bracket.raise_lower(min(bracket.goal, self.left_open))
-        return Stop.CLOSED if self.left_open >= bracket.goal else Stop.NODES
-
-    def _start(self, sizes: list[int]) -> None:
-        """Incumbents before the search: sets that no exchange makes weaker."""
-        for size in sizes:
-            self.task.budget.check()
-            for robots in weak_sets_of_size(self.team, size):
-                self._offer(robots)
-                if self.bracket.goal <= self.team.value(robots):
-                    break
+        return Stop.CLOSED if bracket.is_closed else Stop.NODES
 
     def _search(self, size: int, floor: float) -> None:
         """Offer every set of this size below the goal as a largest group."""
@@ -92,6 +221,31 @@ class SizeVectorSearch:
                 if not self._accept((largest, *packing.groups)):
                     break
 
-    def _accept(self, groups: tuple[frozenset[int], ...]) -> bool:
-        outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
-        return self.task.offer(Attack(*realise(self.threat, outcome)))
+    def _weakest_of_forced_size(self) -> Stop:
+        """Too many vectors: some group has the forced size at least, so the weakest set of that size is a bound."""
+        size = forced_group_size(len(self.team.single), self.threat.n_blinded, self.threat.alpha_c)
+        search = WeakestSetSearch(self.team, size, self.bracket.goal, self.bracket.lower)
+        for found in search.run(self.task.budget):
+            if found is not None:
+                search.threshold = min(search.threshold, self.team.value(found))
+            self.bracket.raise_lower(min(search.lower, search.threshold))
+        self.bracket.raise_lower(search.threshold)
+        return Stop.CLOSED if self.bracket.is_closed else Stop.HEURISTIC
+
+
+def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
+    """Raise the lower bound to the worst case without protected links, which is no larger; keep its attack if allowed.
+
+    Relies on a non-decreasing objective. What is proved when the budget runs out is kept.
+    """
+
+    problem, bracket = task.problem, task.bracket
+    relaxed = replace(problem, protected_links=frozenset())
+    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
+    start.offer(bracket.attack, bracket.upper)
+    try:
+        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team).run()
+    finally:
+        bracket.raise_lower(min(start.lower, start.upper))
+        if not start.attack.links & problem.protected_links:
+            task.offer(start.attack)

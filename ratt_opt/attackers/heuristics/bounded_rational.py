@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, heuristic_result
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
 
 __all__ = ["bounded_rational_attack"]
@@ -21,10 +22,9 @@ __all__ = ["bounded_rational_attack"]
 def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
     """Blind the strongest robots, then cut off the next strongest while the link budget lasts.
 
-    Strength is the individual value of the chosen element; ties go to the lowest robot. Protected
-    robots are passed over when blinding, and robots with a protected link when cutting off. The
-    first robot whose links exceed what is left of the budget ends the attack. (The paper cuts off
-    ``alpha_cs`` robots, which can exceed its own link budget.)
+    Strength is the individual value of the chosen element; ties go to the lowest robot. Protected robots are passed
+    over when blinding, and robots with a protected link when cutting off. The first robot whose links exceed what is
+    left of the budget ends the attack. (The paper cuts off ``alpha_cs`` robots, which can exceed its own link budget.)
 
     Raises
     ------
@@ -44,4 +44,4 @@ def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResu
         if longer is None:
             break
         attack = longer
-    return heuristic_result(problem, values, attack.finished())
+    return heuristic_result(problem, values, Attack(attack.blinded, attack.cut))

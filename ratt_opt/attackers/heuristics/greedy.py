@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, heuristic_result, team_values
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
 
 __all__ = ["greedy_attack"]
@@ -35,7 +36,7 @@ def greedy_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
         longer = [attack.cut_off(i) for i in range(problem.n_robots)]
         steps = [step for step in longer if step is not None and len(step.cut) > len(attack.cut)]
         if not steps:
-            return heuristic_result(problem, values, attack.finished())
+            return heuristic_result(problem, values, Attack(attack.blinded, attack.cut))
         attack = _best(values, steps)
 
 

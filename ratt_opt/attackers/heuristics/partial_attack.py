@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.result import AttackResult
-from ratt_opt.problem import Attack
+from ratt_opt.attackers.task import AttackResult
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.attackers.plan_values import PlanValues
+    from ratt_opt.attackers.task import PlanValues
     from ratt_opt.graph.communication import Link
-    from ratt_opt.problem import Problem
+    from ratt_opt.problem import Attack, Problem
 
 __all__ = ["PartialAttack", "heuristic_result", "team_values"]
 
@@ -59,10 +58,6 @@ class PartialAttack:
     def groups(self) -> list[frozenset[int]]:
         """Robots of each group that still see."""
         return [part - self.blinded for part in self.parts]
-
-    def finished(self) -> Attack:
-        """The attack so far."""
-        return Attack(self.blinded, self.cut)
 
 
 def team_values(values: PlanValues, candidates: Sequence[PartialAttack]) -> FloatArray:

@@ -8,13 +8,13 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
-from ratt_opt.attackers.plan_values import PlanValues
+from ratt_opt.attackers.task import PlanValues
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.result import AttackResult
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
 
 __all__ = ["random_attack"]

@@ -1,7 +1,7 @@
 """The k robots of a plan against planar targets that are worth least together: found, bounded, enumerated.
 
-Open ``branch_and_bound.py`` first: it asks ``node_bounds.py`` what no set of a family falls below, and lets
-``enumeration.py`` finish small families. The bounds are ``weakest_axis.py`` where one axis decides, and else
+Open ``branch_and_bound.py`` first: it bounds nodes that fix some robots, and lets ``enumeration.py`` finish
+small families. The bounds are ``weakest_axis.py`` where one axis decides, and else
 ``minorant.py`` over the polytopes of ``outer_polytopes.py``. ``exchanges.py`` finds weak sets without a claim;
 ``planar_team.py`` has the arrays all of them share.
 """

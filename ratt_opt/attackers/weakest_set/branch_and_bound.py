@@ -8,35 +8,135 @@ reduced cost, and guides the same depth-first search that finishes small nodes.
 from __future__ import annotations
 
 import heapq
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.enumeration import Enumeration
+from ratt_opt.attackers.weakest_set.enumeration import AffineBound, Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged
-from ratt_opt.attackers.weakest_set.node_bounds import bound_family
-from ratt_opt.attackers.weakest_set.set_node import SetNode
+from ratt_opt.attackers.weakest_set.minorant import Minorant, affine_minorant
+from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
     from ratt_opt.budget import Budget
 
     Found = Generator[frozenset[int] | None, None, None]
 
-__all__ = ["WeakestSetSearch"]
+__all__ = ["FamilyBound", "SetNode", "WeakestSetSearch", "bound_family"]
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class SetNode:
+    """Sets of robots that contain ``inside`` and avoid ``outside``; none is worth less than ``bound``.
+
+    ``minorant`` : over the undecided robots, strongest first, of these sets or of more
+    """
+
+    bound: float
+    serial: int
+    inside: frozenset[int] = field(compare=False)
+    outside: frozenset[int] = field(compare=False)
+    minorant: Minorant | None = field(compare=False, default=None)
+
+    def undecided(self, team: PlanarTeam) -> IntArray:
+        """Robots neither inside nor outside, strongest first."""
+        order = np.argsort(-team.single, kind="stable")
+        return np.array([i for i in order.tolist() if i not in self.inside and i not in self.outside], dtype=np.int64)
+
+    def fixed(self, robots: IntArray, size: int, threshold: float) -> tuple[SetNode, IntArray]:
+        """Decide robots by reduced cost: on their other side the minorant reaches the threshold.
+
+        ``robots`` : the undecided ones, of which ``size`` are chosen
+
+        Returns the node with those decided, and the robots left.
+        """
+        if self.minorant is None:
+            return self, robots
+        scores = self.minorant.scores
+        chosen = np.zeros(len(scores), dtype=np.bool_)
+        chosen[np.argsort(scores, kind="stable")[:size]] = True
+        last, first = scores[chosen].max(), scores[~chosen].min()
+        room = threshold - self.minorant.bound(size)
+        surely_in = chosen & (first - scores >= room)
+        surely_out = ~chosen & (scores - last >= room)
+        free = ~(surely_in | surely_out)
+        inside = self.inside | frozenset(robots[surely_in].tolist())
+        outside = self.outside | frozenset(robots[surely_out].tolist())
+        minorant = self.minorant.restricted(free, surely_in)
+        return replace(self, inside=inside, outside=outside, minorant=minorant), robots[free]
+
+    def enumeration(self, team: PlanarTeam, robots: IntArray, size: int) -> Enumeration:
+        """The sets of the node one by one: ``size`` of the undecided ``robots``."""
+        if self.minorant is None:
+            return Enumeration(team, robots, self.inside, size)
+        affine = AffineBound(self.minorant.constant, self.minorant.scores)
+        return Enumeration.surest_first(team, robots, self.inside, size, affine)
+
+    def split(self, robots: IntArray, bound: float, serial: int) -> tuple[SetNode, SetNode]:
+        """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant).
+
+        Rather one whose side is clear: its other side is soon closed, and its own hides less. Preferring robots on
+        neither side took ten times as long at 60 robots.
+        """
+        pick, with_it, without = 0, None, None
+        if self.minorant is not None:
+            x = self.minorant.fraction
+            pick = int(np.argmax(self.minorant.tension * (1 - 3 * x * (1 - x))))
+            it = np.arange(len(robots)) == pick
+            with_it = self.minorant.restricted(~it, it)
+            without = self.minorant.restricted(~it, np.zeros_like(it))
+        robot = frozenset([int(robots[pick])])
+        return (
+            SetNode(bound, serial, self.inside | robot, self.outside, with_it),
+            SetNode(bound, serial + 1, self.inside, self.outside | robot, without),
+        )
+
+
+HEAVY_ROBOTS = ((50, 4), (10**9, 5))
+"""(Undecided robots up to, robots per target whose patterns the minorant enumerates): few nodes are afforded above.
+Each doubles the polytopes and sharpens the bound: with two instead of four, 1.7 times the nodes at 40 robots."""
+
+
+@dataclass(frozen=True, slots=True)
+class FamilyBound:
+    """No set is worth less than ``bound``; ``suggested`` (size,) are positions of robots that may come near it.
+
+    ``minorant`` : where the bound comes from one
+    """
+
+    bound: float
+    suggested: IntArray | None = None
+    minorant: Minorant | None = None
+
+
+def bound_family(family: SetFamily, goal: float, parent: Minorant | None) -> FamilyBound:
+    """Bound a family by its worst axis where that decides, and else by an affine minorant.
+
+    ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family
+    """
+    if family.team.objective.states("planar_levels"):
+        axis = weakest_axis(family)
+        return FamilyBound(axis.bound, axis.chosen)
+    n_free = len(family.information)
+    if not 0 < family.size < n_free:
+        return FamilyBound(-np.inf)
+    heavy = next(heavy for most, heavy in HEAVY_ROBOTS if n_free <= most)
+    minorant = affine_minorant(family, heavy, goal, parent)
+    weakest = np.lexsort((minorant.scores, -minorant.fraction))[: family.size]
+    return FamilyBound(minorant.bound(family.size), weakest, minorant)
+
 
 AT_ONCE = 34
 """Teams of so many robots are first enumerated whole, without a minorant: that settles them sooner than bounds do."""
-
 WHOLE_ENUMERATION = 4_000_000_000
 SHORTEST_ENUMERATION, LONGEST_ENUMERATION = 10_000_000, 40_000_000
 """Criteria of single targets looked at (some nanoseconds each) for the whole team, and for one branch-and-bound node
 before it is split: more after successes, fewer after failures."""
-
 BETWEEN_LOOKS = 100_000_000
 """Criteria of single targets between two looks at the clock and at interrupts (about half a second)."""
 
@@ -46,10 +146,7 @@ class WeakestSetSearch:
 
     The caller may lower ``threshold`` at every step of :meth:`run`; sets between are then passed over.
 
-    Parameters
-    ----------
-    floor : no set is worth less
-    inside, outside : only sets that contain the first and avoid the second
+    ``floor`` : no set is worth less; ``inside``, ``outside`` : only sets that contain the first and avoid the second
     """
 
     def __init__(

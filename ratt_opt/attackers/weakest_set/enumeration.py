@@ -32,19 +32,12 @@ class AffineBound:
 class Enumeration:
     """Depth-first search over ``chosen`` plus ``size`` of ``robots``, in the order given; resumable.
 
-    Parameters
-    ----------
-    robots : (F,) robots to choose from, distinct and not chosen
-    affine : minorant of the value; none by default
+    ``robots`` : (F,) robots to choose from, distinct and not chosen
+    ``affine`` : minorant of the value; none by default
     """
 
     def __init__(
-        self,
-        team: PlanarTeam,
-        robots: IntArray,
-        chosen: frozenset[int],
-        size: int,
-        affine: AffineBound | None = None,
+        self, team: PlanarTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound | None = None
     ) -> None:
         self._team, self._robots, self._chosen, self._size = team, robots, chosen, size
         affine = affine or AffineBound(-np.inf, np.zeros(len(robots)))
@@ -97,18 +90,13 @@ class Enumeration:
         The threshold may fall from call to call, not rise.
         """
         if self._size == 0:
-            return self._only(threshold)
+            known, self.finished = self.finished, True
+            return None if known or self._team.value(self._chosen) >= threshold else self._chosen
         if _search(self._criterion, self._information, self._affine, threshold, limit, self._state):
             depth = int(self._counters[0])
             return self._chosen | frozenset(self._robots[self._position[: depth + 1] - 1].tolist())
         self.finished = bool(self._counters[0] < 0)
         return None
-
-    def _only(self, threshold: float) -> frozenset[int] | None:
-        if self.finished:
-            return None
-        self.finished = True
-        return self._chosen if self._team.value(self._chosen) < threshold else None
 
 
 def _smallest_sums(scores: FloatArray, size: int) -> FloatArray:
@@ -145,14 +133,12 @@ def _search(criterion: Any, information: Any, affine: Any, threshold: float, lim
     Robots are taken or left in the order given. A partial choice is left when the affine minorant ``linear +
     scores`` or the averaged bound (:func:`_averaged`) of every completion reaches the threshold.
 
-    Parameters
-    ----------
-    criterion : code, weights (M,), baseline
-    information : (F, M, 3) of the robots to choose from
-    affine : scores (F,), a set's value is at least linear[0] + sum of its scores; and (F + 1, size + 1) the sum of
+    ``criterion`` : code, weights (M,), baseline
+    ``information`` : (F, M, 3) of the robots to choose from
+    ``affine`` : scores (F,), a set's value is at least linear[0] + sum of its scores; and (F + 1, size + 1) the sum of
         the q smallest scores among robots p.. at [p, q]
-    limit : nodes (partial choices looked at) before pausing, counted in ``counters[1]``
-    state : position (size + 1,), sums (size + 1, M, 3), linear (size + 1,), counters (2,)
+    ``limit`` : nodes (partial choices looked at) before pausing, counted in ``counters[1]``
+    ``state`` : position (size + 1,), sums (size + 1, M, 3), linear (size + 1,), counters (2,)
     """
     code, weights, baseline = criterion
     scores, smallest = affine

@@ -25,26 +25,18 @@ __all__ = ["exchanged", "weak_sets_of_size"]
 RANDOM_STARTS = 40
 """Starts beside those that the data suggest; each costs a local search, and with a few dozen in all attacks on teams of
 thirty were hardly ever too weak."""
-
 WORK = 3_000_000
 """Exchanges times targets in one step of all starts together; large teams afford fewer starts."""
-
 FEWEST_STARTS = 4
 """Starts that every team gets, whatever they cost."""
-
 SEED = 0
 """Of the random starts: the same for every call, so that attacks are reproducible."""
-
 BARRED, INSIDE, OUTSIDE = 0, 1, 2
 """Where a robot is; a barred one takes part in no exchange."""
 
 
 def exchanged(
-    team: PlanarTeam,
-    start: Iterable[int],
-    *,
-    among: Iterable[int] | None = None,
-    fixed: Iterable[int] = (),
+    team: PlanarTeam, start: Iterable[int], *, among: Iterable[int] | None = None, fixed: Iterable[int] = ()
 ) -> frozenset[int]:
     """Make the best exchange again and again while that lowers the value; ties to the lowest robots.
 

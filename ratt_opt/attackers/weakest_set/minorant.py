@@ -27,16 +27,11 @@ if TYPE_CHECKING:
 __all__ = ["Minorant", "affine_minorant"]
 
 KEPT, NEW = 24, 4
-"""Half-spaces per target that a node hands to its children: those that bind there, and new ones.
-
-More make a child's polytopes tighter and its vertices more. At 40 robots neither half nor double changes the nodes.
-"""
-
+"""Half-spaces per target that a node hands to its children: those that bind there, and new ones. More make a child's
+polytopes tighter and its vertices more. At 40 robots neither half nor double changes the nodes."""
 BINDING = 1e-2
-"""Vertices this close to the least of their target, relative to it, count as binding.
-
-It only ranks half-spaces for the children; at 40 robots a tenth of it changes no node.
-"""
+"""Vertices this close to the least of their target, relative to it, count as binding. It only ranks half-spaces for the
+children; at 40 robots a tenth of it changes no node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +73,8 @@ class Minorant:
 def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None) -> Minorant:
     """Best found affine minorant; valid whatever the solver answers.
 
-    Parameters
-    ----------
-    family : 0 < size < F
-    goal : no better bound is needed
-    parent : a minorant of a larger family, whose slopes and half-spaces are a good start
+    ``family`` : 0 < size < F; ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family, whose
+    slopes and half-spaces are a good start
     """
     points = outer_polytopes(family, n_heavy, None if parent is None else parent.normals)
     program = _program(family, points)
@@ -114,16 +106,9 @@ def _start(family: SetFamily, points: OuterPolytopes, fraction: FloatArray, pare
 def _program(family: SetFamily, points: OuterPolytopes) -> DualProgram:
     information = family.information * points.sound[:, None]
     np.put_along_axis(information.transpose(1, 0, 2), points.heavy[..., None], 0.0, axis=1)
-    return DualProgram(
-        first=points.first,
-        pattern=points.pattern,
-        values=points.values,
-        light=points.light,
-        patterns=points.patterns.astype(np.float64),
-        heavy=points.heavy,
-        information=information,
-        size=family.size,
-    )
+    patterns = points.patterns.astype(np.float64)
+    vertices = points.first, points.pattern, points.values, points.light
+    return DualProgram(*vertices, patterns, points.heavy, information, family.size)
 
 
 def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:
@@ -153,7 +138,7 @@ def _normals(
 
 def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
     """At vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
-    target = points.target
+    target = np.repeat(np.arange(len(points.heavy)), np.diff(points.first))
     close = np.flatnonzero(closeness > 0)
     order = close[np.lexsort((-closeness[close], target[close]))]
     target = target[order]
@@ -178,6 +163,8 @@ def _recompute(
     constants = np.where(points.sound, program.least(rest), without)
     mean = _mean(family, fraction)
     hidden = np.maximum(target_values(family, mean) - constants - shares @ fraction, 0.0)
+    trace = family.information[..., 0] + family.information[..., 2]
+    share = np.minimum(trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300), 1.0)  # of a target's information
     return Minorant(
         constant=float(constants.sum()),
         scores=shares.sum(axis=0),
@@ -185,16 +172,9 @@ def _recompute(
         own=own,
         heavy=points.heavy,
         fraction=fraction,
-        tension=_tension(family, mean, hidden),
+        tension=np.asarray(share @ np.where(np.isfinite(hidden), hidden, 0.0)),
         normals=_normals(family, points, slopes, rest, constants).astype(np.float32),
     )
-
-
-def _tension(family: SetFamily, mean: FloatArray, hidden: FloatArray) -> FloatArray:
-    """(F,) sum over targets of the hidden value times the robot's share of the target's information."""
-    trace = family.information[..., 0] + family.information[..., 2]
-    share = trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300)
-    return np.asarray(np.minimum(share, 1.0) @ np.where(np.isfinite(hidden), hidden, 0.0))
 
 
 @numba.njit(cache=True)

@@ -21,29 +21,19 @@ __all__ = ["DualProgram", "Multipliers"]
 
 COLD, WARM = (0.5, 0.3, 0.15, 0.1, 0.05, 0.03, 0.015), (0.05, 0.02)
 """Temperatures, in the room left per target, from a first guess and from a related family's multipliers."""
-
 STEPS = 25
-"""L-BFGS steps at each temperature: time for a better bound.
-
-At 40 robots (trace, log-det) 12 steps took half the time for nearly as many nodes, and 50 almost twice the time.
-"""
-
+"""L-BFGS steps at each temperature: time for a better bound. At 40 robots (trace, log-det) 12 steps took half the time
+for nearly as many nodes, and 50 almost twice the time."""
 MEMORY = 20
 """Pairs that L-BFGS remembers: nearly all of its :data:`STEPS`, as a step costs far more than they do; with 8, 4 % more
 nodes for log-det at 40 robots."""
-
 NEGLIGIBLE = 14.0
 """Points this many temperatures above the least have no weight worth computing."""
-
 SCREENED = 200.0
-"""Points this many temperatures above the least are left out until the next temperature: they only cost time.
-
-A quarter of it, and no limit, gave the same nodes at 40 robots.
-"""
-
+"""Points this many temperatures above the least are left out until the next temperature: they only cost time. A quarter
+of it, and no limit, gave the same nodes at 40 robots."""
 BISECTIONS = 60
 """Halvings of a level's interval: to below the rounding of its ends."""
-
 FLAT = 1e-6
 """Directions in which points spread by less, relative to all (squared), count as if they did by so much."""
 
@@ -168,14 +158,8 @@ class _Ascent:
         """The multipliers of the best bound met, and the fractions there."""
         from scipy.optimize import minimize
 
-        minimize(
-            self._negated,
-            self._best,
-            jac=True,
-            method="L-BFGS-B",
-            callback=self._stop_at_goal,
-            options={"maxiter": STEPS, "maxcor": MEMORY},
-        )
+        options: Any = {"maxiter": STEPS, "maxcor": MEMORY}
+        minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=self._stop_at_goal, options=options)
         return self._multipliers(self._best), self._fraction
 
     def _stop_at_goal(self, xk: FloatArray) -> None:  # noqa: ARG002  (the name SciPy looks for)

@@ -23,10 +23,8 @@ __all__ = ["WeakestAxis", "weakest_axis"]
 
 FIRST_INTERVALS = 16
 """Arcs per target before bisection: enough that most close at once, few enough that easy targets cost little."""
-
 CLOSED = 1e-12
 """Relative width at which an interval counts as decided."""
-
 LONGEST = 60
 """Bisections; intervals left open then only loosen the bound."""
 
@@ -58,7 +56,8 @@ def weakest_axis(family: SetFamily) -> WeakestAxis:
         k = int(at_middle.argmin())
         if at_middle[k] < best:
             best, where = float(at_middle[k]), (int(target[k]), float(middle[k]))
-        corners = np.stack([smallest(target, _direction(middle + s, c)) for s, c in _corners(half)]).min(axis=0)
+        ends = (-half, 1.0), (half, 1.0), (0.0, float(np.cos(half)))  # two on the circle, one outside: shift, cosine
+        corners = np.stack([smallest(target, _direction(middle + s, c)) for s, c in ends]).min(axis=0)
         is_open = corners < best * (1 - CLOSED)
         decided = min(decided, float(corners[~is_open].min(initial=np.inf)))
         if not is_open.any():
@@ -78,11 +77,6 @@ def _harmonics(matrices: FloatArray) -> FloatArray:
     """``v' [[a, b], [b, c]] v`` at angle t / 2 as coefficients of (1, cos t, sin t): (..., 3) -> (..., 3)."""
     a, b, c = matrices[..., 0], matrices[..., 1], matrices[..., 2]
     return np.stack([(a + c) / 2, (a - c) / 2, b], axis=-1)
-
-
-def _corners(half: float) -> tuple[tuple[float, float], ...]:
-    """(shift, cosine) of the triangle around an arc: two end points on the circle, one outside it."""
-    return ((-half, 1.0), (half, 1.0), (0.0, float(np.cos(half))))
 
 
 def _direction(angle: FloatArray, cosine: float) -> FloatArray:

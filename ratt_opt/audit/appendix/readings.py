@@ -1,26 +1,40 @@
 """Lines that the text admits several readings of: whose worst attack A* is, which robots a set holds, who is replaced.
 
 Here the readings differ in the statement itself; where they differ in a premise only, they stand with their line.
+
+The dominance claim of Pattern 2 (Distributions 2 and 3, ii) says that baits of V1 beat greedy survivors of V2. With
+its stated reason only, it is one linear claim. "A* is the worst attack" adds one disjunction
+per attack outcome: some group of that outcome still reaches the team value under A*, which is
+``f(u on V2\\A*)`` if the claim fails. One outcome suffices: V1's surviving baits together, each greedy
+survivor alone. It gives one linear claim per group, and the entry is proved when all of them are.
+
+The smallest team in which V2\\A* holds two greedy robots (one is beaten by any single bait) has
+alpha_s = 1, |V1| = |V2| = 3, hence N = 6; with part of the attack in V1, alpha_s = 2 and N = 7.
 """
 
 from __future__ import annotations
 
-from itertools import combinations
+from functools import partial
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import ONE_PLUS_K
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.pattern2 import beside_v2
-from ratt_opt.audit.appendix.roles import Side, attacks_on, team_of, worst_for
-from ratt_opt.audit.appendix.submodular import GROUP
+from ratt_opt.audit.appendix.patterns import GROUP, beside_v2
+from ratt_opt.audit.appendix.roles import ONE_PLUS_K, Side, Team, attacks_on, team_of, worst_for
+from ratt_opt.audit.appendix.team_lines import OPTIMUM, PLAN
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, THEOREM1
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
-from ratt_opt.audit.engine.polynomial import T
+from ratt_opt.audit.engine.rationals import T
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.graph.threat import Threat
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["readings_of_sets", "readings_of_the_attack"]
+    from ratt_opt.audit.appendix.roles import Robots
+
+__all__ = ["SETTINGS", "dominance_entries", "readings_of_sets", "readings_of_the_attack"]
 
 ND = FunctionClass.TOTAL_CURVATURE
 STEP, AS_WRITTEN, CUMULATIVE = EntryKind.STEP, EntryKind.AS_WRITTEN, EntryKind.CUMULATIVE
@@ -36,18 +50,12 @@ def readings_of_the_attack() -> Iterator[ClaimEntry]:
         ("team_subgroup", Side.RATT, ">=", "RATT's", PATTERN_FREE_ND),
         (optimum, Side.OPTIMUM, "<=", "the optimum's", Reference(optimum, STEP)),
     )
-    for worst, reading in (
-        (Side.RATT, "A* is the plan's worst attack"),
-        (Side.OPTIMUM, "A* is the optimum's worst attack"),
-    ):
+    for worst, reading in ((Side.RATT, PLAN), (Side.OPTIMUM, OPTIMUM)):
         for label, side, used, who, serves_by in lines:
             above, below = tuple(_other_attacks(worst, side)), tuple(_below(side))
             as_used = above if used == ">=" else below
-            for kind, relation, claims in (
-                (STEP, used, as_used),
-                (AS_WRITTEN, "=", above + below),
-                (CUMULATIVE, used, as_used),
-            ):
+            forms = ((STEP, used, as_used), (AS_WRITTEN, "=", above + below), (CUMULATIVE, used, as_used))
+            for kind, relation, claims in forms:
                 yield ClaimEntry(
                     label=label,
                     kind=kind,
@@ -132,3 +140,60 @@ def _every_subset(*, from_start: bool) -> Iterator[SizedClaim]:
                 claim = team.comparison(FunctionClass.CURVATURE, above * ONE_PLUS_K, team.compared(chosen) * T)
                 text = f"{team.text((attacked,))}; W = {{{','.join(chosen)}}}; order {','.join(team.greedy)}"
                 yield SizedClaim(size=text, robots=4, claim=claim, team=team)
+
+
+SETTINGS = {2: (6, 1, 9), 3: (7, 2, 12)}
+"""Distribution -> (N, alpha_s, alpha_c): CAA gives n_max = 3 and 4, so groups (3, 3) and (4, 3)."""
+SURVIVORS = ("b1", "b2", "b3")
+RIVALS = ("g1", "g2")
+FAMILIES = {FunctionClass.TOTAL_CURVATURE: "total curvature", FunctionClass.CURVATURE: "submodular"}
+
+
+def dominance_entries() -> Iterator[ClaimEntry]:
+    """Yield the claim with its stated reason, and with "A* is the worst attack" added, for both classes."""
+    for distribution, function_class in product(SETTINGS, FAMILIES):
+        yield from _dominance(distribution, function_class)
+
+
+def _dominance(distribution: int, function_class: FunctionClass) -> Iterator[ClaimEntry]:
+    n_robots, alpha_s, alpha_c = SETTINGS[distribution]
+    bait = team_of(n_robots - len(RIVALS), 0).bait
+    # One control per robot: RATT's plan is the only plan, so nothing else is in play.
+    team = Team(bait, RIVALS, without_optimum=frozenset((*bait, *RIVALS)))
+    size = f"N = {n_robots}, alpha_s = {alpha_s}, alpha_c = {alpha_c}: 3 baits of V1 and 2 greedy of V2 left"
+    family, label = FAMILIES[function_class], f"nd_p2d{distribution}v2_dominance"
+
+    def sized(premises: tuple[Inequality, ...], case: str = "") -> SizedClaim:
+        claim = team.comparison(function_class, team.chosen(SURVIVORS), team.chosen(RIVALS), premises)
+        return SizedClaim(size=size + case, robots=n_robots, claim=claim, team=team)
+
+    def given_that(group: Robots) -> SizedClaim:
+        name = f"{{{','.join(group)}}}"
+        reason = f"the best group of the other attack is {name}, and A* is no better for the team"
+        reaches = Inequality(reason, team.chosen(group) - team.chosen(RIVALS))
+        return sized((*team.premises, reaches), f"; other attack's best group {name}")
+
+    entry = partial(
+        ClaimEntry,
+        label=label,
+        kind=EntryKind.CLAIM,
+        chain="dominance",
+        statement="f(u on V1\\A*) >= f(u on V2\\A*) when only greedy robots of V2 survive",
+        survives_by=Reference(f"nd_p2d{distribution}v2", EntryKind.CUMULATIVE),
+    )
+    proved, reading = f"A* is the worst attack; {family}", f"stated reason only; {family}"
+    text = f"more baits than greedy robots survive, each bait is individually better; {function_class.value}"
+    serves_by, claims = Reference(label, EntryKind.CLAIM, proved), (sized(team.bait_premises()),)
+    yield entry(hypotheses=text, claims=claims, reading=reading, serves_by=serves_by)
+    text = f"RATT's choices, and A* is the worst attack on its plan; {function_class.value}"
+    threat = Threat(CommunicationGraph.complete(n_robots), alpha_s, alpha_c)
+    cases = tuple(given_that(group) for group in _deciding_outcome(team, threat))
+    yield entry(hypotheses=text, claims=cases, reading=proved)
+
+
+def _deciding_outcome(team: Team, threat: Threat) -> tuple[Robots, ...]:
+    """The outcome used, after checking that the library finds it among the attacks of this setting."""
+    groups = (SURVIVORS, *((rival,) for rival in RIVALS))
+    outcome = {frozenset(team.robots.index(name) for name in group) for group in groups}
+    assert any(set(found) == outcome for found in non_dominated_outcomes(threat)), "the outcome is within the budgets"
+    return groups

@@ -1,28 +1,26 @@
 """The lines that sum up a distribution or a pattern: from groups to the team.
 
-``team`` is RATT's worst-case value and ``opt`` the optimum's. Both are bounds between numbers
-that are no function values, so they enter as auxiliary numbers with the facts that define them.
-Each claim fixes which group wins for the optimum and uses that group's own factor, which is at
-least the minimum the paper writes (opt >= 0).
+``team`` is RATT's worst-case value and ``opt`` the optimum's. Both are bounds between numbers that are no function
+values, so they enter as auxiliary numbers with the facts that define them. Each claim fixes which group wins for the
+optimum and uses that group's own factor, which is at least the minimum the paper writes (opt >= 0).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
-from ratt_opt.audit.appendix.roles import Team
+from ratt_opt.audit.appendix.roles import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor, Team
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
-from ratt_opt.audit.engine.polynomial import T, constant
+from ratt_opt.audit.engine.rationals import T, constant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     Groups = tuple[tuple[str, ...], ...]
 
-__all__ = ["OPT", "TEAM", "team_lines"]
+__all__ = ["OPT", "OPTIMUM", "PLAN", "TEAM", "team_lines"]
 
 TEAM, OPT = Linear.of("team"), Linear.of("opt")
 PLAN, OPTIMUM = "A* is the plan's worst attack", "A* is the optimum's worst attack"
@@ -99,19 +97,19 @@ def _pattern2(many: Factor, few: Factor) -> tuple[_Grouping, ...]:
 
 def _distribution(label: str, bound: _Bound, grouping: _Grouping) -> Iterator[ClaimEntry]:
     for reading in (PLAN, OPTIMUM):
-        for kind, origin in ((STEP, "the bounds of its groups"), (CUMULATIVE, "RATT's choices alone")):
-            is_step = kind is STEP
-            yield ClaimEntry(
-                label=label,
-                kind=kind,
-                chain=label,
-                statement=f"from {origin}: RATT's worst-case value >= {bound.text} of the optimum's",
-                hypotheses=HYPOTHESES,
-                claims=tuple(_claims(bound.function_class, grouping, reading, is_step=is_step)),
-                reading=reading,
-                survives_by=Reference(label, CUMULATIVE) if is_step else None,
-                serves_by=Reference(label, STEP, PLAN) if is_step and reading == OPTIMUM else None,
-            )
+        given = tuple(_claims(bound.function_class, grouping, reading, is_step=True))
+        text = f"the bounds of its groups: RATT's worst-case value >= {bound.text} of the optimum's"
+        serves_by = Reference(label, STEP, PLAN) if reading == OPTIMUM else None
+        step = _line(label, STEP, text, given)
+        yield replace(step, reading=reading, survives_by=Reference(label, CUMULATIVE), serves_by=serves_by)
+        alone = tuple(_claims(bound.function_class, grouping, reading, is_step=False))
+        text = f"RATT's choices alone: RATT's worst-case value >= {bound.text} of the optimum's"
+        yield replace(_line(label, CUMULATIVE, text, alone), reading=reading)
+
+
+def _line(label: str, kind: EntryKind, text: str, claims: tuple[SizedClaim, ...]) -> ClaimEntry:
+    text = f"from {text}"
+    return ClaimEntry(label=label, kind=kind, chain=label, statement=text, hypotheses=HYPOTHESES, claims=claims)
 
 
 def _claims(function_class: FunctionClass, grouping: _Grouping, reading: str, *, is_step: bool) -> Iterator[SizedClaim]:
@@ -136,12 +134,6 @@ def _overall(label: str, bound: _Bound, groupings: Sequence[_Grouping]) -> Itera
     same = team.claim(kind, part, (Inequality("the bound of the part", part),))
     step = (SizedClaim(size="each part", robots=len(team.robots), claim=same),)
     again = tuple(claim for grouping in groupings for claim in _claims(kind, grouping, PLAN, is_step=False))
-    for form, claims, origin in ((STEP, step, "Distributions 1 to 3"), (CUMULATIVE, again, "RATT's choices alone")):
-        yield ClaimEntry(
-            label=label,
-            kind=form,
-            chain=label,
-            statement=f"from {origin}: worst-case value >= {bound.text} of the optimum's",
-            hypotheses=HYPOTHESES,
-            claims=claims,
-        )
+    text = f"worst-case value >= {bound.text} of the optimum's"
+    yield _line(label, STEP, f"Distributions 1 to 3: {text}", step)
+    yield _line(label, CUMULATIVE, f"RATT's choices alone: {text}", again)

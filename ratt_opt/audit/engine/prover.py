@@ -1,9 +1,8 @@
 """Find a proof: non-negative multipliers of elementary inequalities that sum to the claim.
 
-For all curvatures at once, multipliers are forms in ``t = 1-c`` and ``s = c``: with
-``t + s = 1`` every row of degree r and the claim of degree D become homogeneous, and a
-multiplier ``sum_a x_a t^a s^(D-r-a)`` with ``x_a >= 0`` is non-negative on [0, 1]. The
-unknowns ``x_a`` solve one linear program, whose solution is rounded and re-checked.
+For all curvatures at once, multipliers are forms in ``t = 1-c`` and ``s = c``: with ``t + s = 1`` every row of degree r
+and the claim of degree D become homogeneous, and a multiplier ``sum_a x_a t^a s^(D-r-a)`` with ``x_a >= 0`` is
+non-negative on [0, 1]. The unknowns ``x_a`` solve one linear program, whose solution is rounded and re-checked.
 """
 
 from __future__ import annotations
@@ -14,10 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.audit.engine.cone import elementary, elementary_keys
-from ratt_opt.audit.engine.polynomial import ONE, ZERO, Polynomial, T, constant
-from ratt_opt.audit.engine.proof import Proof, ProofStep, check_proof
-from ratt_opt.audit.engine.rationals import solve_exactly
+from ratt_opt.audit.engine.claim import elementary, elementary_keys
+from ratt_opt.audit.engine.evidence import Proof, ProofStep, check_proof
+from ratt_opt.audit.engine.rationals import ONE, ZERO, Polynomial, T, constant, solve_exactly
 from ratt_opt.errors import ProofError
 from ratt_opt.highs import LinearProgram, Rows
 
@@ -25,8 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.audit.engine.claim import Claim, Key, Linear
-    from ratt_opt.audit.engine.cone import Elementary
+    from ratt_opt.audit.engine.claim import Claim, Elementary, Key, Linear
 
     Entries = dict[tuple[Key, int], Fraction]
     """Coefficients by value and power of ``t``: the rows of the linear program."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.audit.engine.cone import elementary, elementary_keys, largest_marginal
-from ratt_opt.audit.engine.counterexample import Witness, check_witness, values_of
+from ratt_opt.audit.engine.claim import elementary, elementary_keys, largest_marginal
+from ratt_opt.audit.engine.evidence import Witness, check_witness, values_of
 from ratt_opt.audit.engine.prover import SECONDS
 from ratt_opt.audit.engine.rationals import solve_exactly
 from ratt_opt.errors import ProofError

@@ -1,6 +1,6 @@
 """Statements about sizes, groups and counts, decided by running something; open ``setting.py`` first.
 
-``setting.py`` enumerates robots and budgets, ``arrangements.py`` the ways to fill groups. ``arrangement_claims.py``,
-``size_claims.py`` and ``smallest_teams.py`` test the appendix on all of them, ``running_time.py`` counts evaluations
-for Theorem 2, and ``tightness.py`` replays instances that attain the bounds.
+``setting.py`` enumerates robots, budgets and group sizes; ``arrangement_claims.py`` fills the groups, and with
+``size_claims.py`` tests the appendix on all of them, ``running_time.py`` counts evaluations for Theorem 2, and
+``tightness.py`` replays instances that attain the bounds.
 """

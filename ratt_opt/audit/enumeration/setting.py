@@ -1,4 +1,4 @@
-"""Robots, budgets and what RATT and CAA derive from them, and the outcome of trying a claim on all of them."""
+"""Robots, budgets and what RATT and CAA derive from them, how groups can be sized, and how a claim fared."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import Counted
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.graph.caa import caa
+from ratt_opt.graph.survivor_sizes import caa
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-__all__ = ["LARGEST", "SHOWN_CASES", "Setting", "counted", "every_link_budget", "every_setting"]
+__all__ = ["LARGEST", "Setting", "caa_groups", "counted", "every_link_budget", "every_setting", "splits"]
 
 LARGEST = 8
 """Largest team enumerated: claims that fail do so by N = 4, what occurs does by 7; a robot more takes twice as long."""
@@ -75,9 +75,27 @@ def counted(faults: Iterable[str], sizes: str, what: str) -> Counted:
     found = list(faults)
     cases = [fault for fault in found if fault]
     verdict = Verdict.REFUTED if cases else Verdict.PROVED if found else Verdict.UNDECIDED
-    return Counted(
-        verdict=verdict,
-        sizes=sizes,
-        detail=f"{len(found)} {what} enumerated, {len(cases)} break the claim",
-        cases=tuple(cases[:SHOWN_CASES]),
-    )
+    detail = f"{len(found)} {what} enumerated, {len(cases)} break the claim"
+    return Counted(verdict=verdict, sizes=sizes, detail=detail, cases=tuple(cases[:SHOWN_CASES]))
+
+
+def splits(n_robots: int, alpha_c: int, largest: int | None = None) -> list[tuple[int, ...]]:
+    """Group sizes, largest first, that cutting ``alpha_c`` links of a complete graph can leave; at most ``largest``."""
+    sizes = _partitions(n_robots, n_robots if largest is None else largest)
+    return [split for split in sizes if n_robots**2 - sum(s * s for s in split) <= 2 * alpha_c]
+
+
+def _partitions(total: int, largest: int) -> Iterator[tuple[int, ...]]:
+    if total == 0:
+        yield ()
+        return
+    for part in range(min(total, largest), 0, -1):
+        for rest in _partitions(total - part, part):
+            yield (part, *rest)
+
+
+def caa_groups(n_robots: int, alpha_c: int) -> tuple[int, ...]:
+    """CAA's groups: as many of ``n_max`` robots as fit, and the rest."""
+    n_max = caa(n_robots, alpha_c).n_max
+    full, rest = divmod(n_robots, n_max)
+    return (n_max,) * full + ((rest,) if rest else ())

@@ -25,7 +25,6 @@ PART_ATTACKED = Reference("nd_p1d3v1_7", EntryKind.CUMULATIVE)
 MANY_BAITS = Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE)
 LARGEST_FOR_BOUND = 5
 
-
 _claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="sizes", hypotheses="RATT's and CAA's definitions")
 
 
@@ -84,10 +83,6 @@ def _no_division_by_zero() -> Counted:
     return counted(faults, f"N <= {LARGEST_FOR_BOUND}, every budget", "budgets")
 
 
-def _first(faults: Iterator[str]) -> str:
-    return next(faults, "")
-
-
 def _pattern1_size(s: Setting) -> str:
     size = s.alpha_s + s.n_greedy
     return "" if size == s.n_max else f"|V1| = {size}, n_max = {s.n_max}"
@@ -102,7 +97,7 @@ def _pattern2_sizes(s: Setting) -> str:
     """V2 is in what V1 leaves."""
     greedy = range(1, s.n_greedy + 1)
     too_many = s.n_robots - s.n_max > s.alpha_cs
-    return _first(f"|V2g| = {g2}" for g2 in greedy if _many_baits(s, g2) != s.alpha_s + g2 or too_many)
+    return next((f"|V2g| = {g2}" for g2 in greedy if _many_baits(s, g2) != s.alpha_s + g2 or too_many), "")
 
 
 def _blinded_balance(s: Setting) -> str:
@@ -140,27 +135,29 @@ def _spreads(s: Setting) -> Iterator[_Spread]:
 
 
 def _safe_baits(s: Setting) -> str:
-    return _first(
-        f"alpha_s^1 = {one.part}: |V1b1| = {one.safe}, the text says alpha - alpha_s^1 = {s.alpha - one.part}"
-        for one in _spreads(s)
-        if one.safe != s.alpha - one.part
-    )
+    for one in _spreads(s):
+        if one.safe != s.alpha - one.part:
+            says = f"the text says alpha - alpha_s^1 = {s.alpha - one.part}"
+            return f"alpha_s^1 = {one.part}: |V1b1| = {one.safe}, {says}"
+    return ""
 
 
 def _safe_baits_repaired(s: Setting) -> str:
     wrong = (one for one in _spreads(s) if one.safe != s.alpha_s - one.part)
-    return _first(f"alpha_s^1 = {one.part}: |V1b1| = {one.safe}" for one in wrong)
+    return next((f"alpha_s^1 = {one.part}: |V1b1| = {one.safe}" for one in wrong), "")
 
 
 def _wrong_balance(s: Setting) -> str:
     """The reason of nd_p1d3v1_4 as printed, with V1b1, of which none is blinded."""
     wrong = (one for one in _spreads(s) if one.safe != one.hit)
-    return _first(f"alpha_s^1 = {one.part}: |V1b1\\A*| = {one.safe}, greedy robots blinded: {one.hit}" for one in wrong)
+    return next(
+        (f"alpha_s^1 = {one.part}: |V1b1\\A*| = {one.safe}, greedy robots blinded: {one.hit}" for one in wrong), ""
+    )
 
 
 def _right_balance(s: Setting) -> str:
     wrong = (one for one in _spreads(s) if one.left != one.hit)
-    return _first(f"alpha_s^1 = {one.part}, greedy robots blinded: {one.hit}" for one in wrong)
+    return next((f"alpha_s^1 = {one.part}, greedy robots blinded: {one.hit}" for one in wrong), "")
 
 
 def _in_v2(s: Setting) -> range:
@@ -170,14 +167,11 @@ def _in_v2(s: Setting) -> range:
 
 def _safe_baits_submodular(s: Setting) -> str:
     printed = s.alpha - s.alpha_s
-    return _first(
-        f"|V2g| = {g2} = |V1b1|, the text says alpha - alpha_s^1 = {printed} (all alpha_s in V1)"
-        for g2 in _in_v2(s)
-        if printed != g2
-    )
+    text = f"|V1b1|, the text says alpha - alpha_s^1 = {printed} (all alpha_s in V1)"
+    return next((f"|V2g| = {g2} = {text}" for g2 in _in_v2(s) if printed != g2), "")
 
 
 def _safe_baits_submodular_repaired(s: Setting) -> str:
     """V1b has alpha_s + |V2g| baits, of which V1b2 are alpha_s."""
     rest = (g2 for g2 in _in_v2(s) if len(set(range(_many_baits(s, g2))) - set(range(s.alpha_s))) != g2)
-    return _first(f"|V2g| = {g2}" for g2 in rest)
+    return next((f"|V2g| = {g2}" for g2 in rest), "")

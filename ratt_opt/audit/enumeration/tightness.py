@@ -11,13 +11,12 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.bounds import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
-from ratt_opt.audit.worst_ratio.families import attaining_instance, limit_instance, limit_ratio
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
-from ratt_opt.audit.worst_ratio.witness import replay
+from ratt_opt.audit.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -30,15 +29,9 @@ REPLAYED = tuple((size, Fraction(part, 4)) for size, part in ((1, 2), (2, 1), (2
 """Sizes g and total curvatures c."""
 ATTAINED = tuple((size, Fraction(*k)) for size, k in ((2, (1, 4)), (2, (1, 2)), (3, (3, 5)), (3, (2, 3))))
 """Sizes m and curvatures k."""
-
-
 SUB_TIGHT, ND_TIGHT = (Reference(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
-_claim = partial(
-    EnumeratedEntry,
-    kind=EntryKind.CLAIM,
-    chain="tightness",
-    hypotheses="all set functions of the class, complete graph",
-)
+GIVEN = "all set functions of the class, complete graph"
+_claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="tightness", hypotheses=GIVEN)
 
 
 def tightness_entries() -> Iterator[EnumeratedEntry]:
@@ -84,13 +77,9 @@ def _attained() -> Counted:
     found = worst_case_ratio(4, 0, 3, curvature=k, family="submodular")
     if found.stop is Stop.INTERRUPTED:
         raise KeyboardInterrupt
-    fine = found.exact_upper == 1 - k
+    verdict = Verdict.PROVED if found.exact_upper == 1 - k else Verdict.UNDECIDED
     detail = f"exact worst ratio {found.exact_upper} at k = {k}, replayed through the library"
-    return Counted(
-        verdict=Verdict.PROVED if fine else Verdict.UNDECIDED,
-        sizes="N = 4, alpha_s = 0, alpha_c = 3, one value of k",
-        detail=detail,
-    )
+    return Counted(verdict=verdict, sizes="N = 4, alpha_s = 0, alpha_c = 3, one value of k", detail=detail)
 
 
 def _attained_by_family() -> Counted:

@@ -1,5 +1,5 @@
 """The claims of the ledger tried on EKF objectives; open ``search.py`` first.
 
-``cast.py`` gives the names of a claim to the elements of a real instance: RATT's choices and an optimal plan's.
-``exact_criteria.py`` evaluates the criteria without rounding, to replay the largest violation that was found.
+``cast.py`` gives the names of a claim to the elements of a real instance: RATT's choices and an optimal plan's,
+and evaluates the criteria without rounding, to replay the largest violation that was found.
 """

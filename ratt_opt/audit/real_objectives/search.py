@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.audit.real_objectives.cast import Cast, Stage, is_castable
-from ratt_opt.audit.real_objectives.exact_criteria import ExactCriterion
+from ratt_opt.audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.generator import random_scenario
 
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from ratt_opt.audit.engine.claim import FunctionClass
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["Origin", "RealSearch", "Trial", "exact_violation", "objective_for", "search_real_objectives"]
+__all__ = ["Origin", "RealSearch", "Trial", "exact_violation", "search_real_objectives"]
 
 SEEDS = tuple(range(10))
 N_TARGETS = 3
@@ -93,9 +92,7 @@ def objective_for(function_class: FunctionClass) -> str:
 def search_real_objectives(claims: Sequence[SizedClaim], *, refuted: bool) -> RealSearch | None:
     """Try the claims of one entry; ``None`` where none can be cast in the roles of an instance.
 
-    Parameters
-    ----------
-    refuted : the claims are known to fail for some function: look harder for a geometry that breaks them
+    ``refuted`` claims are known to fail for some function: look harder for a geometry that breaks them.
     """
     usable = [sized for sized in claims if is_castable(sized.claim, sized.team)]
     if not usable:

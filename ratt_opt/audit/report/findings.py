@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind, Reference
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
-from ratt_opt.audit.report.words import title
 
 if TYPE_CHECKING:
-    from ratt_opt.audit.report.document import EntryRecord, LedgerDocument
+    from ratt_opt.audit.report.records import EntryHead, EntryRecord, LedgerDocument
 
-__all__ = ["Finding", "findings"]
+__all__ = ["Finding", "findings", "title"]
 
 STEP = EntryKind.STEP
 PLAN, OPTIMUM, TEAM = "the plan's", "the optimum's", "the team's only"
@@ -28,6 +27,12 @@ class Finding:
     table: tuple[tuple[str, ...], ...] = ()
 
 
+def title(record: EntryHead) -> str:
+    """Label, kind and reading of an entry."""
+    reading = f" ({record['reading']})" if record["reading"] else ""
+    return f"{record['label']}, {record['kind']}{reading}"
+
+
 def findings(document: LedgerDocument) -> tuple[Finding, ...]:
     """Return the sections in reading order; sections without anything to say are left out."""
     records = document["entries"]
@@ -40,9 +45,8 @@ def _theorems(records: list[EntryRecord]) -> Finding:
     first = [r for r in rows if r["label"] in (THEOREM1.label, THEOREM1_SUB.label)]
     sentences = []
     if _all_proved(first):
-        sentences.append(
-            "Both bounds of Theorem 1 hold: each is proved from RATT's choices alone, without the appendix."
-        )
+        hold = "Both bounds of Theorem 1 hold: each is proved from RATT's choices alone, without the appendix."
+        sentences.append(hold)
     if _all_proved([r for r in rows if r["label"] in (PATTERN_FREE_ND.label, PATTERN_FREE_SUB.label)]):
         sentences.append(
             "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
@@ -89,14 +93,13 @@ def _readings(records: list[EntryRecord]) -> Finding:
             table.append((label, *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
             for who, labels in fails.items():
                 labels.extend([label] * (found.get(who) == REFUTED))
-    sentences = [f"If A* is {who} worst attack, {_steps(len(labels))}." for who, labels in fails.items()]
+    sentences = []
+    for who, labels in fails.items():
+        steps = "1 step fails" if len(labels) == 1 else f"{len(labels)} steps fail"
+        sentences.append(f"If A* is {who} worst attack, {steps}.")
     if all(fails.values()):
         sentences.append("So no single reading of A* makes every step hold.")
     return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
-
-
-def _steps(count: int) -> str:
-    return "1 step fails" if count == 1 else f"{count} steps fail"
 
 
 def _whose(reading: str) -> str | None:
@@ -113,9 +116,8 @@ def _repairs(records: list[EntryRecord]) -> Finding:
             without = (survival and survival["verdict"]) or "-"
             table.append((title(record), _size(record), _left(record), without))
     whole = sum(row[3] == PROVED for row in table[1:])
-    text = (
-        f"{len(table) - 1} statements are refuted; for {whole} of them the conclusion is proved without the statement."
-    )
+    text = f"{len(table) - 1} statements are refuted; for {whole} of them the conclusion is proved without"
+    text = f"{text} the statement."
     return Finding(heading="Refuted, and what serves instead", sentences=(text,), table=tuple(table))
 
 

@@ -1,65 +1,146 @@
-"""From a decided entry to its record in ``audit.json``."""
+"""The JSON data of ``audit.json``, typed, also for ledgers read from disk, and an entry's record from its decision."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
-from ratt_opt.audit.engine.proof import step_inequality
+from ratt_opt.audit.engine.evidence import step_inequality
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from ratt_opt.audit.decided import DecidedClaim, DecidedEntry
-    from ratt_opt.audit.engine.best_factor import BestFactor
+    from ratt_opt.audit.appendix.entry import Entry, SizedClaim
     from ratt_opt.audit.engine.claim import Claim
-    from ratt_opt.audit.engine.counterexample import Witness
-    from ratt_opt.audit.engine.proof import Proof
+    from ratt_opt.audit.engine.decide import BestFactor, Decision, Verdict
+    from ratt_opt.audit.engine.evidence import Proof, Witness
     from ratt_opt.audit.real_objectives.search import RealSearch
-    from ratt_opt.audit.report.document import (
-        ClaimRecord,
-        EntryHead,
-        EntryRecord,
-        FactorRecord,
-        ProofRecord,
-        RealRecord,
-        WitnessRecord,
-        WorstRecord,
-    )
 
-__all__ = ["entry_record", "real_record"]
-
-ENUMERATED = "exhaustive enumeration"
-BY_CONE = "linear programming over the set-function cone, re-checked exactly"
+__all__ = ["ClaimRecord", "EntryHead", "EntryRecord", "FactorRecord", "LedgerDocument", "OtherEntry",
+           "RealRecord", "WitnessRecord", "WorstRecord", "begun", "claim_record", "factor_record",
+           "real_record"]  # fmt: skip
 
 
-def entry_record(decided: DecidedEntry) -> EntryRecord:
-    """The record of one entry, without what other entries say about it."""
-    counted, remains = decided.counted, decided.remains
-    if counted is not None:
-        record = _begun(decided, ENUMERATED)
-        record["sizes"], record["detail"] = counted.sizes, counted.detail
-        record["counterexamples"], record["claims"] = list(counted.cases), []
-        record["seconds"] = decided.seconds
-        return record
-    robots = [claim.sized.robots for claim in decided.claims]
-    in_play = f"{min(robots)} to {max(robots)} robots in play, {len(robots)} cases"
-    record = _begun(decided, BY_CONE)
-    record["function_class"] = decided.claims[0].sized.claim.function_class.value
-    record["sizes"] = f"for all functions of the class, {in_play}"
-    record["curvature"] = sorted({claim.decision.scope for claim in decided.claims})
-    record["claims"] = [_claim(claim) for claim in decided.claims]
-    if remains is not None:
-        record["best_factors"] = _factors(remains.factors)
-        record["realistic"] = None if remains.real is None else real_record(remains.real)
-        if remains.has_detours:
-            record["follows_from"] = remains.follows_from
-    record["seconds"] = decided.seconds
-    return record
+class ProofRecord(TypedDict):
+    """A proof; a step is [multiplier, reason, inequality], and the steps sum to the claim.
+
+    ``curvature`` : the one value it holds for, ``None`` for all; ``curvature_domain`` : feasible sets or all sets.
+    """
+
+    curvature: str | None
+    curvature_domain: str
+    steps: list[list[str]]
 
 
-def _begun(decided: DecidedEntry, decided_by: str) -> EntryRecord:
+class WitnessRecord(TypedDict):
+    """A function that breaks a claim: its values on all subsets, by bit mask over ``elements``.
+
+    ``ratt_chooses_the_roles`` : whether RATT itself, run on the function with this many baits,
+    picks the elements named as its choices (``None`` where the elements have no roles).
+    """
+
+    elements: list[str]
+    robot: list[int]
+    values: list[int]
+    values_in_play: dict[str, int]
+    auxiliary: dict[str, str]
+    curvature: str | None
+    violation: str
+    premises: list[str]
+    ratt_chooses_the_roles: bool | None
+
+
+class ClaimRecord(TypedDict):
+    """One size of an entry with its proof or counterexample."""
+
+    size: str
+    robots: int
+    claim: str
+    premises: int
+    verdict: str
+    scope: str
+    proofs: list[ProofRecord]
+    witness: WitnessRecord | None
+
+
+FactorRecord = TypedDict(
+    "FactorRecord", {"curvature": "str | None", "factor": "str", "cannot_exceed_by_1/1000": "bool"}
+)
+"""Best factor of a refuted step at one curvature."""
+
+
+class WorstRecord(TypedDict):
+    """The worst EKF instance, complete: the scenario file's content, the roles, and the sign of the violation."""
+
+    origin: str
+    claim: str
+    relative_violation: float
+    violated_exactly: bool
+    elements: dict[str, int]
+    scenario: dict[str, Any]
+
+
+class RealRecord(TypedDict):
+    """What trying an entry on EKF objectives found."""
+
+    objective: str
+    section_vi_instances: int
+    section_vi_violations: int
+    worst: WorstRecord | None
+
+
+class OtherEntry(TypedDict):
+    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` where readings differ)."""
+
+    entry: str
+    verdict: str | None
+
+
+class EntryHead(TypedDict):
+    """What an entry states, and how it was decided."""
+
+    label: str
+    kind: str
+    chain: str
+    reading: str
+    statement: str
+    hypotheses: str
+    decided_by: str
+    verdict: str
+
+
+class EntryRecord(EntryHead):
+    """One entry with its evidence.
+
+    ``detail``, ``counterexamples`` : of entries decided by enumeration; ``function_class``, ``curvature`` : of the
+    others, and, where they were looked for, ``best_factors``, ``realistic`` and ``follows_from``.
+    """
+
+    sizes: str
+    claims: list[ClaimRecord]
+    seconds: float
+    detail: NotRequired[str]
+    counterexamples: NotRequired[list[str]]
+    function_class: NotRequired[str]
+    curvature: NotRequired[list[str]]
+    best_factors: NotRequired[list[FactorRecord]]
+    realistic: NotRequired[RealRecord | None]
+    follows_from: NotRequired[str | None]
+    conclusion_without_it: NotRequired[OtherEntry]
+    weaker_step_that_serves: NotRequired[OtherEntry]
+
+
+class LedgerDocument(TypedDict):
+    """The whole file."""
+
+    format: str
+    complete: bool
+    quick: bool
+    curvature_grid: list[str]
+    counts: dict[str, int]
+    seconds: float
+    entries: list[EntryRecord]
+
+
+def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:
     """A record without its evidence, which the caller adds in the order of the file."""
-    entry = decided.entry
     head: EntryHead = {
         "label": entry.label,
         "kind": entry.kind.value,
@@ -68,22 +149,23 @@ def _begun(decided: DecidedEntry, decided_by: str) -> EntryRecord:
         "statement": entry.statement,
         "hypotheses": entry.hypotheses,
         "decided_by": decided_by,
-        "verdict": decided.verdict.value,
+        "verdict": verdict.value,
     }
     return cast("EntryRecord", head)
 
 
-def _claim(decided: DecidedClaim) -> ClaimRecord:
-    claim, decision = decided.sized.claim, decided.decision
+def claim_record(sized: SizedClaim, decision: Decision, chooses_roles: bool | None) -> ClaimRecord:
+    """One size with its evidence; ``chooses_roles`` as in :class:`WitnessRecord`."""
+    claim = sized.claim
     return {
-        "size": decided.sized.size,
-        "robots": decided.sized.robots,
+        "size": sized.size,
+        "robots": sized.robots,
         "claim": claim.text(),
         "premises": len(claim.premises),
         "verdict": decision.verdict.value,
         "scope": decision.scope,
         "proofs": [_proof(claim, proof) for proof in decision.proofs],
-        "witness": None if decision.witness is None else _witness(claim, decision.witness, decided.chooses_roles),
+        "witness": None if decision.witness is None else _witness(claim, decision.witness, chooses_roles),
     }
 
 
@@ -92,7 +174,7 @@ def _proof(claim: Claim, proof: Proof) -> ProofRecord:
     steps = []
     for step in proof.steps:
         inequality = step_inequality(claim, step)
-        multiplier = step.multiplier.form_text(claim.symbol)
+        multiplier = step.multiplier.form_text(claim.function_class.symbol)
         steps.append([multiplier, inequality.reason, claim.text(inequality.expression)])
     return {
         "curvature": None if proof.curvature is None else str(proof.curvature),
@@ -115,15 +197,10 @@ def _witness(claim: Claim, witness: Witness, chooses_roles: bool | None) -> Witn
     }
 
 
-def _factors(found: Iterable[BestFactor]) -> list[FactorRecord]:
-    return [
-        {
-            "curvature": None if best.curvature is None else str(best.curvature),
-            "factor": str(best.factor),
-            "cannot_exceed_by_1/1000": best.is_best,
-        }
-        for best in found
-    ]
+def factor_record(best: BestFactor) -> FactorRecord:
+    """The best factor at one curvature."""
+    curvature = None if best.curvature is None else str(best.curvature)
+    return {"curvature": curvature, "factor": str(best.factor), "cannot_exceed_by_1/1000": best.is_best}
 
 
 def real_record(found: RealSearch) -> RealRecord:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,27 +29,6 @@ MOST_ROWS = 3000
 """Violated class rows added at once, the worst first: only submodular functions of seven robots have more in all."""
 MOST_COMPLETE = 1 << 12
 """Columns up to which all rows of diminishing returns fit in a program from the start (67,584 rows for 4,096)."""
-
-
-class ClassRows(Protocol):
-    """Columns for the values of subsets (column 0 is the ratio), and the rows that put them in the class."""
-
-    n_columns: int
-
-    def column(self, mask: int) -> int:
-        """Column of the value of a non-empty subset that the program mentions."""
-
-    def first_rows(self) -> list[Row]:
-        """Rows that every program of the class starts from."""
-
-    def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:
-        """Class rows that the values of the ``used`` subsets break, empty when they extend to the class."""
-
-    def optimal_values(self, x: FloatArray, used: Collection[int], masks: Sequence[int]) -> FloatArray:
-        """Values, in one function of the class, of subsets that the program need not have used."""
-
-    def table(self, point: Sequence[Fraction], used: Collection[int]) -> list[Fraction]:
-        """Values of all ``4**N`` subsets from a rational point of the program."""
 
 
 class Submodular:
@@ -94,7 +73,7 @@ class Submodular:
         return [sum(pick) for pick in picks]
 
     def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:  # noqa: ARG002  (every subset has a column)
-        """Diminishing returns ``f(S+a) + f(S+b) >= f(S+a+b) + f(S)`` that fail and are not in the program yet."""
+        """Diminishing returns ``f(S+a) + f(S+b) >= f(S+a+b) + f(S)`` that fail; empty in the class."""
         if self.is_complete:
             return []
         values = x.copy()
@@ -108,11 +87,11 @@ class Submodular:
         return [_diminishing(a, b, base) for _, a, b, base in found[:MOST_ROWS]]
 
     def optimal_values(self, x: FloatArray, used: Collection[int], masks: Sequence[int]) -> FloatArray:  # noqa: ARG002
-        """The program's own values."""
+        """Values of subsets: the program's own."""
         return x[np.array(masks, dtype=np.int64)]
 
     def table(self, point: Sequence[Fraction], used: Collection[int]) -> list[Fraction]:  # noqa: ARG002
-        """The program's own values."""
+        """Values of all ``4**N`` subsets from a rational point of the program."""
         return [Fraction(0), *point[1:]]
 
 
@@ -148,7 +127,7 @@ class NonDecreasing:
         return rows
 
     def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:
-        """Pairs of used subsets whose values no function of the class can have."""
+        """Pairs of used subsets whose values no function of the class can have; empty when they extend to it."""
         masks = np.array([0, *used], dtype=np.int64)
         values = np.array([0.0, *(x[self._columns[mask]] for mask in used)])
         slack = values[:, None] + self._length(x[1 : 1 + self.n], masks, masks) - values[None, :]
@@ -175,7 +154,7 @@ class NonDecreasing:
         return Row({j: value for j, value in terms.items() if value})
 
     def optimal_values(self, x: FloatArray, used: Collection[int], masks: Sequence[int]) -> FloatArray:
-        """Values of the largest extension."""
+        """Values, in the largest extension, of subsets that the program need not have used."""
         starts = np.array([0, *used], dtype=np.int64)
         values = np.array([0.0, *(x[self._columns[mask]] for mask in used)])
         length = self._length(x[1 : 1 + self.n], starts, np.array(masks, dtype=np.int64))
@@ -190,6 +169,10 @@ class NonDecreasing:
             removed += [value + self.kept * m for value in removed]
         known = [(0, Fraction(0)), *((mask, point[self._columns[mask]]) for mask in used)]
         return [min(f + added[t & ~s] - removed[s & ~t] for s, f in known) for t in range(1 << self.n)]
+
+
+ClassRows = Submodular | NonDecreasing
+"""Columns for the values of subsets (column 0 is the ratio), and the rows that put them in the class."""
 
 
 def _diminishing(a: int, b: int, base: int) -> Row:

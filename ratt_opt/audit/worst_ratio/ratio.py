@@ -11,9 +11,8 @@ import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt.audit.worst_ratio.class_rows import NonDecreasing, Submodular
-from ratt_opt.audit.worst_ratio.search import RatioSearch
-from ratt_opt.audit.worst_ratio.skeleton import Skeleton, skeleton
-from ratt_opt.audit.worst_ratio.witness import PLANNERS, RatioQuestion, RatioWitness, replay
+from ratt_opt.audit.worst_ratio.search import RatioSearch, Skeleton, skeleton
+from ratt_opt.audit.worst_ratio.witness import FAMILIES, PLANNERS, RatioQuestion, RatioWitness, replay
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.stopping import Stop
@@ -26,7 +25,6 @@ __all__ = ["WorstCaseRatio", "pattern_free_ratio", "worst_case_ratio"]
 LARGEST_TEAM = 7
 """Most robots: a witness has ``4**N`` values."""
 
-FAMILIES = ("submodular", "nondecreasing")
 DOMAINS = ("elements", "feasible")
 
 
@@ -102,7 +100,10 @@ def worst_case_ratio(
         domain=domain,
         planner=planner,
     )
-    _check_names(question)
+    choices = (("family", family, FAMILIES), ("planner", planner, PLANNERS), ("domain", domain, DOMAINS))
+    for name, value, known in choices:
+        if value not in known:
+            raise InputError(name, f"must be one of {', '.join(known)}", value)
     budget = Budget(time_limit)
     parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
     floor = pattern_free_ratio(question.curvature, family) if use_theorem else Fraction(0)
@@ -121,8 +122,8 @@ def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
     """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
 
     Proved in ``bounds.guarantees.pattern_free_bound``: its plan is any whose robots are bait or chosen greedily.
-    Neither can be improved for all N: ``families.attaining_instance`` attains the first for every ``k < 1``,
-    and the ratios of ``families.limit_instance`` tend to the second.
+    Neither can be improved for all N: ``witness.attaining_instance`` attains the first for every ``k < 1``,
+    and the ratios of ``witness.limit_instance`` tend to the second.
     """
     return 1 - curvature if family == "submodular" else (1 - curvature) ** 2
 
@@ -130,8 +131,6 @@ def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
 def check_curvature(value: float | str | Fraction) -> Fraction:
     """Return a curvature in [0, 1] as a rational; floats are read as the decimal they print as."""
     rule = "must be a number in [0, 1]"
-    if isinstance(value, (bool, np.bool_)):
-        raise InputError("curvature", rule, value)
     try:
         number = value if isinstance(value, Fraction) else Fraction(str(value))
     except (ValueError, ZeroDivisionError):
@@ -139,17 +138,6 @@ def check_curvature(value: float | str | Fraction) -> Fraction:
     if not 0 <= number <= 1:
         raise InputError("curvature", rule, value)
     return number
-
-
-def _check_names(question: RatioQuestion) -> None:
-    choices = (
-        ("family", question.family, FAMILIES),
-        ("planner", question.planner, tuple(PLANNERS)),
-        ("domain", question.domain, DOMAINS),
-    )
-    for name, value, known in choices:
-        if value not in known:
-            raise InputError(name, f"must be one of {', '.join(known)}", value)
 
 
 def _check_sensing(alpha_s: int, n_robots: int) -> int:

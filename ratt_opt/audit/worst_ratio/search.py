@@ -1,5 +1,10 @@
 """Best-first search over the attacks on the planner and over which groups save the optimal plan.
 
+Elements ``u_i`` are bit ``i`` and ``o_i`` bit ``N + i``. Robots are named so that the bait comes first and the greedy
+robots follow in the order in which greedy picks them; nothing is lost, as the threat is the same for all robots.
+With this order all ties of Algorithm 1 (lowest element, lowest robot) go to the elements ``u``, so that the
+comparisons below are exactly the instances on which the planner returns ``u``.
+
 For a fixed attack on the planner's plan ``u`` and a fixed family of robot groups in which the optimal plan
 ``o`` reaches value 1, the smallest worst-case value of ``u`` is a linear program. A node without a group
 for some outcome branches on that outcome's groups. Every node's bound is proved by rational multipliers.
@@ -14,20 +19,87 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.audit.worst_ratio.multipliers import BEHIND, DENOMINATORS, exact_point, proved_bound
-from ratt_opt.audit.worst_ratio.program import ClaimedOptimum, RatioProgram, Row
+from ratt_opt.audit.worst_ratio.program import BEHIND, ClaimedOptimum, RatioProgram, Row, proved_bound, rational_points
 from ratt_opt.audit.worst_ratio.witness import scaled_values
 from ratt_opt.errors import ProofError
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.graph.threat import Threat
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable
 
     from ratt_opt._validation import IntArray
     from ratt_opt.audit.worst_ratio.class_rows import ClassRows
-    from ratt_opt.audit.worst_ratio.skeleton import Groups, Skeleton
     from ratt_opt.budget import Budget
 
-__all__ = ["RatioSearch"]
+__all__ = ["RatioSearch", "Skeleton", "skeleton"]
+
+Groups = tuple[int, ...]
+"""Disjoint robot groups as bit masks, ascending."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Skeleton:
+    """The combinatorial part of a worst-case program.
+
+    ``comparisons`` : pairs of subsets (larger, smaller) that the planner's choices order
+    ``outcomes`` : every non-dominated outcome of the threat
+    ``attacks`` : one outcome per orbit of the bait robots, which no comparison tells apart
+    """
+
+    n_robots: int
+    n_bait: int
+    comparisons: tuple[tuple[int, int], ...]
+    outcomes: tuple[Groups, ...]
+    attacks: tuple[Groups, ...]
+
+    @property
+    def groups(self) -> list[int]:
+        """Every group of an outcome, ascending."""
+        return sorted({group for outcome in self.outcomes for group in outcome})
+
+
+def skeleton(n_robots: int, alpha_s: int, alpha_c: int, n_bait: int) -> Skeleton:
+    """Return the skeleton for a team on the complete graph whose planner uses ``n_bait`` bait robots."""
+    threat = Threat(CommunicationGraph.complete(n_robots), alpha_s, alpha_c)
+    outcomes = tuple(
+        tuple(sorted(sum(1 << i for i in group) for group in outcome)) for outcome in non_dominated_outcomes(threat)
+    )
+    orbits: dict[tuple[tuple[int, int], ...], Groups] = {}
+    for outcome in outcomes:
+        orbits.setdefault(_orbit(outcome, n_bait), outcome)
+    return Skeleton(
+        n_robots=n_robots,
+        n_bait=n_bait,
+        comparisons=tuple(dict.fromkeys(_comparisons(n_robots, n_bait))),
+        outcomes=outcomes,
+        attacks=tuple(orbits.values()),
+    )
+
+
+def _orbit(outcome: Groups, n_bait: int) -> tuple[tuple[int, int], ...]:
+    """Per group its number of bait robots and its greedy robots: equal exactly for outcomes that bait permutes."""
+    bait = (1 << n_bait) - 1
+    return tuple(sorted(((group & bait).bit_count(), group & ~bait) for group in outcome))
+
+
+def _comparisons(n_robots: int, n_bait: int) -> Iterable[tuple[int, int]]:
+    """Lines 3 to 18 of Algorithm 1: bait beats its own robot's and all greedy robots' elements, then greedy steps."""
+    for b in range(n_bait):
+        yield 1 << b, 1 << n_robots + b
+        for i in range(n_bait, n_robots):
+            yield 1 << b, 1 << i
+            yield 1 << b, 1 << n_robots + i
+    chosen = 0
+    for j in range(n_bait, n_robots):
+        pick = chosen | 1 << j
+        for i in range(j, n_robots):
+            yield pick, chosen | 1 << n_robots + i
+            if i > j:
+                yield pick, chosen | 1 << i
+        chosen = pick
+
 
 REACHED = 1 - 1e-9
 """A group reaches value 1 within the solver's rounding; an instance's ratio is exact, so nothing rests on this."""
@@ -47,12 +119,8 @@ class _Node:
 class RatioSearch:
     """Closes the bracket of one worst-case ratio.
 
-    Parameters
-    ----------
-    skeleton : the combinatorial part
-    rows : columns and rows of the class
-    accept : checks a table of integers and returns the exact ratio that it attains, or raises ``ProofError``
-    floor : a proved lower bound on the ratio
+    ``accept`` checks a table of integers and returns the exact ratio that it attains, or raises ``ProofError``;
+    ``floor`` is a proved lower bound on the ratio.
     """
 
     def __init__(
@@ -144,7 +212,7 @@ class RatioSearch:
     def _record(self, node: _Node, claimed: ClaimedOptimum) -> None:
         """Turn a solution into a rational instance; keep it when its exact ratio is the smallest so far."""
         used = self._used(node)
-        for point in self._points(claimed):
+        for point in rational_points(self.program, claimed):
             table = scaled_values(self.rows.table(point, used))
             if table is None or not np.any(table):
                 continue
@@ -156,9 +224,3 @@ class RatioSearch:
                 self.upper, self.table = ratio, table
             if ratio < claimed.x[0] + BEHIND:
                 return
-
-    def _points(self, claimed: ClaimedOptimum) -> Iterator[list[Fraction]]:
-        """Yield rational points, simple ones first, then the basis without rounding."""
-        for denominator in DENOMINATORS:
-            yield [Fraction(float(v)).limit_denominator(denominator) for v in claimed.x]
-        yield exact_point(self.program, claimed)

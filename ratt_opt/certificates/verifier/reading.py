@@ -14,6 +14,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 FORMAT = "ratt-opt certificate"
@@ -21,7 +22,7 @@ VERSION = 1
 LARGEST_FILE = 32 * 2**20
 LARGEST_LENGTH = 2_000_000
 """Most entries of all lists together; with the next two this bounds the memory of a check."""
-LARGEST_TABLE = 1_000_000
+MOST_CELLS = 1_000_000
 DEEPEST_TREE = 2500
 
 
@@ -61,6 +62,7 @@ def walk(name: str, tree: object, root: Any, expand: Any) -> int:
     paths, leaves = [iter([root])], 0
     for node in array(f"{name} tree", tree):
         check_size(f"{name} tree (depth)", len(paths), DEEPEST_TREE)
+        tick()
         case = _next_case(paths)
         need(case is not None, f"{name} proof: a node is repeated or follows the last leaf")
         below = expand(node, case)

@@ -1,7 +1,7 @@
 """Smallest and largest marginals of the max-eigenvalue criterion of targets with at most two coordinates, bracketed.
 
 Open ``marginal_brackets.py`` first: the search over all elements. ``context_search.py`` is the branch and bound for one
-of them, over the ``regions.py`` of its contexts; ``level_program.py`` bounds a region by a linear program
-(``mixture_program.py``) and ``level_inequalities.py`` says what that leaves of a marginal. ``descent.py`` attains the
-other end, ``options.py`` has what contexts consist of, and ``compiled.py`` the inner loops.
+of them, over the ``regions.py`` of its contexts; ``level_program.py`` bounds a region by a linear program and
+``inequalities.py`` says what that leaves of a marginal. ``contexts.py`` has what contexts consist of and the
+descent that attains the other end, and ``compiled.py`` the inner loops.
 """

@@ -1,7 +1,4 @@
-"""Compiled loops over contexts and over cuts of the level program; imported where a search needs them.
-
-The plain versions are in the tests.
-"""
+"""Compiled loops over contexts and cuts, imported where a search needs them; the plain versions are in the tests."""
 
 from __future__ import annotations
 
@@ -10,14 +7,14 @@ from typing import Any
 import numba
 import numpy as np
 
+from ratt_opt.curvatures.planar.inequalities import MARGIN
+
 __all__ = ["ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
 
 # Levels are finite (checked on entry), so comparisons may assume it; no operation is reordered.
 _FINITE = {"nnan", "ninf", "nsz"}
 _IMPROVED = 1e-12
 """Relative improvements below this are none: rounding must not make two contexts take turns."""
-MARGIN = 1e-12
-"""Safety margin for rounding, relative to the sum of the absolute terms."""
 
 
 @numba.njit(cache=True, fastmath=_FINITE)
@@ -121,8 +118,6 @@ def raise_ceilings(  # noqa: PLR0917
 def ceiling(scores: Any, constants: Any, weights: Any, owners: Any) -> float:
     """Largest weighted sum of forms ``constants + scores . z`` over all contexts: each owner's best option.
 
-    Parameters
-    ----------
     scores : (F, n); constants, weights : (F,); owners : (n,) ascending
     """
     n = len(owners)

@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.planar.descent import PlanarDescent
-from ratt_opt.curvatures.planar.level_inequalities import Average
+from ratt_opt.curvatures.planar.contexts import PlanarDescent, along, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
-from ratt_opt.curvatures.planar.options import along, levels
 from ratt_opt.curvatures.planar.regions import Region
 
 if TYPE_CHECKING:
@@ -26,10 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["PlanarSearch"]
 
+# Measured on four instances of 10 robots and 15 targets, bracketed within 1.1 and 1.2.
 SLOPES = 4
-"""Most slopes tried for one region: with 2, a fifth more regions and time; 8 change nothing.
-
-This and what follows: measured on four instances of 10 robots and 15 targets, bracketed within 1.1 and 1.2."""
+"""Most slopes tried for one region: with 2, a fifth more regions and time; 8 change nothing."""
 SLOPE_SHARE = 0.1
 """Another slope is tried where it could close more than this share of the gap; 0.03 to 0.3 do as well within 5 %."""
 NARROWEST = 1e-3
@@ -45,21 +42,18 @@ regions."""
 class PlanarSearch:
     """Claim: the element's smallest (largest) marginal lies between ``bound`` and ``attained.value``.
 
-    Parameters
-    ----------
-    side : the element, and which end is sought
-    averages : of cuts, from searches for the same end of other elements
+    ``known`` : what the program found in searches for the same end of other elements; ``found`` : in this one.
     """
 
-    def __init__(self, side: Side, averages: Sequence[Average] = ()) -> None:
+    def __init__(self, side: Side, known: Sequence[Relaxed] = ()) -> None:
         self.side = side
         self.attained = PlanarDescent(side.options, side.prior, side.added, sign=side.sign)
         self.attained.offer(self.attained.picks)
         self.nodes = 0
-        self.averages: list[Average] = []
+        self.found: list[Relaxed] = []
         self._last: FloatArray | None = None
         self._open = side.roots()
-        side.recycle(self._open, averages)
+        side.recycle(self._open, known)
         self._keep(self._open)
 
     @property
@@ -85,19 +79,14 @@ class PlanarSearch:
         elif region.relaxed is None:
             found = self._relax(region, aim, budget)
             self.attained.offer(self._rounded(region.allowed, found.mixture))
-            self._share(region, found)
+            if region.allowed is self.side.everything:
+                self.found.append(found)
+                fresh = [other for other in self._open if other.relaxed is None and other.allowed is region.allowed]
+                self.side.recycle(fresh, [found])
             self._keep(self._open)
         else:
             children = self._children(region, region.relaxed)
             self._keep([other for other in self._open if other is not region] + children)
-
-    def _share(self, region: Region, found: Relaxed) -> None:
-        """Bound other regions by what bounded this one."""
-        if region.allowed is not self.side.everything:
-            return
-        self.averages.append(Average(found.average, found.slope))
-        fresh = [other for other in self._open if other.relaxed is None and other.allowed is self.side.everything]
-        self.side.recycle(fresh, self.averages[-1:])
 
     def _keep(self, regions: list[Region]) -> None:
         """Drop the regions that hold nothing better."""
@@ -160,7 +149,7 @@ class PlanarSearch:
         middle = (region.low + region.high) / 2
         ends = (region.low, middle), (middle, region.high)
         halves = [self._child(region, found, region.allowed, low, high) for low, high in ends]
-        side.recycle(halves, [Average(found.average, found.slope)])
+        side.recycle(halves, [found])
         return halves
 
     def _spread(self, allowed: BoolArray, found: Relaxed) -> FloatArray:

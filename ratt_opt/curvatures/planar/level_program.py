@@ -17,17 +17,18 @@ the multipliers of its edges are capped.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.planar.mixture_program import EDGES, MixtureProgram
-from ratt_opt.curvatures.planar.options import along, levels
+from ratt_opt.curvatures.planar.contexts import along, levels
+from ratt_opt.highs import LinearProgram, Rows
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.curvatures.planar.options import Options
+    from ratt_opt.curvatures.planar.contexts import Options
 
 __all__ = ["Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
 
@@ -41,6 +42,11 @@ FIRST_CUTS = 10
 """Targets that get a cut where there is none to start from."""
 SMALLEST_SHARE = 1e-9
 """Targets with a smaller share of the average to start from get no cut at once."""
+EDGES = 2
+EDGE_COST = 100.0
+"""Cap on the multipliers of a sector's edges."""
+DUAL, PRIMAL = 1, 4
+"""Simplex strategies of HiGHS: after new rows, and after a new objective."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,13 +83,70 @@ class Relaxed:
     slope: float
 
 
+class MixtureProgram:
+    """``max t - slope own - EDGE_COST (violation of the edges)`` over mixtures in HiGHS; its word is not trusted.
+
+    It grows by cuts and is solved for one slope after another, each time from the last basis.
+
+    ``owners`` : (n,) of each option, 0 to R - 1, ascending; ``own`` : (n,) scores of the target's own level;
+    ``edges`` : (2, n) scores and (2,) constants of the sector's edges.
+    """
+
+    def __init__(self, owners: IntArray, own: FloatArray, edges: tuple[FloatArray, FloatArray]) -> None:
+        self._own, self._cuts, self._solved = own, 0, False
+        self._n, self._owners = free, count = len(owners), int(owners[-1]) + 1 if len(owners) else 0
+        matrix = np.zeros((count + EDGES, free + 1 + EDGES))
+        matrix[owners, np.arange(free)] = 1.0
+        matrix[count:, :free] = edges[0]
+        matrix[count:, free + 1 :] = np.eye(EDGES)
+        rows, columns = np.nonzero(matrix)
+        lower, upper = (np.concatenate([np.ones(count), edge]) for edge in (-edges[1], np.full(EDGES, inf)))
+        starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=len(matrix)))])
+        self._program = LinearProgram(
+            np.concatenate([np.zeros(free), [-1.0], np.full(EDGES, EDGE_COST)]),
+            np.concatenate([np.zeros(free), [-inf], np.zeros(EDGES)]),
+            np.concatenate([np.ones(free), np.full(1 + EDGES, inf)]),
+            rows=Rows(lower, upper, starts, columns, matrix[rows, columns]),
+            solver="simplex",
+            presolve="off",
+        )
+
+    def add(self, scores: FloatArray, constants: FloatArray) -> None:
+        """Rows ``t <= constants + scores . z``: (C, n) and (C,)."""
+        count, width = len(constants), self._n + 1
+        columns, values = np.tile(np.arange(width), count), np.concatenate([-scores, np.ones((count, 1))], axis=1)
+        starts = np.arange(count + 1) * width
+        self._program.add_rows(Rows(np.full(count, -inf), constants, starts, columns, values.ravel()))
+        self._cuts += count
+        self._program.option("simplex_strategy", DUAL)
+
+    def change_slope(self, slope: float) -> None:
+        """Another objective."""
+        self._program.change_cost(slope * self._own)
+        if self._solved:
+            self._program.option("simplex_strategy", PRIMAL)
+
+    def solve(self) -> tuple[FloatArray, float, FloatArray]:
+        """(n,) mixture, ``t`` and (2 + C,) multipliers: of the edges, capped, and of the cuts, with sum 1."""
+        claim = self._program.solve()
+        self._solved = True
+        weights = np.zeros(EDGES + self._cuts)
+        weights[EDGES:] = 1 / self._cuts
+        if len(claim.x) <= self._n or len(claim.duals) != self._owners + len(weights):
+            return np.zeros(self._n), -np.inf, weights
+        duals = np.nan_to_num(claim.duals, posinf=0.0, neginf=0.0)
+        cuts = np.clip(-duals[self._owners + EDGES :], 0.0, None)
+        if cuts.sum() > 0:
+            weights[:EDGES] = np.clip(duals[self._owners : self._owners + EDGES], 0.0, EDGE_COST)
+            weights[EDGES:] = cuts / cuts.sum()
+        return np.clip(claim.x[: self._n], 0.0, 1.0), float(claim.x[self._n]), weights
+
+
 class LevelProgram:
     """Bounds ``t - slope own`` over the contexts of allowed options, for one slope after another.
 
-    Parameters
-    ----------
-    base, own_base : (3, M) parts of what every context is added to; without a sector ``own`` is 0
-    allowed : (K,), some option of every owner; start : (3, M) average of cuts that bounded something similar
+    ``base``, ``own_base`` : (3, M) parts of what every context is added to; without a sector ``own`` is 0.
+    ``allowed`` : (K,), some option of every owner; ``start`` : (3, M) average of cuts that bounded something similar.
     """
 
     def __init__(
@@ -127,16 +190,8 @@ class LevelProgram:
         binding = weights[EDGES:] > 0
         cuts = Cuts(self._cuts.targets[binding], self._cuts.angles[binding])
         multipliers = weights[EDGES:][binding]
-        return Relaxed(
-            ceiling=highest,
-            mixture=mixture,
-            level=level,
-            own=own,
-            cuts=cuts,
-            multipliers=multipliers,
-            average=_average(cuts, multipliers, self._base),
-            slope=slope,
-        )
+        average = _average(cuts, multipliers, self._base)
+        return Relaxed(highest, mixture, level, own, cuts, multipliers, average, slope)
 
     def _add(self, targets: IntArray, angles: FloatArray) -> None:
         directions = along(angles)

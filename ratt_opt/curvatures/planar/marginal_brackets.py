@@ -2,9 +2,8 @@
 
 Every element has cheap bounds at once: with ``T`` the largest smallest-level any context reaches (a linear program),
 its smallest marginal is at least ``1/T - 1/(T + d)``, ``d`` the least it adds to any target in any direction; its
-largest is at most ``1/p - 1/(p + D)``, ``p`` the prior level and ``D`` the most it adds.
-Elements whose ratio these leave open are searched (:mod:`ratt_opt.curvatures.planar.context_search`),
-each on the side that is the less certain.
+largest is at most ``1/p - 1/(p + D)``, ``p`` the prior level and ``D`` the most it adds. Elements whose ratio these
+leave open are searched, each on the side that is the less certain.
 """
 
 from __future__ import annotations
@@ -13,56 +12,49 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.least_certain import MarginalBrackets
+from ratt_opt.curvatures.marginals import MarginalBrackets
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
+from ratt_opt.curvatures.planar.contexts import Options, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
-from ratt_opt.curvatures.planar.options import Options, levels
-from ratt_opt.curvatures.planar.regions import Side
+from ratt_opt.curvatures.planar.regions import MARGIN, Side
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.curvatures.planar.level_inequalities import Average
-    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
+    from ratt_opt.curvatures.planar.level_program import Relaxed
+    from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.stopping import Stop
 
 __all__ = ["PlanarBrackets"]
 
 POOL = 16
-"""Averages of cuts kept for elements not searched yet, for each side: 4, 16, 64 need 748, 732, 708 regions in the same
-time on four instances of 10 robots; each costs a pass over all options."""
+"""Averages of cuts kept for elements not searched yet, a side, each a pass over all options: 4, 16, 64 need 748, 732,
+708 regions in the same time (four instances of 10 robots)."""
 STUCK = 8
 """Parts bounded on one side before pairs of owners are tried for a better context: they take long.
 4 and 16 change the regions bounded by 2 %."""
-LONG_STUCK = 40
-"""The same for elements whose ratio is more than ``CONTENDER`` times the smallest one seen; 20 to 80 make no difference
-with 10 robots."""
-CONTENDER = 1.1
+CONTENDER, LONG_STUCK = 1.1, 40
+"""The same where the ratio is more than so many times the smallest one seen; 20 to 80 are alike with 10 robots."""
 PATIENCE = 20
 """Parts bounded on one side before its number of parts counts against it."""
-MARGIN = 1e-9
-"""Relative safety margin for rounding."""
 
 
 class PlanarBrackets(MarginalBrackets):
     """Two searches an element, one for each marginal, begun when its ratio is the least certain."""
 
+    rests_on = "smallest levels"
+
     def __init__(
-        self,
-        data: PlanarLevels,
-        owners: IntArray,
-        single: FloatArray,
-        *,
-        gap: float,
-        budget: Budget,
-        against_own: bool,
+        self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
     ) -> None:
-        super().__init__(single, gap=gap, budget=budget, against_own=against_own)
-        self._data, self._owners = data, owners
+        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own)
+        levels_of = f.planar_levels()
+        assert levels_of is not None
+        self._data = levels_of
         self._options: dict[int, Options] = {}
         self._highest: dict[int, float] = {}
         self._searches: dict[int, tuple[PlanarSearch, PlanarSearch]] = {}
-        self._pools: tuple[list[Average], list[Average]] = [], []
+        self._pools: tuple[list[Relaxed], list[Relaxed]] = [], []
 
     def _begin(self) -> Stop | None:
         """Bound every element by the largest smallest-level that any context reaches."""
@@ -93,11 +85,8 @@ class PlanarBrackets(MarginalBrackets):
         else:
             self._open(x)
         self._record(x)
-        self._done[x] = self._closed(x)
-
-    def _closed(self, x: int) -> bool:
         low, high = self._searches[x]
-        return low.exhausted and (self._against_own or high.exhausted)
+        self._done[x] = low.exhausted and (self._against_own or high.exhausted)
 
     def _open(self, x: int) -> None:
         """Start both searches from the context that lifts the smallest level most."""
@@ -107,12 +96,9 @@ class PlanarBrackets(MarginalBrackets):
             self._options[owner] = options
             self._highest[owner] = self._highest_level(options)
         added, highest = self._data.parts[x], self._highest[owner]
-        sides = [
-            Side(self._options[owner], self._data.prior, added, largest=largest, highest=highest)
-            for largest in (False, True)
-        ]
-        low, high = (PlanarSearch(*start) for start in zip(sides, self._pools, strict=True))
-        self._searches[x] = low, high
+        options, prior = self._options[owner], self._data.prior
+        low, high = (Side(options, prior, added, largest=largest, highest=highest) for largest in (False, True))
+        self._searches[x] = PlanarSearch(low, self._pools[0]), PlanarSearch(high, self._pools[1])
 
     def _continue(self, x: int, target: float) -> None:
         """Refine the more doubtful of an element's two searches."""
@@ -129,8 +115,8 @@ class PlanarBrackets(MarginalBrackets):
         side.refine(side.side.sign * aim, self._budget)
         self._budget.nodes += side.nodes - before
         pool = self._pools[int(side is high)]
-        pool += side.averages
-        side.averages.clear()
+        pool += side.found
+        side.found.clear()
         del pool[:-POOL]
 
     def _spare(self, x: int, target: float) -> float:

@@ -1,6 +1,6 @@
 """Regions of the contexts of one element, and what is proved about its max-eigenvalue marginal in each.
 
-With levels as in ``criteria/planar_levels.py``, ``P`` the smallest level of a context and ``Q`` the smallest once
+With levels as in ``criteria/maxeig.py``, ``P`` the smallest level of a context and ``Q`` the smallest once
 ``x`` is added, the marginal is ``1/P - 1/Q``. A region is: the target ``j`` that is the worst one (after ``x`` is added
 for the smallest marginal, before for the largest), the sector its weakest direction lies in, and the options each
 other owner has left. With ``d`` the least (most) that ``x`` adds to ``j`` along a direction of the sector:
@@ -20,24 +20,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.planar.level_inequalities import (
-    Forms,
-    ceilings,
-    least_enough,
-    least_marginal,
-    most_enough,
-    most_marginal,
-)
+from ratt_opt.curvatures.planar.contexts import levels
+from ratt_opt.curvatures.planar.inequalities import ceilings, least_enough, least_marginal, most_enough, most_marginal
 from ratt_opt.curvatures.planar.level_program import Sector, own_direction
-from ratt_opt.curvatures.planar.options import levels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.curvatures.planar.level_inequalities import Average
+    from ratt_opt.curvatures.planar.contexts import Options
     from ratt_opt.curvatures.planar.level_program import Relaxed
-    from ratt_opt.curvatures.planar.options import Options
 
 __all__ = ["Region", "Side"]
 
@@ -69,10 +61,7 @@ class Region:
 class Side:
     """One element and which of its marginals is bounded: the smallest, or the largest.
 
-    Parameters
-    ----------
-    options : of the other owners; prior, added : (3, M) parts
-    highest : proved upper bound on the smallest level of any context, for the smallest marginal
+    ``prior``, ``added`` : (3, M) parts; ``highest`` : proved upper bound on the smallest level of any context.
     """
 
     def __init__(
@@ -117,21 +106,21 @@ class Side:
             ends += [(low, high), (-high, -low)]
         return [self._alone(j, low, high) for j in range(len(self._lowest)) for low, high in ends]
 
-    def recycle(self, regions: Sequence[Region], averages: Sequence[Average]) -> None:
-        """Raise the bounds of regions with the same options left, by averages of cuts found elsewhere."""
-        if not regions or not averages:
+    def recycle(self, regions: Sequence[Region], known: Sequence[Relaxed]) -> None:
+        """Raise the bounds of regions with the same options left, by what the program found elsewhere."""
+        if not regions or not known:
             return
         target = np.array([region.target for region in regions])
         ends = np.array([(region.low, region.high) for region in regions])
         middle, half = self._reference[target] + ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2
-        forms, allowed = Forms(target, own_direction(middle, half)), regions[0].allowed
-        ceiling = ceilings(self.options, self.base, self.own_base, forms, averages, allowed)
+        direction, allowed = own_direction(middle, half), regions[0].allowed
+        ceiling = ceilings(self.options, self.base, self.own_base, target, direction, known, allowed)
         added = np.broadcast_to([region.added for region in regions], ceiling.shape)
-        slope = np.broadcast_to([[average.slope] for average in averages], ceiling.shape)
+        slope = np.broadcast_to([[one.slope] for one in known], ceiling.shape)
         keys = self._keys(target, ceiling, added, slope)
         for region, key, best in zip(regions, keys.max(axis=0).tolist(), keys.argmax(axis=0).tolist(), strict=True):
             if key > region.key:
-                region.key, region.start, region.slope = key, averages[best].cuts, averages[best].slope
+                region.key, region.start, region.slope = key, known[best].average, known[best].slope
 
     def _alone(self, target: int, low: float, high: float) -> Region:
         added = self.extreme_added(target, low, high)
@@ -140,13 +129,7 @@ class Side:
         slope = ((level + added) / level) ** (-2 * self.sign)
         return Region(key, target, low, high, added, self.everything, slope)
 
-    def _keys(
-        self,
-        target: IntArray,
-        ceiling: FloatArray,
-        added: FloatArray,
-        slope: FloatArray,
-    ) -> FloatArray:
+    def _keys(self, target: IntArray, ceiling: FloatArray, added: FloatArray, slope: FloatArray) -> FloatArray:
         """The least (most) marginals that both inequalities of some regions leave."""
         if self.largest:
             return -most_marginal(ceiling, added, slope, self._lowest[target]) * (1 + MARGIN)

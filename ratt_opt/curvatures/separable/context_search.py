@@ -16,11 +16,10 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.curvatures.separable.best_context import BestContext
+    from ratt_opt.setfunctions.criterion_parts import Choices
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.setfunctions.minorants import Choices, SeparableMinorant
 
-__all__ = ["ContextSearch"]
+__all__ = ["BestContext", "ContextSearch", "FloorSearch"]
 
 FIRST_STEPS = 12
 """Tangents tried at the root, which every element pays. 6, 12 and 24 leave 1.0137, 1.0124 and 1.0120 of
@@ -31,6 +30,48 @@ CHILD_STEPS = 8
 """Tangents tried for a part: fewer are faster and weaker; 4 need 3 % more parts than 8 and 16, in the same time."""
 MARGIN = 1e-9
 """Relative safety margin for rounding on every bound: inverses of condition 1e6 lose less."""
+
+
+class BestContext:
+    """``value`` is the marginal of ``x`` in ``context``, the smallest (or ``largest``) of those offered."""
+
+    def __init__(self, f: InformationObjective, x: int, others: Choices, *, largest: bool = False) -> None:
+        self._f, self._x, self._others = f, x, others
+        self._sign = -1.0 if largest else 1.0
+        self.value = self._sign * np.inf
+        self.context: tuple[int, ...] = ()
+        self._tried: set[tuple[int, ...]] = set()
+        self.offer(np.empty(0, dtype=np.int64))
+
+    def descend(self, budget: Budget) -> None:
+        """Change one owner's choice at a time, from the best context so far, until no change is better."""
+        others = self._others
+        groups = [others.elements[others.owners == i] for i in range(len(others.first))]
+        before = np.inf
+        while self.value != before:
+            before = self.value
+            for own in groups:
+                if budget.is_over:
+                    return
+                rest = np.array([e for e in self.context if e not in own], dtype=np.int64)
+                self._keep(np.concatenate([np.tile(rest, (len(own), 1)), own[:, None]], axis=1))
+                self._keep(rest[None])
+
+    def offer(self, context: IntArray) -> None:
+        """Evaluate a context, if it is new."""
+        key = tuple(context.tolist())
+        if key not in self._tried:
+            self._tried.add(key)
+            self._keep(context[None])
+
+    def _keep(self, contexts: IntArray) -> None:
+        """Evaluate contexts (K, size) and keep the best."""
+        f = self._f
+        posterior = f.prior_information + f.information[contexts].sum(axis=1)
+        marginals = f.value(posterior + f.information[self._x]) - f.value(posterior)
+        k = int((self._sign * marginals).argmin())
+        if self._sign * marginals[k] < self._sign * self.value:
+            self.value, self.context = float(marginals[k]), tuple(contexts[k].tolist())
 
 
 @dataclass(order=True, slots=True)
@@ -92,11 +133,10 @@ class ContextSearch:
             separable = self._f.marginal_minorant(self._added, others, node.share)
             score = np.where(node.allowed, separable.score, -np.inf)
             best = np.maximum.reduceat(score, others.first)
-            present = np.isfinite(best)
             worst = np.where(node.absent, np.maximum(best, separable.absent), best)
             bound = separable.constant - float(worst.sum())
-            node.bound = max(node.bound, bound - MARGIN * _magnitude(separable, worst))
-            picks = self._picks(score, best, present)
+            node.bound = max(node.bound, bound - MARGIN * (abs(separable.constant) + float(np.abs(worst).sum())))
+            picks = self._picks(score, best)
             self.attained.offer(others.elements[picks])
             node.steps += 1
             if node.bound >= self.attained.value:
@@ -106,18 +146,13 @@ class ContextSearch:
             node.share = node.share + 2 / (node.steps + 2) * (vertex - node.share)
             if self._budget.is_over:
                 break
-        return not self._single(node)  # the context of a single one has been tried above
+        counts = np.add.reduceat(node.allowed.astype(np.int64), others.first) + node.absent
+        return bool((counts != 1).any())  # else it is one context, which has been tried above
 
-    def _picks(self, score: FloatArray, best: FloatArray, present: BoolArray) -> IntArray:
+    def _picks(self, score: FloatArray, best: FloatArray) -> IntArray:
         """The first element of the best score, of each owner that has one left."""
         hits = np.flatnonzero((score == best[self._others.owners]) & np.isfinite(score))
-        _, first = np.unique(self._others.owners[hits], return_index=True)
-        assert len(first) == present.sum()
-        return hits[first]
-
-    def _single(self, node: _Node) -> bool:
-        counts = np.add.reduceat(node.allowed.astype(np.int64), self._others.first) + node.absent
-        return bool((counts == 1).all())
+        return hits[np.unique(self._others.owners[hits], return_index=True)[1]]
 
     def _children(self, node: _Node) -> list[_Node]:
         """Split off the likeliest element of the owner whose mixture is spread most, or its absence."""
@@ -157,5 +192,24 @@ class ContextSearch:
         return _Node(node.bound, self._serial, allowed, left, share, 0)
 
 
-def _magnitude(separable: SeparableMinorant, worst: FloatArray) -> float:
-    return abs(separable.constant) + float(np.abs(worst).sum())
+class FloorSearch:
+    """Claim: ``floor <= smallest marginal of x over contexts <= attained.value``, where no more than that is known.
+
+    ``single`` : (n,) values alone; the descent starts from the most valuable element of every other owner.
+    """
+
+    exhausted = True
+    nodes = 1
+
+    def __init__(
+        self, attained: BestContext, others: Choices, single: FloatArray, floor: float, budget: Budget
+    ) -> None:
+        own = np.split(others.elements, others.first[1:])
+        best = [int(part[single[part].argmax()]) for part in own if len(part)]
+        self.attained = attained
+        self.attained.offer(np.array(best, dtype=np.int64))
+        self.attained.descend(budget)
+        self.lower = min(floor, self.attained.value)
+
+    def refine(self) -> None:
+        """Nothing is left to refine."""

@@ -1,8 +1,6 @@
 """Brackets of the marginals of every element of an information criterion.
 
-Every element has the criterion's own bounds at once (``marginal_ends``). Each is then searched for its smallest
-marginal: by branch and bound where the criterion has separable minorants, else by descent alone; the least certain
-ratio is refined first.
+Every element has the criterion's own bounds at once (``marginal_ends``); each is then searched for its smallest one.
 """
 
 from __future__ import annotations
@@ -11,11 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.least_certain import MarginalBrackets
-from ratt_opt.curvatures.separable.best_context import BestContext
-from ratt_opt.curvatures.separable.context_search import ContextSearch
-from ratt_opt.curvatures.separable.floor_search import FloorSearch
-from ratt_opt.setfunctions.minorants import Choices
+from ratt_opt.curvatures.marginals import MarginalBrackets
+from ratt_opt.curvatures.separable.context_search import BestContext, ContextSearch, FloorSearch
+from ratt_opt.setfunctions.criterion_parts import Choices
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -32,17 +28,12 @@ LARGER = 1e-6
 
 
 class SeparableBrackets(MarginalBrackets):
-    """One search an element, over contexts of at most one element of each other owner.
-
-    ``rests_on`` : what the bounds are.
-    """
+    """One search an element, over contexts of at most one element of each other owner."""
 
     def __init__(
         self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
     ) -> None:
-        single = f.singletons()
-        super().__init__(single, gap=gap, budget=budget, against_own=against_own)
-        self._f, self._owners, self._single = f, owners, single
+        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own)
         self._choices: dict[int, Choices] = {}
         self._searches: list[ContextSearch | FloorSearch] = []
         self._largest: dict[int, BestContext] = {}
@@ -54,29 +45,24 @@ class SeparableBrackets(MarginalBrackets):
         self.least = np.minimum(floor, self._single)
         if not self._against_own:
             self.most = np.maximum(ceiling, self._single)
-            self._raise_largest()
+            # Attained ends of the largest marginals, where the value alone is not known to be it.
+            for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
+                self._largest[x] = BestContext(self._f, x, self._beside(x), largest=True)
+                self._largest[x].descend(self._budget)
+                self.seen_most[x] = self._largest[x].value
+                self.most[x] = max(self.most[x], self.seen_most[x])
         for x in range(self._f.n):
-            self._searches.append(self._search(x))
-            self._budget.nodes += self._searches[x].nodes
+            others, attained = self._beside(x), BestContext(self._f, x, self._beside(x))
+            if self._branches:
+                search: ContextSearch | FloorSearch = ContextSearch(self._f, x, others, attained, self._budget)
+            else:
+                search = FloorSearch(attained, others, self._single, float(self.least[x]), self._budget)
+            self._searches.append(search)
+            self._budget.nodes += search.nodes
             self._record(x)
             if stop := self._budget.stop():
                 return stop
         return None
-
-    def _raise_largest(self) -> None:
-        """Attained ends of the largest marginals, where the value alone is not known to be it."""
-        for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
-            attained = BestContext(self._f, x, self._beside(x), largest=True)
-            attained.descend(self._budget)
-            self._largest[x] = attained
-            self.seen_most[x] = attained.value
-            self.most[x] = max(self.most[x], attained.value)
-
-    def _search(self, x: int) -> ContextSearch | FloorSearch:
-        others, attained = self._beside(x), BestContext(self._f, x, self._beside(x))
-        if self._branches:
-            return ContextSearch(self._f, x, others, attained, self._budget)
-        return FloorSearch(attained, others, self._single, float(self.least[x]), self._budget)
 
     def _beside(self, x: int) -> Choices:
         owner = int(self._owners[x])

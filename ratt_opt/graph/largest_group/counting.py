@@ -1,20 +1,83 @@
-"""A bracket on the smallest possible largest group of any graph: links counted, and a heuristic cut."""
+"""The smallest possible largest group by counting links: of complete graphs, and a bracket for any graph."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+from math import comb
 from typing import TYPE_CHECKING
 
-from ratt_opt.graph.caa import links_within
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.largest_group.result import LargestGroup, split_result
+from ratt_opt.graph.survivor_sizes import caa, links_within
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     import networkx as nx
 
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["COUNTED", "by_counting", "counting_bound", "heuristic_cut"]
+__all__ = [
+    "COUNTED",
+    "LargestGroup",
+    "by_caa",
+    "by_counting",
+    "by_integer_partitions",
+    "counting_bound",
+    "heuristic_cut",
+    "largest_left",
+    "split_result",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LargestGroup:
+    """Claim: ``lower <= n_max``, and ``cut`` leaves a largest group of ``upper`` robots, so ``n_max <= upper``.
+
+    ``upper`` is recomputed on the graph. ``reason`` says why ``lower`` holds. ``claimed_lower`` is what a
+    solver claims beyond that and nothing has checked (equal to ``lower`` where no solver was asked).
+    """
+
+    lower: int
+    upper: int
+    cut: frozenset[Link]
+    method: str
+    reason: str
+    claimed_lower: int
+
+    def __repr__(self) -> str:
+        return f"LargestGroup([{self.lower}, {self.upper}], {len(self.cut)} links cut, {self.method!r}: {self.reason})"
+
+    @property
+    def n_max(self) -> int | None:
+        """The smallest possible size, where it is known: proved (``is_exact``), or by a solver's claim.
+
+        ``None`` where it is only known to be from ``lower`` to ``upper``.
+        """
+        return self.upper if self.claimed_lower == self.upper else None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether ``lower`` (checked) meets ``upper``."""
+        return self.lower == self.upper
+
+
+def largest_left(graph: CommunicationGraph, cut: Iterable[Link]) -> int:
+    """Size of the largest connected component once ``cut`` is gone."""
+    return max(len(group) for group in graph.groups(cut))
+
+
+def split_result(
+    threat: Threat, cut: frozenset[Link], lower: int, method: str, reason: str, *, claimed_lower: int | None = None
+) -> LargestGroup:
+    """The result of a cut and a lower bound, after checking that the cut is allowed."""
+    assert len(cut) <= threat.alpha_c, "a cut is within its budget"
+    assert not cut & threat.protected_links, "a cut spares protected links"
+    upper = largest_left(threat.graph, cut)
+    claimed = lower if claimed_lower is None else max(lower, min(claimed_lower, upper))
+    return LargestGroup(lower=lower, upper=upper, cut=cut, method=method, reason=reason, claimed_lower=claimed)
+
 
 COUNTED = "the links left, and the protected ones, do not fit into smaller groups"
 """The reason for :func:`counting_bound`."""
@@ -58,3 +121,36 @@ def heuristic_cut(threat: Threat) -> frozenset[Link]:
         lost = [(min(i, j), max(i, j)) for i, j in part.edges if (i in inside) != (j in inside)]
         cut.update(lost)
         rest.remove_edges_from(lost)
+
+
+def by_caa(threat: Threat) -> LargestGroup:
+    """Algorithm 2: groups of ``n_max`` robots, as many as fit, and one of the rest."""
+    n_robots = threat.graph.n_robots
+    size = caa(n_robots, threat.alpha_c).n_max
+    sizes = [min(size, n_robots - first) for first in range(0, n_robots, size)]
+    reason = f"groups of at most {size - 1} robots keep too many links cut: links kept are convex in the group sizes"
+    return split_result(threat, _cut_into(threat, sizes), size, "caa", reason)
+
+
+def by_integer_partitions(threat: Threat) -> LargestGroup:
+    """Most links kept by any integer partition with parts up to p, by dynamic programming over all of them."""
+    n_robots = threat.graph.n_robots
+    to_keep = len(threat.graph.links) - threat.alpha_c
+    for largest in range(1, n_robots + 1):
+        kept, part = [0] * (n_robots + 1), [0] * (n_robots + 1)
+        for robots in range(1, n_robots + 1):
+            options = ((comb(p, 2) + kept[robots - p], p) for p in range(1, min(largest, robots) + 1))
+            kept[robots], part[robots] = max(options)
+        if kept[n_robots] >= to_keep:
+            break
+    sizes, left = [], n_robots
+    while left:
+        sizes.append(part[left])
+        left -= part[left]
+    reason = f"no integer partition of {n_robots} with parts up to {largest - 1} keeps {to_keep} links"
+    return split_result(threat, _cut_into(threat, sizes), largest, "partitions", reason)
+
+
+def _cut_into(threat: Threat, sizes: Sequence[int]) -> frozenset[Link]:
+    """The links between groups of these sizes, lowest robots first."""
+    return threat.graph.links_between(range(*ends) for ends in pairwise(accumulate(sizes, initial=0)))

@@ -18,8 +18,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.graph.largest_group.counting import COUNTED, counting_bound, heuristic_cut
-from ratt_opt.graph.largest_group.result import LargestGroup, largest_left, split_result
+from ratt_opt.graph.largest_group.counting import (
+    COUNTED,
+    LargestGroup,
+    counting_bound,
+    heuristic_cut,
+    largest_left,
+    split_result,
+)
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
@@ -32,7 +38,6 @@ __all__ = ["by_integer_program"]
 
 VIOLATION = 1e-4
 """Inequalities violated by less are not added: far above HiGHS's feasibility tolerance, so that rounds end."""
-
 LARGEST_ROUND = 400
 """Inequalities added per round, the most violated first: fewer make more rounds, more make larger programs."""
 
@@ -100,13 +105,8 @@ class _Model:
         """The integer program, or its relaxation, with all rows so far."""
         whole = np.zeros(self.n_pairs + 1, dtype=np.bool_)
         whole[[self.column[link] for link in self.links]] = True
-        return LinearProgram(
-            np.append(np.zeros(self.n_pairs), 1.0),
-            self.low,
-            self.high,
-            rows=rows_of(self.rows, self.sides),
-            integer=whole.tolist() if integer else None,
-        )
+        cost, rows = np.append(np.zeros(self.n_pairs), 1.0), rows_of(self.rows, self.sides)
+        return LinearProgram(cost, self.low, self.high, rows=rows, integer=whole.tolist() if integer else None)
 
     def proved(self, duals: FloatArray) -> float:
         """``min over the box of n + sum of duals * (lower - row x)``: below the optimum for any duals >= 0."""

@@ -1,22 +1,34 @@
-"""The smallest possible largest group by the way asked for, or by the first that settles it.
+"""The smallest possible largest group by the way asked for, or by the first that settles it; ways by enumeration.
 
-Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker
-make the largest one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks.
+Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker make the largest
+one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Small teams are decided over all
+their subsets; larger ones are partitioned into separable groups of at most p robots, for p = 1, 2, ... in turn.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
-from ratt_opt.graph.largest_group.complete import by_caa, by_integer_partitions
-from ratt_opt.graph.largest_group.counting import by_counting
-from ratt_opt.graph.largest_group.enumeration import by_separable_groups, by_subsets
+from ratt_opt.graph.largest_group.counting import (
+    COUNTED,
+    LargestGroup,
+    by_caa,
+    by_counting,
+    by_integer_partitions,
+    counting_bound,
+    heuristic_cut,
+    largest_left,
+    split_result,
+)
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.threat import Threat
+from ratt_opt.graph.threshold import ThresholdTest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,16 +36,14 @@ if TYPE_CHECKING:
     import networkx as nx
 
     from ratt_opt.graph.communication import Link
-    from ratt_opt.graph.largest_group.result import LargestGroup
+    from ratt_opt.graph.separable_groups import PartitionSearch
 
-__all__ = ["smallest_largest_group"]
+__all__ = ["by_separable_groups", "by_subsets", "smallest_largest_group"]
 
 AUTOMATIC_NODES = 20_000_000
 """Groups that ``method="auto"`` tries before it turns to the integer program (some ten seconds)."""
-
 LARGEST_AUTOMATIC_PROGRAM = 40
 """Most robots ``method="auto"`` gives to the integer program."""
-
 METHODS = ("auto", "milp", "caa", "partitions", "enumeration", "counting")
 
 
@@ -109,3 +119,52 @@ def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
         value = f"enumeration of {threat.graph.n_robots} robots"
         raise InputError("method", f"{rule} that an attack can split in so many ways", value)
     return found
+
+
+MOST_GROUPS = 300_000
+"""Groups listed before this way is given up: their masks take a second to list and a few megabytes."""
+NODES_AT_ONCE = 1_000_000
+"""Nodes between two looks at the clock (about a second)."""
+
+
+def by_subsets(threat: Threat) -> LargestGroup:
+    """Fewest links that split the graph into connected groups of at most p robots, over all set partitions."""
+    n_robots = threat.graph.n_robots
+    test = ThresholdTest(threat, np.bitwise_count(np.arange(2**n_robots)).astype(np.float64))
+    largest, split = next((p, s) for p in range(1, n_robots + 1) if (s := test.split(float(p))) is not None)
+    return split_result(
+        threat, threat.graph.links_between(split.members()), largest, "enumeration", _none_smaller(largest)
+    )
+
+
+def by_separable_groups(threat: Threat, budget: Budget) -> LargestGroup | None:
+    """Smallest largest group, or the bracket that the budget allows; ``None`` where the groups are too many to list."""
+    from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups  # compiles
+
+    groups = separable_groups(threat, MOST_GROUPS)
+    if groups is None:
+        return None
+    sizes = np.bitwise_count(groups.masks)
+    lower, reason, cut = counting_bound(threat), COUNTED, heuristic_cut(threat)
+    while lower < largest_left(threat.graph, cut):
+        search = PartitionSearch(groups, np.where(sizes <= lower, 0, IMPOSSIBLE))
+        chosen = _first_partition(search, budget)
+        if chosen is not None:
+            cut = threat.graph.links_between(groups.members(group).tolist() for group in chosen)
+        if chosen is not None or not search.finished:
+            break
+        lower += 1
+        reason = _none_smaller(lower)
+    return split_result(threat, cut, lower, "enumeration", reason)
+
+
+def _first_partition(search: PartitionSearch, budget: Budget) -> list[int] | None:
+    """The first partition, or ``None`` when the search is finished or the budget spent."""
+    chosen = None
+    while chosen is None and not search.finished and budget.stop() is None:
+        chosen = search.next_within(NODES_AT_ONCE, budget)
+    return chosen
+
+
+def _none_smaller(size: int) -> str:
+    return f"no partition into connected groups of at most {size - 1} robots is within the link budget"

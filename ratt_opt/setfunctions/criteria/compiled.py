@@ -1,7 +1,6 @@
-"""The criteria of planar targets, compiled; imported only where compiled loops are used.
+"""The criteria of planar targets, compiled as ``two_by_two.py`` has them; imported only where such loops are used.
 
-``code`` is a criterion's ``compiled_code``; matrices are ``(a, b, c)`` triples of ``[[a, b], [b, c]]``. The formulas
-are those of ``two_by_two.py``, compiled as they stand.
+``code`` is a criterion's ``compiled_code``; matrices are ``(a, b, c)`` triples of ``[[a, b], [b, c]]``.
 """
 
 from __future__ import annotations

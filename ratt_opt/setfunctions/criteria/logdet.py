@@ -12,17 +12,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.criteria.packed import packed_inverse
-from ratt_opt.setfunctions.criteria.two_by_two import determinant, gradient_of_log_determinant
-from ratt_opt.setfunctions.criterion_parts import Tangent
-from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.setfunctions.minorants import SeparableMinorant
+from ratt_opt.setfunctions.criteria.two_by_two import determinant, logdet_gradient
+from ratt_opt.setfunctions.criterion_parts import VALUE_ROUNDING, SeparableMinorant, Tangent
+from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.setfunctions.minorants import Choices
+    from ratt_opt.setfunctions.criterion_parts import Choices
 
 __all__ = ["LogDetObjective"]
 
@@ -37,6 +35,11 @@ class LogDetObjective(InformationObjective):
     is_submodular: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 1
 
+    @property
+    def rounding(self) -> float:
+        """Beside what the prior's log-determinants round off, every logarithm has an error of its own."""
+        return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum()))
+
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted log-determinants of the posterior covariances."""
         if self.dimension == 2:
@@ -50,7 +53,7 @@ class LogDetObjective(InformationObjective):
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
         """``Lambda^{-1}`` by its entries, the off-diagonal one twice: (..., 3)."""
-        return np.stack(gradient_of_log_determinant(a, b, c), axis=-1)
+        return np.stack(logdet_gradient(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1}``: (..., M, d, d)."""
@@ -58,8 +61,7 @@ class LogDetObjective(InformationObjective):
 
     def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
         """``logdet L <= tr(Y L) - logdet Y - d`` for *any* ``Y > 0``: an inexact inverse costs strength only."""
-        inverse = np.linalg.inv(point)
-        y = (inverse + np.swapaxes(inverse, -1, -2)) / 2
+        y = symmetric_inverse(point)
         # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
         logdets = np.linalg.slogdet(y)[1] + self.dimension
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
@@ -72,7 +74,7 @@ class LogDetObjective(InformationObjective):
 
     def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
         """``Y = L^{-1}`` of every target, packed."""
-        return packed_inverse(point)
+        return packed(symmetric_inverse(point))
 
     def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
         """The tangent at the relaxed context: exact there."""

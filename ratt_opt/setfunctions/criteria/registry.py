@@ -21,12 +21,7 @@ CRITERIA: dict[str, type[InformationObjective]] = {
 
 
 def criterion_called(name: str) -> type[InformationObjective]:
-    """The criterion of that name.
-
-    Raises
-    ------
-    InputError : there is none.
-    """
+    """The criterion of that name. InputError : there is none."""
     if name not in CRITERIA:
         *names, last = CRITERIA
         raise InputError("objective", f"must be {', '.join(names)} or {last}", name)

@@ -24,18 +24,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.setfunctions.criteria.packed import packed_inverse
-from ratt_opt.setfunctions.criteria.two_by_two import gradient_of_trace_of_inverse, trace_of_inverse
-from ratt_opt.setfunctions.criterion_parts import Tangent
-from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.setfunctions.minorants import SeparableMinorant
+from ratt_opt.setfunctions.criteria.two_by_two import trace_gradient, trace_of_inverse
+from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
+from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.minorants import Choices
+    from ratt_opt.setfunctions.criterion_parts import Choices
 
 __all__ = ["TraceObjective"]
 
@@ -74,7 +72,7 @@ class TraceObjective(InformationObjective):
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
         """``Lambda^{-2}`` by its entries, the off-diagonal one twice: (..., 3)."""
-        return np.stack(gradient_of_trace_of_inverse(a, b, c), axis=-1)
+        return np.stack(trace_gradient(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-2}``: (..., M, d, d)."""
@@ -83,7 +81,7 @@ class TraceObjective(InformationObjective):
 
     def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
         """``tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y)`` for *any* symmetric ``Y``: an inexact inverse costs strength only."""
-        y = _inverse(point)
+        y = symmetric_inverse(point)
         traces = np.trace(y, axis1=-2, axis2=-1)
         slope = self.weights[:, None, None] * (y @ y)
         return Tangent(slope, float((self._baseline - 2 * self.weights * traces).sum()))
@@ -97,7 +95,7 @@ class TraceObjective(InformationObjective):
 
     def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
         """``Y = L^{-1}`` of every target, packed."""
-        return packed_inverse(point)
+        return packed(symmetric_inverse(point))
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points."""
@@ -111,7 +109,7 @@ class TraceObjective(InformationObjective):
     def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
         """The tangent in ``P`` at the relaxed context, its rising part made linear, its falling part by owners."""
         posterior = self.prior_information + others.mixed(share)
-        covariance, after = _inverse(posterior), _inverse(posterior + added)
+        covariance, after = symmetric_inverse(posterior), symmetric_inverse(posterior + added)
         # (1 + P X)^{-1} = (L + X)^{-1} L, hence G = 1 - L B B L with B = (L + X)^{-1}.
         shrunk = after @ posterior
         slope = np.eye(self.dimension) - np.swapaxes(shrunk, -1, -2) @ shrunk
@@ -155,9 +153,3 @@ class TraceObjective(InformationObjective):
 def _pairs(first: FloatArray, second: FloatArray) -> FloatArray:
     """(M,) inner products."""
     return np.asarray((first * second).sum(axis=(-1, -2)))
-
-
-def _inverse(matrices: FloatArray) -> FloatArray:
-    """Inverses, symmetric to the last digit."""
-    inverse = np.linalg.inv(matrices)
-    return np.asarray((inverse + np.swapaxes(inverse, -1, -2)) / 2)

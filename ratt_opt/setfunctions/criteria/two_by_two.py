@@ -10,14 +10,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = [
-    "determinant",
-    "gradient_of_log_determinant",
-    "gradient_of_trace_of_inverse",
-    "largest_of_inverse",
-    "trace_of_inverse",
-    "triples",
-]
+__all__ = ["determinant", "largest_of_inverse", "logdet_gradient", "trace_gradient", "trace_of_inverse", "triples"]
 
 
 def determinant(a: Any, b: Any, c: Any) -> Any:
@@ -36,13 +29,13 @@ def largest_of_inverse(a: Any, b: Any, c: Any) -> Any:
     return ((a + c) / 2 + np.sqrt(half * half + b * b)) / (a * c - b * b)
 
 
-def gradient_of_log_determinant(a: Any, b: Any, c: Any) -> Any:
+def logdet_gradient(a: Any, b: Any, c: Any) -> Any:
     """Derivatives of ``log det L`` in ``a``, ``b`` and ``c``: the inverse, its off-diagonal entry twice."""
     det = determinant(a, b, c)
     return c / det, -2 * b / det, a / det
 
 
-def gradient_of_trace_of_inverse(a: Any, b: Any, c: Any) -> Any:
+def trace_gradient(a: Any, b: Any, c: Any) -> Any:
     """Derivatives of ``-tr(L^{-1})`` in ``a``, ``b`` and ``c``: ``L^{-2}``, its off-diagonal entry twice."""
     det = determinant(a, b, c)
     p, q, r = c / det, -b / det, a / det

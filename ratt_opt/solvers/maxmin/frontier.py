@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ratt_opt.solvers.maxmin.plans.candidates import Candidates
-    from ratt_opt.solvers.maxmin.tree import TreeNode
+    from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
+    from ratt_opt.solvers.maxmin.proof import TreeNode
 
 __all__ = ["ClosingRule", "Frontier"]
 
@@ -26,6 +26,7 @@ class ClosingRule:
 
     def __init__(self, plans: Candidates, gap: float) -> None:
         self.plans, self.gap = plans, gap
+        self._rounding = plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
@@ -35,15 +36,15 @@ class ClosingRule:
     @property
     def better(self) -> float:
         """The level that a plan has to exceed to be better by more than the gap."""
-        return self.level / (1 - min(self.gap, WIDEST_GAP))
+        return (self.level + self._rounding) / (1 - min(self.gap, WIDEST_GAP))
 
     def closes(self, bound: float) -> bool:
         """Whether a bound is low enough."""
-        return bool(np.isfinite(bound)) and bound <= self.level + self.gap * abs(bound)
+        return bool(np.isfinite(bound)) and self.missing(bound) >= 0
 
     def missing(self, bound: float) -> float:
         """What has to be added to a bound until it no longer closes; negative where it does not close."""
-        return self.level + self.gap * abs(bound) - bound
+        return self.level + self.gap * abs(bound) + self._rounding - bound
 
 
 class Frontier:
@@ -56,23 +57,22 @@ class Frontier:
         self._queue: list[tuple[float, int, TreeNode]] = []
         self._pushed = 0
         self._closed: list[TreeNode] = []
-        self._finished = self._settled = -np.inf
+        self._settled: list[tuple[TreeNode, int]] = []
+        """Nodes of a single plan, and how many outcomes were known when their bounds were found."""
+        self._finished = self._lowest = -np.inf
 
     @property
     def bound(self) -> float:
         """The largest bound of an open or finished node."""
-        still = [self._next_bound()] if self._queue else []
+        still = [-self._queue[0][0]] if self._queue else []
         if self.current is not None:
             still.append(self.current.bound)
-        return max(self._finished, self._settled, *still)
+        return max(self._finished, self._lowest, *still)
 
     @property
     def is_closed(self) -> bool:
         """Whether no open node is left that does not close."""
-        return not self._queue or self.rule.closes(self._next_bound())
-
-    def _next_bound(self) -> float:
-        return -self._queue[0][0]
+        return not self._queue or self.rule.closes(-self._queue[0][0])
 
     def push(self, node: TreeNode) -> None:
         """Queue an open node."""
@@ -91,15 +91,28 @@ class Frontier:
         self._finished = max(self._finished, node.bound)
 
     def settle(self, node: TreeNode) -> None:
-        """Finish a node of a single plan, whose bound is as low as it can be."""
-        self._settled = max(self._settled, node.bound)
+        """Finish a node of a single plan, whose bound is as low as the known outcomes make it."""
+        self._settled.append((node, len(self.rule.plans.pool.attacks)))
+        self._lowest = max(self._lowest, node.bound)
 
     def reopen(self) -> bool:
-        """Queue nodes that were closed against a better level than there is now; whether there are any."""
+        """Queue nodes that were closed against a better level than there is now; whether there are any.
+
+        Also single plans above that level, where outcomes were found since: one of them may be their worst.
+        """
         again = [node for node in self._closed if not self.rule.closes(node.bound)]
         if again:
             self._closed = [node for node in self._closed if self.rule.closes(node.bound)]
             self._finished = max((node.bound for node in self._closed), default=-np.inf)
             for node in again:
                 self.push(node)
-        return bool(again)
+        outdated = [(node, known) for node, known in self._settled if self._is_outdated(node, known)]
+        for node, _ in outdated:
+            self.push(node)
+        if outdated:
+            self._settled = [one for one in self._settled if one not in outdated]
+            self._lowest = max((node.bound for node, _ in self._settled), default=-np.inf)
+        return bool(again or outdated)
+
+    def _is_outdated(self, node: TreeNode, known: int) -> bool:
+        return not self.rule.closes(node.bound) and known < len(self.rule.plans.pool.attacks)

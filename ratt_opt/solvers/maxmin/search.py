@@ -14,29 +14,26 @@ import numpy as np
 
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
-from ratt_opt.solvers.maxmin.groups.group_proofs import GroupProofs
-from ratt_opt.solvers.maxmin.groups.winner_division import WinnerDivision
-from ratt_opt.solvers.maxmin.groups.winners import Winners
-from ratt_opt.solvers.maxmin.proof import Leaf, UpperProof
-from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
-from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
+from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
+from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
+from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, UpperProof, nodes_below, preorder
+from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
-from ratt_opt.solvers.maxmin.tree import TreeNode, nodes_below, preorder
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import FloatArray
+    from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
     from ratt_opt.solvers.maxmin.task import Task
-    from ratt_opt.solvers.maxmin.turns import Turns
 
     Progress = Callable[[int, float, float], None] | None
 
-__all__ = ["BranchAndBound"]
+__all__ = ["BranchAndBound", "Turns"]
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 STALL = 0.03
@@ -97,10 +94,11 @@ class BranchAndBound:
 
     def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
-        narrowed = self._narrow(node)
-        if narrowed is None:
-            return None
-        self.frontier.current = node = narrowed
+        if self.pairs is not None and self.rule.level > 0:
+            narrowed = self.pairs.narrow(node, self.rule.better, self.by_winner)
+            if narrowed is None:
+                return None
+            self.frontier.current = node = narrowed
         nodes, stalls = turns.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
         self.rounds.begin(node)
@@ -126,12 +124,6 @@ class BranchAndBound:
                     self.incumbent.improve(plan)
                 self.division.divide(node, relaxed)
                 return None
-
-    def _narrow(self, node: TreeNode) -> TreeNode | None:
-        """What remains of a node once elements that are weak in some pair are split off, if anything does."""
-        if self.pairs is None or not self.rule.level > 0:
-            return node
-        return self.pairs.narrow(node, self.rule.better, self.by_winner)
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one where it is better.
@@ -179,3 +171,27 @@ class BranchAndBound:
             if len(self.cuts) >= 4 * CUTS_A_ROUND:
                 break
         return node
+
+
+SEARCH_SHARE = 0.25
+"""Share of the time left that is searched before an unproved plan is attacked exactly."""
+
+
+class Turns:
+    """Says when it is time to stop searching: for good, or to prove the best plan's value."""
+
+    def __init__(self, budget: Budget, incumbent: Incumbent) -> None:
+        self.budget, self._incumbent = budget, incumbent
+        self._turn = budget.part(SEARCH_SHARE)
+
+    def stop(self) -> Stop | None:
+        """Why to stop searching now, if at all."""
+        if (stop := self.budget.stop()) not in {None, Stop.NODES}:
+            return stop
+        return Stop.TIME if self._turn.stop() is Stop.TIME and not self._incumbent.is_proved else None
+
+    def prove(self) -> bool:
+        """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
+        goes_on = self._incumbent.prove()
+        self._turn = self.budget.part(SEARCH_SHARE)
+        return goes_on

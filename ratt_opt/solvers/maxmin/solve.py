@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -12,18 +13,15 @@ from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack
+from ratt_opt.problem import Attack, Plan
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.baselines import greedy, myopic
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
-from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.plans.proved_plan import PROVED
-from ratt_opt.solvers.maxmin.search import BranchAndBound
+from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
 from ratt_opt.solvers.maxmin.task import Task
-from ratt_opt.solvers.maxmin.turns import Turns
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.ratt import greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -31,11 +29,11 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
-__all__ = ["check_limits", "solve_maxmin"]
+__all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "solve_maxmin"]
 
-LISTED_ROBOTS = 12
-LISTED_OUTCOMES = 3000
-"""Up to this many robots and outcomes all non-dominated outcomes are listed beforehand."""
+LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
+"""Up to so many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
+most in vain. Not measured."""
 ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
@@ -73,9 +71,9 @@ def solve_maxmin(
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    if not isinstance(problem.objective, InformationObjective):
-        return exhaustive_optimum(problem)
     budget = Budget.inside(budget, time_limit, max_nodes)
+    if not isinstance(problem.objective, InformationObjective):
+        return exhaustive_optimum(problem, budget=budget)
     first = ratt(problem, alpha_cs=alpha_cs).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
@@ -85,7 +83,7 @@ def solve_maxmin(
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
         plans = [first, *(planner(problem).elements for planner in (greedy, myopic))]
-        incumbent.start(plans if pairs is None else [*plans, pairs.strongest_plan()])
+        incumbent.start(plans if pairs is None else [*plans, pairs.values.strongest_plan()])
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
         stop = _search_and_prove(search, Turns(budget, incumbent), progress)
@@ -109,15 +107,17 @@ def _search_and_prove(search: BranchAndBound, turns: Turns, progress: Progress) 
 def _result(
     problem: Problem, incumbent: Incumbent, search: BranchAndBound | None, stop: Stop, gap: float
 ) -> MaxMinResult:
+    before = problem.information_objective.prior_criterion
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))
     bounded = search is not None and np.isfinite(search.upper)
     proved = incumbent.proved
     lower = proved.lower
     upper = max(search.upper if search is not None and bounded else everything, lower)
-    if upper <= lower * (1 + ROUNDING):
+    rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
+    if upper - lower <= ROUNDING * abs(lower) + rounding:
         stop = Stop.CLOSED
-    elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING):
+    elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING) + rounding:
         stop = proved.unproved_stop  # no better plan is left, but this one's worst case is not proved
     return MaxMinResult(
         elements=readonly(proved.elements),
@@ -126,15 +126,10 @@ def _result(
         stop=stop,
         evaluations=proved.evaluations,
         nodes=incumbent.budget.nodes,
-        posterior_gap=_posterior_gap(problem, float(lower), float(upper)),
+        posterior_gap=None if before is None or before <= lower else float((upper - lower) / (before - lower)),
         worst_case=proved.worst_case,
         proof=search.proof() if search is not None and bounded else None,
     )
-
-
-def _posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
-    before = problem.information_objective.prior_criterion
-    return None if before is None or before <= lower else (upper - lower) / (before - lower)
 
 
 def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
@@ -151,13 +146,45 @@ def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
 def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = None) -> None:
     """Check the limits of a search.
 
-    Raises
-    ------
-    InputError : the gap is negative or not a number, or a limit is not positive.
+    Raises ``InputError`` : the gap is negative or not a number, or a limit is not positive.
     """
     if not (math.isfinite(gap) and gap >= 0):
         raise InputError("gap", "must be a number >= 0", gap)
-    if time_limit is not None and not time_limit > 0:
-        raise InputError("time_limit", "must be positive seconds", time_limit)
+    if time_limit is not None and not time_limit >= 0:
+        raise InputError("time_limit", "must be a number of seconds >= 0", time_limit)
     if max_nodes is not None and max_nodes < 1:
         raise InputError("max_nodes", "must be at least 1", max_nodes)
+
+
+FEW_PLANS = 300_000
+"""So few plans are evaluated one and all."""
+
+
+def nonrobust_optimum(problem: Problem) -> Plan:
+    """Best plan when nobody attacks, to 1e-9 relative.
+
+    Raises
+    ------
+    InputError : more than 5 million plans of a set function that is no information criterion.
+
+    Source: the algorithm NR-OPT of ratt.tex, Section VI.
+    """
+    result = nonrobust_search(problem)
+    return Plan(elements=result.elements, evaluations=result.evaluations)
+
+
+def nonrobust_search(
+    problem: Problem, *, time_limit: float | None = None, budget: Budget | None = None
+) -> MaxMinResult:
+    """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan where few.
+
+    ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
+    ``budget`` : an outer search's budget: its seconds and interrupts count too
+
+    Raises ``InputError`` : more than 5 million plans of a set function that is no information criterion.
+    """
+    unattacked = replace(problem, alpha_s=0, alpha_c=0)
+    few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
+    if few or not isinstance(problem.objective, InformationObjective):
+        return exhaustive_optimum(unattacked, budget=Budget.inside(budget, time_limit))
+    return solve_maxmin(unattacked, time_limit=time_limit, budget=budget)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.bounds.relaxed_plans import mixed_information
+from ratt_opt.bounds.cuts import mixed_information
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -37,21 +37,14 @@ class Task:
 
     @classmethod
     def of(cls, problem: Problem) -> Task:
-        """Group each robot's elements by equal information.
-
-        Raises
-        ------
-        InputError : the objective is another kind of set function.
-        """
+        """Group each robot's elements by equal information."""
         objective = problem.information_objective
         classes = []
         for choice in problem.choices:
-            seen: dict[bytes, int] = {}
-            own: dict[int, list[int]] = {}
+            alike: dict[bytes, list[int]] = {}
             for e in choice.tolist():
-                first = seen.setdefault(objective.information[e].tobytes(), e)
-                own.setdefault(first, []).append(e)
-            classes.append(own)
+                alike.setdefault(objective.information[e].tobytes(), []).append(e)
+            classes.append({members[0]: members for members in alike.values()})
         choices = tuple(np.array(sorted(own), dtype=np.int64) for own in classes)
         return cls(problem, objective, tuple(classes), choices, objective.singletons())
 

@@ -9,7 +9,7 @@ import pytest
 
 from ratt_opt.audit.appendix.roles import Side, Team, optimum, worst_for
 from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.ratt import bait_and_greedy
 from tests.strategies import monotone_table
 

@@ -7,7 +7,7 @@ import pytest
 
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.table import TableFunction
+from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import ratt
 from tests.strategies import random_graph

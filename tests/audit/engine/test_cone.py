@@ -7,16 +7,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ratt_opt.audit.engine.claim import FunctionClass
-from ratt_opt.audit.engine.cone import elementary, elementary_keys
-from ratt_opt.audit.engine.counterexample import check_class
+from ratt_opt.audit.engine.claim import FunctionClass, elementary, elementary_keys
+from ratt_opt.audit.engine.evidence import check_class
 from ratt_opt.errors import ProofError
 from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB
 
 
 def in_class(kind: FunctionClass, values: tuple[int, ...], curvature: Fraction) -> bool:
     try:
-        check_class(kind, values, 3, curvature)
+        check_class(kind, np.array(values), curvature)
     except ProofError:
         return False
     return True

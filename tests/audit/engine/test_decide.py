@@ -11,9 +11,9 @@ import pytest
 from ratt_opt.audit.appendix.roles import Team
 from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality, Linear
 from ratt_opt.audit.engine.decide import Verdict, decide
-from ratt_opt.audit.engine.polynomial import ONE, T, constant
-from ratt_opt.audit.engine.proof import check_proof
+from ratt_opt.audit.engine.evidence import check_proof
 from ratt_opt.audit.engine.prover import find_proof
+from ratt_opt.audit.engine.rationals import ONE, T, constant
 from ratt_opt.audit.engine.refuter import find_witness
 from ratt_opt.errors import ProofError
 from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB, claim, f

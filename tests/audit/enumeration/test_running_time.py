@@ -7,13 +7,14 @@ import pytest
 
 from ratt_opt import InputError, Problem, TableFunction, random_scenario, ratt
 from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.evaluation_counts import (
+from ratt_opt.audit.enumeration.running_time import (
+    count_orders,
     evaluation_bound,
     evaluation_count,
     fit_growth,
     lazy_greedy_picks,
+    measured_growth,
 )
-from ratt_opt.audit.enumeration.running_time import count_orders, measured_growth
 from ratt_opt.setfunctions.base import SetFunction
 
 

@@ -14,8 +14,7 @@ from ratt_opt import InputError, MaxEigenvalueObjective, TraceObjective, exhaust
 from ratt_opt.audit.appendix.entry import ClaimEntry
 from ratt_opt.audit.appendix.roles import Team
 from ratt_opt.audit.ledger import all_entries
-from ratt_opt.audit.real_objectives.cast import Cast, Stage, is_castable
-from ratt_opt.audit.real_objectives.exact_criteria import ExactCriterion
+from ratt_opt.audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
 from ratt_opt.audit.real_objectives.search import Origin, Trial, exact_violation, search_real_objectives
 from ratt_opt.audit.report.records import real_record
 from ratt_opt.scenario.model import Scenario

@@ -9,8 +9,7 @@ import pytest
 from ratt_opt.audit.appendix.entry import Reference
 from ratt_opt.audit.ledger import all_entries, run_audit
 from ratt_opt.audit.report.findings import findings
-from ratt_opt.audit.report.html_page import html_report
-from ratt_opt.audit.report.markdown_page import markdown_report
+from ratt_opt.audit.report.pages import html_report, markdown_report
 
 
 def record(label: str, kind: str, verdict: str, reading: str = "", **more: Any) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.solvers.maxmin.branching import divide_by_scores, rounding_losses
+from ratt_opt.solvers.maxmin.division import divide_by_scores, rounding_losses
 
 
 def mixture(rng: np.random.Generator) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import Attack, Problem, random_scenario, worst_case_attack
-from ratt_opt.solvers.maxmin.plans.lasting_attack import LastingAttacks
+from ratt_opt.solvers.maxmin.plans.adversary import LastingAttacks
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_elements
 

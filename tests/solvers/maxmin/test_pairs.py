@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import Problem, certify, exhaustive_optimum, solve_maxmin, verify_certificate, worst_case_attack
-from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
-from ratt_opt.solvers.maxmin.groups.pair_values import PairValues
+from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes, PairValues
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.stopping import Stop
 from tests.solvers.maxmin.test_solve import proved_upper

@@ -196,7 +196,7 @@ def test_an_interrupt_that_an_inner_attack_turned_into_a_bracket_is_heard(
     assert result.lower <= result.upper
 
 
-@pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": 0}, {"max_nodes": 0}])
+@pytest.mark.parametrize("limits", [{"gap": -1}, {"gap": float("nan")}, {"time_limit": -1}, {"max_nodes": 0}])
 def test_bad_limits_are_refused(limits: dict[str, float]) -> None:
     problem = random_scenario(2, 2, alpha_s=0, alpha_c=0, seed=0).problem()
     with pytest.raises(InputError, match=next(iter(limits))):

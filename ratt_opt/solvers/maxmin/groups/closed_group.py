@@ -1,8 +1,7 @@
 """Proof that one group never exceeds a level, whatever its robots choose.
 
-A small depth-first search of its own: tangent cuts at improving mixtures of the group's elements bound
-it, and where one cut is not enough the robot whose mixture gains most is divided. One plan above the level
-ends it without a proof.
+A small depth-first search of its own: tangent cuts at improving mixtures of the group's elements bound it, and where
+one cut is not enough the robot whose mixture gains most is divided. One plan above the level ends it without a proof.
 """
 
 from __future__ import annotations
@@ -13,15 +12,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
-from ratt_opt.solvers.maxmin.branching import divide_elements, mixing_gains
+from ratt_opt.solvers.maxmin.division import divide_elements, mixing_gains
+from ratt_opt.solvers.maxmin.proof import Leaf
 from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.frontier import ClosingRule
+    from ratt_opt.solvers.maxmin.proof import TreeNode
+    from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
     from ratt_opt.solvers.maxmin.task import Choices, Task
 
-__all__ = ["ClosedGroup", "close_group"]
+__all__ = ["ClosedGroup", "GroupProofs", "close_group"]
 
 STEPS = 6
 """Frank-Wolfe steps towards the best mixture of a node. 3 and 12 lead to as many search nodes in teams of ten."""
@@ -68,7 +70,9 @@ class _Search:
             share = 2 / (step + 2)
             selection *= 1 - share
             selection[plan] += share
-            point = self._point(selection)
+            chosen = np.flatnonzero(selection)
+            mixed = np.tensordot(selection[chosen], self.objective.information[chosen], axes=1)
+            point: FloatArray = self.objective.prior_information + mixed
             cut = tangent_cut(self.problem, self.members, point)
             self.cuts += 1
             bound, scores = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), choices)
@@ -80,19 +84,10 @@ class _Search:
                 raise _RefutedError
         return self._divide(choices, selection, point, cut.target)
 
-    def _point(self, selection: FloatArray) -> FloatArray:
-        chosen = np.flatnonzero(selection)
-        mixed = np.tensordot(selection[chosen], self.objective.information[chosen], axes=1)
-        return np.asarray(self.objective.prior_information + mixed)
-
     def _divide(self, choices: Choices, selection: FloatArray, point: FloatArray, target: int | None) -> ClosedGroup:
+        inside, points = self.inside[None], point[None]
         gains = mixing_gains(
-            self.problem,
-            selection=selection,
-            inside=self.inside[None],
-            points=point[None],
-            weights=np.ones(1),
-            targets=[target],
+            self.problem, selection=selection, inside=inside, points=points, weights=np.ones(1), targets=[target]
         )
         divisible = [i for i in self.members if len(choices[i]) > 1]
         if not divisible:
@@ -103,3 +98,37 @@ class _Search:
             for part in divide_elements(self.objective, choices[robot], selection, point)
         )
         return ClosedGroup(bound=max(node.bound for _, node in parts), robot=robot, parts=parts)
+
+
+class GroupProofs:
+    """Closes groups of the pool; attempts are remembered until a better plan is known."""
+
+    def __init__(self, cuts: CutStore, rule: ClosingRule) -> None:
+        self.task, self.pool, self.cuts, self.rule = cuts.task, cuts.pool, cuts, rule
+        self._attempts: dict[tuple[int, bytes], tuple[float, ClosedGroup | None]] = {}
+
+    def find(self, group: int, choices: Choices) -> ClosedGroup | None:
+        """A proof that a group stays low enough within ``choices``, if one is found."""
+        members = self.pool.groups[group]
+        key = (group, b"|".join(choices[i].tobytes() for i in members))
+        level, proof = self._attempts.get(key, (-np.inf, None))
+        if proof is not None and not self.rule.closes(proof.bound):
+            level, proof = -np.inf, None  # of a time when the best plan seemed better
+        if proof is None and level < self.rule.level:
+            proof = close_group(self.task, members, choices, self.rule)
+            self._attempts[key] = (self.rule.level, proof)
+        return proof
+
+    def graft(self, node: TreeNode, outcome: int, group: int, proof: ClosedGroup) -> list[TreeNode]:
+        """Write the proof that a group is closed below ``node`` of the search tree; return its leaves."""
+        if proof.cut is not None:
+            node.leaf = Leaf(cuts=(self.cuts.add(outcome, group, proof.cut),), weights=(1.0,))
+            node.bound = proof.bound
+            return [node]
+        children = [node.child(with_choice(node.choices, proof.robot, part)) for part, _ in proof.parts]
+        node.divide(proof.robot, children, self.task)
+        return [
+            leaf
+            for child, (_, below) in zip(children, proof.parts, strict=True)
+            for leaf in self.graft(child, outcome, group, below)
+        ]

@@ -2,23 +2,140 @@
 
 from __future__ import annotations
 
+import heapq
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary
-from ratt_opt.solvers.maxmin.plans.candidates import Candidates
-from ratt_opt.solvers.maxmin.plans.local_search import climb
-from ratt_opt.solvers.maxmin.plans.proved_plan import ProvedPlan
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
-__all__ = ["Incumbent"]
+__all__ = ["PROVED", "Candidates", "Incumbent", "ProvedPlan", "climb"]
+
+
+def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -> IntArray:
+    """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
+
+    ``plan`` : (N,) element of each robot to start from; not changed. Raises ``OutOfBudget`` : the time is up.
+    """
+    objective = pool.objective
+    current = plan.copy()
+    points = pool.group_points(objective.information[current])
+    base = objective.value(points)
+    value = float(pool.outcome_values(base).min(initial=np.inf))
+    unchanged, i = 0, 0
+    seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
+    while unchanged < problem.n_robots:
+        budget.check()
+        choice = problem.choices[i]
+        rows = np.flatnonzero(pool.membership()[:, i])
+        others = choice[choice != current[i]]
+        unchanged += 1
+        if len(others) and len(rows):
+            change = objective.information[others] - objective.information[current[i]]
+            values = np.repeat(base[None], len(others), axis=0)
+            values[:, rows] = objective.value(points[rows][None] + change[:, None])
+            worst = pool.outcome_values(values).min(axis=1)
+            k = int(worst.argmax())
+            if worst[k] > value + 1e-12 * abs(value) + objective.rounding:  # a tie is no improvement
+                current[i], value, base = others[k], float(worst[k]), values[k]
+                points[rows] += change[k]
+                unchanged = 0
+                if (key := current.tobytes()) in seen:
+                    return current
+                seen.add(key)
+        i = (i + 1) % problem.n_robots
+    return current
+
+
+class Candidates:
+    """Plans by their value under the known outcomes, an upper bound on their worst case.
+
+    A new outcome may lower the best one's value; then another may become the best.
+    """
+
+    def __init__(self, pool: OutcomePool, first: IntArray) -> None:
+        self.pool, self._first = pool, first
+        self._ranked: list[tuple[float, int, int, IntArray]] = []
+        self._met: set[bytes] = set()
+
+    @property
+    def level(self) -> float:
+        """Value of :attr:`best` under all known outcomes: no plan of a smaller bound is worth looking for."""
+        return -self._top()[0]
+
+    @property
+    def best(self) -> IntArray:
+        """The plan of largest value under all known outcomes; the first met among equals."""
+        return self._top()[3]
+
+    def is_better(self, plan: IntArray) -> bool:
+        """Whether a plan is worth more than the best one under the known outcomes, by more than rounding."""
+        return self.pool.plan_value(plan) > self.level + self.pool.objective.rounding
+
+    def meet(self, plan: IntArray) -> bool:
+        """Note a plan; whether it is met for the first time."""
+        known = len(self._met)
+        self._met.add(plan.tobytes())
+        return len(self._met) > known
+
+    def add(self, plan: IntArray) -> bool:
+        """Rank a plan that was met; whether it became the best."""
+        value = self.pool.plan_value(plan)
+        better = value > self.level
+        heapq.heappush(self._ranked, (-value, len(self._met), len(self.pool.attacks), plan.copy()))
+        return better
+
+    def _top(self) -> tuple[float, int, int, IntArray]:
+        """The best candidate; a stored value is out of date, and too large, where outcomes were found since."""
+        known = len(self.pool.attacks)
+        while self._ranked and self._ranked[0][2] < known:
+            _, serial, _, plan = self._ranked[0]
+            heapq.heapreplace(self._ranked, (-self.pool.plan_value(plan), serial, known, plan))
+        return self._ranked[0] if self._ranked else (np.inf, 0, known, self._first)
+
+
+PROVED = 2e-10
+"""Relative difference between a plan's known and its proved value that counts as none. The search leaves it out of its
+own gap, so that both together stay within 1e-9, the smallest gap that is asked for."""
+
+
+class ProvedPlan:
+    """``elements`` keep ``lower`` under every attack, as ``worst_case`` proved; before it, what nothing is worth.
+
+    ``unproved_stop`` : why the last exact attack that did not close stopped. ``evaluations`` : of all exact attacks.
+    """
+
+    def __init__(self, adversary: Adversary, elements: IntArray) -> None:
+        self.adversary = adversary
+        self.elements = elements
+        self.lower = adversary.problem.objective([])  # whatever the plan
+        self.worst_case: AttackResult | None = None
+        self.evaluations = 0
+        self.unproved_stop = Stop.HEURISTIC
+
+    def attack(self, plan: IntArray, budget: Budget) -> None:
+        """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
+
+        Raises ``OutOfBudget`` : the user interrupted the attack; what it had proved counts.
+        """
+        result = self.adversary.attack(plan, budget)
+        self.evaluations += result.evaluations
+        if result.lower > self.lower:
+            self.elements, self.lower, self.worst_case = plan.copy(), result.lower, result
+        if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
+            self.unproved_stop = result.stop
+        self.adversary.heed(result)
+
 
 LOCAL_SEARCH_ROUNDS = 50
 """Rounds of climbing and attacking after which a plan is left as it is; in teams of ten 1 takes as many nodes."""
@@ -39,10 +156,13 @@ class Incumbent:
     @property
     def is_proved(self) -> bool:
         """Whether the best plan's value is proved."""
-        return self.proved.reaches(self.candidates.level)
+        level = self.candidates.level
+        return self.proved.lower >= level - PROVED * abs(level) - self.problem.objective.rounding
 
     def start(self, plans: Sequence[IntArray]) -> None:
         """Improve the most promising of some plans, beat all of them, and attack the best one briefly."""
+        # What is known at once of the first plan: whatever interrupts the rest, the bracket is not empty.
+        self.proved.attack(plans[0], self.budget.part(max_nodes=0))
         for plan in plans:
             self.adversary.learn(plan)
         self.improve(max(plans, key=self.pool.plan_value))
@@ -69,7 +189,7 @@ class Incumbent:
         self._started.add(key)
         current = plan
         for _ in range(LOCAL_SEARCH_ROUNDS):
-            current = climb(self.problem, self.pool, current)
+            current = climb(self.problem, self.pool, current, self.budget)
             known = len(self.pool.attacks)
             if not self.adversary.learn(current):
                 self.offer(current)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.highs import LinearProgram, Rows, rows_of
+from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,48 +46,30 @@ class NodeProgram:
         self._n, self._robots = n_elements, len(choices)
         zeros, ones = np.zeros(n_elements), np.ones(n_elements)
         owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], 1.0, 1.0)
-        self._program = LinearProgram(
-            np.append(zeros, 1.0),
-            np.append(zeros, -np.inf),
-            np.append(ones, np.inf),
-            rows=owners,
-            maximise=True,
-            solver="simplex",
-        )
+        cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(ones, np.inf)
+        self._program = LinearProgram(cost, lower, upper, rows=owners, maximise=True, solver="simplex")
         self._allowed = np.ones(n_elements, dtype=np.bool_)
-        self._rows: list[int] = []
-        self._idle: dict[int, int] = {}
-
-    @property
-    def in_use(self) -> list[int]:
+        self.in_use: list[int] = []
         """Cuts that are rows now, in row order."""
-        return self._rows
+        self._idle: dict[int, int] = {}
 
     def use(self, cut: int, constant: float, scores: FloatArray) -> None:
         """Add one cut as a row."""
         columns = np.flatnonzero(scores)
-        values = np.append(-scores[columns], 1.0)
-        self._program.add_rows(
-            Rows(
-                lower=np.array([-np.inf]),
-                upper=np.array([constant]),
-                starts=np.array([0, len(values)]),
-                columns=np.append(columns, self._n),
-                values=values,
-            )
-        )
-        self._rows.append(cut)
+        row = [*columns.tolist(), self._n], [*(-scores[columns]).tolist(), 1.0]
+        self._program.add_rows(rows_of([row], -np.inf, constant))
+        self.in_use.append(cut)
         self._idle[cut] = 0
 
     def drop(self, gone: Callable[[int], bool]) -> None:
         """Remove the rows of cuts for which ``gone`` is true."""
-        positions = [position for position, cut in enumerate(self._rows) if gone(cut)]
+        positions = [position for position, cut in enumerate(self.in_use) if gone(cut)]
         if positions:
             self._program.delete_rows(np.array(positions) + self._robots)
             for position in positions:
-                del self._idle[self._rows[position]]
+                del self._idle[self.in_use[position]]
             kept = set(positions)
-            self._rows = [cut for position, cut in enumerate(self._rows) if position not in kept]
+            self.in_use = [cut for position, cut in enumerate(self.in_use) if position not in kept]
 
     def drop_idle(self, patience: int) -> None:
         """Remove cuts whose multiplier was zero in the last ``patience`` solves."""
@@ -107,12 +89,9 @@ class NodeProgram:
         if not claim.is_optimal:
             return None
         duals = np.abs(claim.duals[self._robots :])
-        for cut, dual in zip(self._rows, duals, strict=True):
+        for cut, dual in zip(self.in_use, duals, strict=True):
             self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
         columns = claim.x[: self._n]
-        return RelaxedPlan(
-            selection=np.where(columns > ROUNDING, np.minimum(columns, 1.0), 0.0),
-            cuts=np.array(self._rows, dtype=np.int64),
-            duals=duals,
-            level=float(claim.x[self._n]),
-        )
+        selection = np.where(columns > ROUNDING, np.minimum(columns, 1.0), 0.0)
+        cuts, level = np.array(self.in_use, dtype=np.int64), float(claim.x[self._n])
+        return RelaxedPlan(selection=selection, cuts=cuts, duals=duals, level=level)

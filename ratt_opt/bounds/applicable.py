@@ -1,0 +1,67 @@
+"""Which guarantees apply to RATT's plan for one problem, and why the others do not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt.bounds.group_size import achievable_group_size, group_size_bound
+from ratt_opt.bounds.guarantees import (
+    Curvatures,
+    Guarantee,
+    all_bait_group_bound,
+    pattern_free_bound,
+    remark1_bound,
+    sensing_only_bound,
+    theorem1_bound,
+)
+
+if TYPE_CHECKING:
+    from ratt_opt.problem import Problem
+
+__all__ = ["all_guarantees", "inapplicable_guarantees"]
+
+SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
+
+
+def all_guarantees(
+    problem: Problem, alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None
+) -> dict[str, Guarantee]:
+    """The guarantees that apply to RATT's plan for one problem, strongest first.
+
+    Parameters
+    ----------
+    alpha_cs : sensing attacks that RATT took the link attacks to be worth
+    k : curvature, for a submodular objective; c : total curvature; over feasible sets, numbers or brackets
+    """
+    missing = inapplicable_guarantees(problem, alpha_cs)
+    seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
+    group_size = achievable_group_size(problem)
+    found: dict[str, Guarantee] = {}
+    for name, given in (("k", {"k": k}), ("c", {"c": c})):
+        if given[name] is None:
+            continue
+        found[f"pattern-free ({name})"] = pattern_free_bound(**given)
+        found[f"group size ({name})"] = group_size_bound(group_size, baits_survive=alpha_cs > 0, **given)
+        found[f"Theorem 1 ({name})"] = theorem1_bound(alpha_cs, all_bait=ALL_BAIT not in missing, **given)
+        if SENSING_ONLY not in missing:
+            found[f"{SENSING_ONLY} ({name})"] = sensing_only_bound(**given)
+        if REMARK_1 not in missing:
+            found[f"{REMARK_1} ({name})"] = remark1_bound(**given)
+        if ALL_BAIT not in missing and seeing > 0:
+            # No group has more robots that see, and the bound falls with their number.
+            found[f"{ALL_BAIT} ({name})"] = all_bait_group_bound(seeing, **given)
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
+    """The published guarantees that say nothing about RATT's plan for one problem: name -> which hypothesis fails."""
+    alpha = problem.alpha_s + alpha_cs
+    found: dict[str, str] = {}
+    if problem.alpha_c > 0:
+        found[SENSING_ONLY] = f"links are attacked (alpha_c = {problem.alpha_c})"
+    elif alpha >= problem.n_robots:
+        found[SENSING_ONLY] = f"every robot may be blinded (alpha_s = {problem.alpha_s})"
+    if alpha < problem.n_robots:
+        greedy = f"RATT leaves {problem.n_robots - alpha} robots to the greedy step (alpha = {alpha})"
+        found[REMARK_1] = found[ALL_BAIT] = greedy
+    return found
