@@ -46,7 +46,7 @@ CASES = (
 
 OPENING = """# What the audit settles
 
-Theorem 1 of the paper rests on an appendix of about ninety numbered lines. `ratt-opt audit` decides every one of them
+Theorem 1 of the paper rests on an appendix of 87 numbered lines. `ratt-opt audit` decides every one of them
 by machine, twice: as a *step* (this line from the one before) and *cumulatively* (this line from the start of its
 chain). A statement "for every set function of this class with these roles" is a linear program over the function's
 values: a feasible dual is a proof, a feasible primal a counterexample. Both are rounded to rationals and checked

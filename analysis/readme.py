@@ -1,4 +1,4 @@
-"""Refresh the README: run each command it names and put its real output and figures in place.
+"""Refresh the README and the guides: run each command they name and put its real output and figures in place.
 
 Run as ``python -m analysis.readme``. A block is ``<!-- output: COMMAND -->`` (or ``<!-- output of the last
 N lines: COMMAND -->``) followed by a ``text`` code fence; commands that use a ``$VARIABLE`` which is not set, or a
@@ -23,20 +23,21 @@ __all__ = ["main", "refreshed"]
 ROOT = Path(__file__).parents[1]
 OUTPUT = re.compile(r"<!-- output(?: of the last (?P<last>\d+) lines)?: (?P<command>.*?) -->\n```text\n.*?```\n", re.S)
 TABLE = re.compile(r"<!-- table: (?P<command>.*?) -->\n(?:\|.*\n)*")
+PAGES = ("docs/guide.md", "docs/evaluation.md", "README.md")
+"""In this order, and in one folder: a page may show what an earlier one's commands have written."""
 FIGURE = re.compile(r"<!-- figure: (?P<file>\S+) -->\n!\[.*?\]\((?P<path>\S+?)\)", re.S)
 
 
 def main() -> None:
-    """Rewrite README.md and the figures beside it."""
-    readme = ROOT / "README.md"
+    """Rewrite the pages and the figures beside them."""
     with tempfile.TemporaryDirectory() as folder:
-        text = refreshed(readme.read_text(encoding="utf-8"), Path(folder))
-        for figure in FIGURE.finditer(text):
-            source = Path(folder) / os.path.expandvars(figure["file"])
-            if source.exists():
-                (ROOT / figure["path"]).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(source, ROOT / figure["path"])
-    readme.write_text(text, encoding="utf-8")
+        for page in (ROOT / name for name in PAGES):
+            text = refreshed(page.read_text(encoding="utf-8"), Path(folder))
+            for figure in FIGURE.finditer(text):
+                source = Path(folder) / os.path.expandvars(figure["file"])
+                if source.exists():
+                    shutil.copyfile(source, page.parent / figure["path"])
+            page.write_text(text, encoding="utf-8")
 
 
 def refreshed(text: str, folder: Path) -> str:

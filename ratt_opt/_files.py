@@ -1,9 +1,10 @@
-"""Files are written whole or not at all."""
+"""Files are written whole or not at all, and only where a regular file is or may come to be."""
 
 from __future__ import annotations
 
 import json
 import os
+import stat
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,26 +12,65 @@ from typing import TYPE_CHECKING
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
-__all__ = ["output_directory", "write_atomically", "write_json"]
+__all__ = ["MIXED", "output_directory", "output_file", "write_atomically", "write_json", "write_together"]
+
+MIXED = "incomplete.txt"
+"""In a folder only while files that belong together are renamed, or where a kill ended that."""
+_MIXED_TEXT = """A run was stopped while it replaced the files of this folder: some may be of that run, some of an
+earlier one. Run the same command again.
+"""
+
+_KINDS = (
+    (stat.S_ISLNK, "a symbolic link"),
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+)
 
 
-def output_directory(path: str | Path) -> Path:
-    """Create the folder ``path`` if needed and return it.
+def output_directory(path: str | Path, *names: str) -> Path:
+    """Create the folder ``path`` if needed and return it, ready to take files of these names.
 
     Raises
     ------
-    InputError : the folder cannot be created or written to.
+    InputError : the folder cannot be created or written to, or holds something else under one of the names.
     """
     folder = Path(path)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
-    except OSError as error:
-        raise InputError("out", "must be a folder that can be written", f"{folder} ({error.strerror})") from None
+    except (OSError, ValueError) as error:
+        raise InputError("out", "must be a folder that can be written", f"{folder} ({_reason(error)})") from None
+    for name in names:
+        output_file(folder / name)
     return folder
+
+
+def output_file(path: str | Path) -> Path:
+    """Return ``path`` if a file may be written there: nothing is there yet, or a regular file.
+
+    A symbolic link is not followed: what it points to may be anything, and the rename would replace the link.
+
+    Raises
+    ------
+    InputError : a link, folder, device, pipe or socket is there, or it cannot be looked at.
+    """
+    target = Path(path)
+    try:
+        mode = target.lstat().st_mode
+    except FileNotFoundError:
+        return target
+    except (OSError, ValueError) as error:
+        raise InputError("out", "must be a path that can be written", f"{target} ({_reason(error)})") from None
+    if not stat.S_ISREG(mode):
+        kind = next((name for is_kind, name in _KINDS if is_kind(mode)), "no regular file")
+        raise InputError("out", f"must be a new or a regular file, not {kind}", target)
+    return target
 
 
 def write_atomically(path: str | Path, write: Callable[[Path], object]) -> Path:
@@ -38,13 +78,13 @@ def write_atomically(path: str | Path, write: Callable[[Path], object]) -> Path:
 
     Raises
     ------
-    InputError : the file cannot be written there.
+    InputError : the file cannot be written there, or what is there is no regular file.
     """
-    target = Path(path)
+    target = output_file(path)
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
-    except OSError as error:
-        raise InputError("out", "must be a path that can be written", f"{target} ({error.strerror})") from None
+    except (OSError, ValueError) as error:
+        raise InputError("out", "must be a path that can be written", f"{target} ({_reason(error)})") from None
     os.close(handle)
     temporary = Path(name)
     try:
@@ -52,7 +92,7 @@ def write_atomically(path: str | Path, write: Callable[[Path], object]) -> Path:
         temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
     except OSError as error:
-        raise InputError("out", "must be a path that can be written", f"{target} ({error.strerror})") from None
+        raise InputError("out", "must be a path that can be written", f"{target} ({_reason(error)})") from None
     finally:
         temporary.unlink(missing_ok=True)
     return target
@@ -62,6 +102,34 @@ def write_json(path: str | Path, document: object) -> Path:
     """Write ``document`` as strict JSON (no NaN or Infinity), floats at full precision."""
     text = json.dumps(document, indent=1, allow_nan=False) + "\n"
     return write_atomically(path, lambda file: file.write_text(text, encoding="utf-8"))
+
+
+def write_together(folder: Path, writers: Mapping[str, Callable[[Path], object]]) -> list[Path]:
+    """Write files that belong together: all are made aside, then renamed into the folder one after the other.
+
+    A kill between two renames leaves ``MIXED`` in the folder, whose text says what that means.
+
+    Raises
+    ------
+    InputError : a file cannot be written there; those of an earlier set are then all left as they were.
+    """
+    targets = [output_file(folder / name) for name in writers]
+    mark = output_file(folder / MIXED)
+    try:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as aside:
+            for name, write in writers.items():
+                write(Path(aside) / name)
+            write_atomically(mark, lambda file: file.write_text(_MIXED_TEXT, encoding="utf-8"))
+            for target in targets:
+                (Path(aside) / target.name).replace(target)
+            mark.unlink()
+    except OSError as error:
+        raise InputError("out", "must be a folder that can be written", f"{folder} ({_reason(error)})") from None
+    return targets
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return (error.strerror if isinstance(error, OSError) else str(error)) or type(error).__name__
 
 
 def _umask() -> int:

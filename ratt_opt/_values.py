@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields, is_dataclass
+from enum import Enum
+from html import escape
 from typing import Any
 
 import numpy as np
 
-__all__ = ["ByValue", "shown"]
+__all__ = ["ByValue", "Shown", "plain", "shown"]
 
 MOST_SHOWN = 12
 """Entries of an array that a ``repr`` shows; the rest is counted."""
@@ -57,3 +60,47 @@ def shown(value: Any) -> str:
     first = ", ".join(map(repr, value[:MOST_SHOWN].tolist()))
     more = f", ... {value.size - MOST_SHOWN} more" if value.size > MOST_SHOWN else ""
     return f"[{first}{more}]"
+
+
+class Shown:
+    """Base of records that notebooks show as a table of their fields, and that become plain data."""
+
+    __slots__ = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields as plain data: lists, numbers and text; unknown numbers are ``None``."""
+        assert is_dataclass(self)
+        return {f.name: plain(getattr(self, f.name)) for f in fields(self) if f.repr}
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th style='text-align:left'>{escape(name.replace('_', ' '))}</th>"
+            f"<td style='text-align:left'>{escape(_brief(value))}</td></tr>"
+            for name, value in self.to_dict().items()
+        )
+        return f"<table><caption>{escape(type(self).__name__)}</caption>{rows}</table>"
+
+
+def plain(value: Any) -> Any:
+    """Return a field's value as plain data, sets in order and infinities or NaN as ``None``."""
+    if isinstance(value, Shown):
+        return value.to_dict()
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (frozenset, set)):
+        return plain(sorted(value))
+    if isinstance(value, (tuple, list)):
+        return [plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _brief(value: Any) -> str:
+    """Plain data as text for people: numbers to ten digits, long lists cut."""
+    if isinstance(value, dict):
+        return "; ".join(f"{name}: {_brief(item)}" for name, item in value.items())
+    if isinstance(value, list):
+        more = f", ... {len(value) - MOST_SHOWN} more" if len(value) > MOST_SHOWN else ""
+        return (", ".join("-".join(map(str, x)) if isinstance(x, list) else str(x) for x in value[:MOST_SHOWN])) + more
+    return f"{value:.10g}" if isinstance(value, float) else "none" if value is None else str(value)

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-__all__ = ["FileFormatError", "InputError", "ProofError"]
+__all__ = ["FileFormatError", "InputError", "ProofError", "UndecidedError", "printable"]
 
 _LONGEST_VALUE = 80
 
 
+def printable(text: str) -> str:
+    """The text on one line, as text: what would steer a terminal or cannot be encoded is shown by its escape.
+
+    Control and escape characters, marks of writing direction and lone surrogates are all not printable.
+    """
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in " ".join(text.split()))
+
+
 def _shown(value: object) -> str:
-    text = " ".join(str(value).split()) or repr(value)
+    text = printable(str(value)) or repr(value)
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
 
 
@@ -29,7 +37,7 @@ class InputError(ValueError):
         self.value = value
 
     def __str__(self) -> str:
-        return f"{self.argument} {self.rule}; got {_shown(self.value)}"
+        return f"{printable(self.argument)} {printable(self.rule)}; got {_shown(self.value)}"
 
 
 class FileFormatError(InputError):
@@ -38,3 +46,7 @@ class FileFormatError(InputError):
 
 class ProofError(Exception):
     """A certificate does not prove its claim; the text names the first fault."""
+
+
+class UndecidedError(ProofError):
+    """A certificate is neither proved nor refuted within the verifier's limits; the text names the limit."""

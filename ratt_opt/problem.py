@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._validation import IntArray, check_integer, readonly
-from ratt_opt._values import ByValue
+from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
@@ -26,7 +26,7 @@ __all__ = ["Attack", "Plan", "Problem"]
 
 
 @dataclass(frozen=True, slots=True)
-class Attack:
+class Attack(Shown):
     """Robots whose sensor is blinded, and links ``(i, j)``, ``i < j``, that are cut."""
 
     sensing: frozenset[int] = frozenset()
@@ -41,7 +41,7 @@ class Attack:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Plan(ByValue):
+class Plan(ByValue, Shown):
     """One element per robot; two plans are equal when all their fields are.
 
     ``elements`` : (N,) flat element indices, robot by robot.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from analysis.studies.command import Entry, main
 from analysis.studies.instance import Instance
-from analysis.studies.plots import COLOURS, LABELS, bands, new_figure, save
+from analysis.studies.plots import LABELS, LOOKS, bands, new_figure, save
 from analysis.studies.statistics import column, estimate, select
 from analysis.studies.study import Case, Cell, Seeds, Study
 from ratt_opt.attackers.exact import worst_case_attack
@@ -72,9 +72,9 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     for axes, case in zip(figure.subplots(1, len(STUDY.cases), sharey=True), STUDY.cases, strict=True):
         kept = select(rows, case=case.name)
         curve = excess(kept, "ratt")
-        bands(axes, range(LEVELS), curve, colour=COLOURS["ratt"], label=LABELS["ratt"])
-        bands(axes, range(LEVELS), excess(kept, "clairvoyant"), colour="#e8871e", label=CLAIRVOYANT)
-        axes.axhline(0, color=COLOURS["greedy"], linewidth=1.2, label=LABELS["greedy"])
+        bands(axes, range(LEVELS), curve, look=LOOKS["ratt"], label=LABELS["ratt"])
+        bands(axes, range(LEVELS), excess(kept, "clairvoyant"), look=LOOKS["nonrobust_optimum"], label=CLAIRVOYANT)
+        axes.axhline(0, color=LOOKS["greedy"].colour, linestyle="--", linewidth=1.4, label=LABELS["greedy"])
         axes.axvline(case.alpha_s, color="black", linestyle=":", linewidth=1, label="attack planned for")
         title = f"planned for $\\alpha_s$={case.alpha_s}, $\\alpha_c$={case.alpha_c}"
         price = f"price without attack {curve[0].mean:+.1f} %"

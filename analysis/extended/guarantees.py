@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.studies.command import Entry, main
-from analysis.studies.plots import new_figure, save
+from analysis.studies.plots import LOOKS, new_figure, save
 from analysis.studies.statistics import column, select
 from analysis.studies.study import Case, Study
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ratt_opt._validation import FloatArray
+    from ratt_opt.report.palette import Look
 
 STUDY = Study(
     name="guarantees",
@@ -37,10 +38,10 @@ STUDY = Study(
 )
 OBJECTIVES = {"logdet": "log-determinant (curvature k)", "trace": "trace (total curvature c)"}
 SHOWN = {
-    "theorem1": ("Theorem 1 of the paper", "#6c757d"),
-    "pattern_free": ("pattern-free bound", "#e8871e"),
-    "ratio": ("smallest ratio of all functions so curved", "#b5179e"),
-    "certified": ("certified on the instance", "#1f4e9c"),
+    "theorem1": ("Theorem 1 of the paper", LOOKS["myopic"]),
+    "pattern_free": ("pattern-free bound", LOOKS["nonrobust_optimum"]),
+    "ratio": ("smallest ratio of all functions so curved", LOOKS["greedy"]),
+    "certified": ("certified on the instance", LOOKS["ratt"]),
 }
 
 
@@ -70,11 +71,12 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     save(figure, folder, STUDY.name)
 
 
-def _strip(axes: Axes, at: float, values: FloatArray, label: str, colour: str) -> None:
+def _strip(axes: Axes, at: float, values: FloatArray, label: str, look: Look) -> None:
     low, first, middle, third, high = np.quantile(values, [0, 0.25, 0.5, 0.75, 1])
+    colour = look.colour
     axes.plot([at, at], [low, high], color=colour, linewidth=1.2)
     axes.plot([at, at], [first, third], color=colour, linewidth=9, solid_capstyle="butt", alpha=0.55)
-    axes.plot(at, middle, "o", color=colour, markersize=5, markeredgecolor="white", label=label)
+    axes.plot(at, middle, look.marker, color=colour, markersize=5, markeredgecolor="white", label=label)
 
 
 ENTRY = Entry(STUDY, draw)

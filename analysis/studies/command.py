@@ -12,7 +12,7 @@ from analysis.studies.engine import SweepError, run
 from analysis.studies.executors import open_executor
 from analysis.studies.progress import Progress
 from analysis.studies.store import read_table
-from ratt_opt.errors import InputError
+from ratt_opt.errors import InputError, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -46,7 +46,9 @@ def main(
             for entry in chosen:
                 study = replace(entry.study, seed=options.seed)
                 folder = options.out / study.name
-                run(study, folder, executor, trials=study.fixed_trials or options.trials, progress=Progress())
+                trials_wanted = study.fixed_trials or options.trials
+                old = options.accept_old_rows
+                run(study, folder, executor, trials=trials_wanted, progress=Progress(), accept_old_rows=old)
                 entry.draw(read_table(folder), folder)
         if after is not None and len(chosen) == len(entries):
             after(options.out)
@@ -66,6 +68,9 @@ def _parse(description: str, entries: Sequence[Entry], trials: int) -> argparse.
     parser.add_argument("--out", type=Path, required=True, help="folder of the results; run again to resume")
     parser.add_argument("--only", nargs="+", choices=names, help="run these studies only")
     parser.add_argument("--workers", type=_positive, help="local processes (default: one per core)")
+    parser.add_argument(
+        "--accept-old-rows", action="store_true", help="keep rows that other code made; each says which in 'versions'"
+    )
     parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Dask scheduler to use instead")
     parser.add_argument(
         "--seed", type=_not_negative, default=entries[0].study.seed, help="root seed (default %(default)s)"
@@ -88,5 +93,5 @@ def _whole(text: str, *, low: int) -> int:
 
 
 def _say(message: object, code: int) -> int:
-    print(f"error: {message}", file=sys.stderr)
+    print(f"error: {printable(str(message))}", file=sys.stderr)
     return code

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from distributed import Client
 
-__all__ = ["dask_cluster", "local_processes", "open_executor"]
+__all__ = ["dask_cluster", "has_workers", "local_processes", "open_executor"]
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 PATIENCE = 10
@@ -32,6 +32,17 @@ def open_executor(cluster: str | None, workers: int | None) -> Iterator[Executor
     """Open the Dask cluster at address ``cluster``, or ``workers`` local processes (one per core by default)."""
     with local_processes(workers) if cluster is None else dask_cluster(cluster) as executor:
         yield executor
+
+
+def has_workers(executor: Executor) -> bool:
+    """Whether anybody runs trials; only a cluster can be without, and one that does not answer fails its trials."""
+    client = getattr(executor, "_client", None)
+    if client is None:
+        return True
+    try:
+        return bool(client.nthreads())
+    except (OSError, ValueError, RuntimeError, TimeoutError):
+        return False
 
 
 @contextmanager

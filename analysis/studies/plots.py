@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ratt_opt.report.palette import PLANNERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -15,18 +17,16 @@ if TYPE_CHECKING:
 
     from analysis.studies.statistics import Estimate
     from ratt_opt._validation import FloatArray
+    from ratt_opt.report.palette import Look
 
-__all__ = ["COLOURS", "LABELS", "bands", "bars", "new_figure", "points", "save"]
+__all__ = ["LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save"]
 
-COLOURS = {
-    "optimum": "#c1121f",
-    "ratt": "#1f4e9c",
-    "nonrobust_optimum": "#e8871e",
-    "greedy": "#2a9d4b",
-    "random": "#b5179e",
-    "myopic": "#6c757d",
+LOOKS = {
+    "optimum": PLANNERS["maxmin"],
+    "nonrobust_optimum": PLANNERS["nonrobust"],
+    **{name: PLANNERS[name] for name in ("ratt", "greedy", "random", "myopic")},
 }
-"""As in the paper: OPT red, RATT blue, Greedy green, Random magenta."""
+"""The library's own, so that a planner looks the same in every figure."""
 LABELS = {
     "optimum": "OPT",
     "ratt": "RATT",
@@ -51,15 +51,21 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
     """
     error = {"elinewidth": 0.9, "ecolor": "#222222"}
     for at, width, planner, means, spread in _side_by_side(axes, groups, series):
-        colour, label = COLOURS[planner], LABELS[planner]
-        axes.bar(at, means, 0.9 * width, color=colour, label=label, yerr=spread, capsize=2, error_kw=error)
+        look: dict[str, Any] = {"color": LOOKS[planner].colour, "hatch": LOOKS[planner].hatch, "edgecolor": "white"}
+        look |= {"linewidth": 0, "label": LABELS[planner]}
+        axes.bar(at, means, 0.9 * width, yerr=spread, capsize=2, error_kw=error, **look)
     axes.axhline(0, color="black", linewidth=0.8)
 
 
 def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:
     """Draw what :func:`bars` draws, as points: for numbers far from zero that differ little."""
     for at, _, planner, means, spread in _side_by_side(axes, groups, series):
-        axes.errorbar(at, means, spread, color=COLOURS[planner], label=LABELS[planner], fmt="o", ms=5, capsize=3)
+        look: dict[str, Any] = {
+            "color": LOOKS[planner].colour,
+            "fmt": LOOKS[planner].marker,
+            "markeredgecolor": "#222222",
+        }
+        axes.errorbar(at, means, spread, label=LABELS[planner], ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look)
 
 
 def _side_by_side(
@@ -79,9 +85,10 @@ def _side_by_side(
         yield at, width, planner, means, spread
 
 
-def bands(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, colour: str, label: str) -> None:
+def bands(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, look: Look, label: str) -> None:
     """Draw a curve of means with its confidence band."""
-    axes.plot(x, [e.mean for e in estimates], color=colour, label=label, marker="o", markersize=3.5)
+    colour = look.colour
+    axes.plot(x, [e.mean for e in estimates], color=colour, label=label, marker=look.marker, markersize=4.5)
     low, high = ([getattr(e, side) for e in estimates] for side in ("low", "high"))
     if np.isfinite([*low, *high]).all():
         axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)

@@ -3,6 +3,8 @@
 ``study.json`` says which study the folder holds, ``journal.csv`` has one line per finished trial in
 the order they finished, ``table.csv`` those of whole trials sorted by case and trial. The journal is
 append-only and each line is forced to disk; a line torn by a kill is cut off and its trial run again.
+Every line of the journal ends with a checksum of its cells. The manifest names the code that made the rows: rows of
+other code are refused, or kept where that is asked for; each row's own versions then say which code made it.
 """
 
 from __future__ import annotations
@@ -11,23 +13,26 @@ import csv
 import io
 import json
 import os
+import zlib
 from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
 
-from analysis.studies.versions import VERSIONS
-from ratt_opt._files import output_directory, write_atomically, write_json
+from analysis.studies.versions import VERSIONS, hash_of_module
+from ratt_opt._files import output_directory, output_file, write_atomically, write_json
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from analysis.studies.study import Cell, Study
 
 __all__ = ["Journal", "open_journal", "read_table"]
 
-FORMAT = 1
+FORMAT = 2
+CHECKSUM = "checksum"
+"""Last column of the journal, with the header's own after its name; the table does not have it."""
 MANIFEST, JOURNAL, TABLE = "study.json", "journal.csv", "table.csv"
 
 
@@ -51,9 +56,9 @@ class Journal:
         assert not any("\n" in cell or "\r" in cell for cell in cells.values())
         if not self._columns:
             self._columns = tuple(cells)
-            self._stream.write(_line(self._columns))
+            self._stream.write(_line((*self._columns, _last_of_header(self._columns))))
         assert tuple(cells) == self._columns, "every trial of a study has the same columns"
-        self._stream.write(_line(cells.values()))
+        self._stream.write(_line((*cells.values(), _checksum(cells.values()))))
         self._stream.flush()
         os.fsync(self._stream.fileno())
         self._rows.append(cells)
@@ -73,17 +78,19 @@ class Journal:
 
 
 @contextmanager
-def open_journal(study: Study, folder: Path) -> Iterator[Journal]:
+def open_journal(study: Study, folder: Path, *, accept_old_rows: bool = False) -> Iterator[Journal]:
     """Open the results of ``study`` in ``folder`` for appending; nobody else may append meanwhile.
+
+    ``accept_old_rows`` : keep rows that other code or versions made, and let the manifest say so.
 
     Raises
     ------
     InputError : the folder holds something else, another version, damaged rows, or is in use.
     """
-    output_directory(folder)
-    _claim(study, folder)
+    output_directory(folder, MANIFEST, JOURNAL, TABLE)
+    _claim(study, folder, accept_old_rows=accept_old_rows)
     path = folder / JOURNAL
-    with path.open("a+", encoding="utf-8", newline="") as stream:
+    with _opened(path) as stream:
         _lock(stream, folder)
         _cut_torn_line(path)
         yield Journal(study, folder, stream, _read(path, study))
@@ -103,13 +110,29 @@ def read_table(folder: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text)))
 
 
+def _opened(path: Path) -> TextIO:
+    try:
+        return output_file(path).open("a+", encoding="utf-8", newline="")
+    except OSError as error:
+        raise InputError("out", "must hold a journal that can be written", f"{path} ({error.strerror})") from None
+
+
+def _checksum(cells: Iterable[str]) -> str:
+    """CRC-32 of the cells, as eight hexadecimal digits."""
+    return f"{zlib.crc32(_line(cells).encode()):08x}"
+
+
+def _last_of_header(columns: Iterable[str]) -> str:
+    return f"{CHECKSUM} {_checksum(columns)}"
+
+
 def _line(cells: object) -> str:
     stream = io.StringIO()
     csv.writer(stream, lineterminator="\n").writerow(cells)  # type: ignore[arg-type]
     return stream.getvalue()
 
 
-def _claim(study: Study, folder: Path) -> None:
+def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
     """Write the manifest into a new folder, or refuse a folder that is not this study's."""
     manifest = {
         "format": FORMAT,
@@ -117,6 +140,7 @@ def _claim(study: Study, folder: Path) -> None:
         "version": study.version,
         "fingerprint": study.fingerprint(),
         "made_with": VERSIONS,
+        "measured_by": hash_of_module(study.measure),
         "definition": study.definition(),
     }
     path = folder / MANIFEST
@@ -126,8 +150,10 @@ def _claim(study: Study, folder: Path) -> None:
             raise InputError("out", f"must be an empty folder or hold the {MANIFEST} of this study", folder)
         write_json(path, manifest)
         return
+    code = {name: manifest[name] for name in ("made_with", "measured_by")}
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
+        old = {name: found[name] for name in code}
         shown = f"study {found['study']!r} version {found['version']}"
         same_study = (found["study"], found["version"]) == (study.name, study.version)
         checks = [
@@ -138,13 +164,24 @@ def _claim(study: Study, folder: Path) -> None:
                 "results of this definition and seed",
                 f"{shown} with another definition or seed",
             ),
-            (found["made_with"] == VERSIONS, f"results made with {VERSIONS}", found["made_with"]),
+            (
+                accept_old_rows or old["made_with"] == VERSIONS,
+                f"results made with {VERSIONS} (or --accept-old-rows keeps the others, marked)",
+                old["made_with"],
+            ),
+            (
+                accept_old_rows or old == code,
+                f"results measured by the same code of {study.measure} (or --accept-old-rows keeps the others, marked)",
+                "other code",
+            ),
         ]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError("out", f"must hold a readable {MANIFEST}", f"{path} ({type(error).__name__})") from None
     for holds, wanted, got in checks:
         if not holds:
             raise InputError("out", f"must be a new folder or hold {wanted}", f"{got} in {folder}")
+    if old != code:
+        write_json(path, {**manifest, "older_rows_by": [*found.get("older_rows_by", []), old]})
 
 
 def _lock(stream: TextIO, folder: Path) -> None:
@@ -167,17 +204,28 @@ def _cut_torn_line(path: Path) -> None:
 
 
 def _read(path: Path, study: Study) -> list[dict[str, str]]:
-    lines = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8"), newline="")))
+    try:
+        text = path.read_text(encoding="utf-8")
+        lines = list(csv.reader(io.StringIO(text, newline=""), strict=True))
+    except UnicodeDecodeError as error:
+        raise InputError(str(path), "must be UTF-8 text", f"byte {error.start} is not") from None
+    except csv.Error as error:
+        raise InputError(str(path), "must be a table of comma-separated values", error) from None
     if not lines:
         return []
-    header, names = lines[0], {case.name for case in study.cases}
+    *header, last = lines[0]
+    if last != _last_of_header(header) or len(set(header)) < len(header):
+        raise InputError(f"{path} line 1", f"must name the columns, last {CHECKSUM}", ",".join(lines[0]))
+    names = {case.name for case in study.cases}
     rows = []
     seen: set[tuple[str, str]] = set()
-    for number, cells in enumerate(lines[1:], start=2):
+    for number, (*cells, checksum) in enumerate((line or [""] for line in lines[1:]), start=2):
         row = dict(zip(header, cells, strict=False))
         key = (row.get("case", ""), row.get("trial", ""))
-        if len(cells) != len(header) or key[0] not in names or not key[1].isdecimal() or key in seen:
-            raise InputError(f"{path} line {number}", "must be one whole row, given once", ",".join(cells))
+        whole = len(cells) == len(header) and checksum == _checksum(cells)
+        number_of_trial = key[1].isascii() and key[1].isdecimal() and len(key[1]) < 19
+        if not whole or key[0] not in names or not number_of_trial or key in seen:
+            raise InputError(f"{path} line {number}", "must be one whole row, given once", ",".join(cells) or checksum)
         seen.add(key)
         rows.append(row)
     return rows

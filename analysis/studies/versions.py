@@ -1,13 +1,38 @@
-"""The versions that a row depends on; also how a remote worker proves that it has the package."""
+"""What a row depends on, versions and code; also how a remote worker proves that it has the package."""
 
 from __future__ import annotations
 
+import hashlib
 import platform
+import sys
+from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 
 import ratt_opt
 
-__all__ = ["VERSIONS"]
+__all__ = ["VERSIONS", "hash_of_module"]
 
-VERSIONS = f"ratt_opt {ratt_opt.__version__}, numpy {np.__version__}, python {platform.python_version()}"
+
+def _hash_of_code() -> str:
+    """A hash of every source file of the package and of the engine of studies: the same wherever they are installed."""
+    digest = hashlib.sha256()
+    for root in (Path(ratt_opt.__file__).parent, Path(__file__).parent):
+        for file in sorted(root.rglob("*.py"), key=lambda file: file.relative_to(root).as_posix()):
+            content = file.read_bytes()
+            digest.update(f"{file.relative_to(root).as_posix()} {len(content)}\n".encode() + content)
+    return digest.hexdigest()[:12]
+
+
+def hash_of_module(function: str) -> str:
+    """A hash of the source of the module in ``module:function``."""
+    module = import_module(function.partition(":")[0])
+    file = getattr(sys.modules[module.__name__], "__file__", None)
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12] if file else "none"
+
+
+VERSIONS = (
+    f"ratt_opt {ratt_opt.__version__}, numpy {np.__version__}, python {platform.python_version()}, "
+    f"code {_hash_of_code()}"
+)

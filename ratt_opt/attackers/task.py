@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt._values import Shown, plain
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.base import SetFunction
 
@@ -57,7 +58,7 @@ class PlanValues(SetFunction):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AttackResult:
+class AttackResult(Shown):
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
     ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is ``EXHAUSTED`` or ``CLOSED``; it
@@ -70,6 +71,12 @@ class AttackResult:
     stop: Stop
     evaluations: int
     nodes: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data: unknown numbers are ``None``."""
+        ends = {"lower": plain(self.lower), "upper": plain(self.upper)}
+        cost = {"evaluations": self.evaluations, "nodes": self.nodes}
+        return {**ends, **self.attack.to_dict(), "stop": self.stop.value, **cost}
 
     def __repr__(self) -> str:
         attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = [
+    "INTERRUPTED",
+    "PENDING",
     "Certificate",
     "Certification",
     "certify",
@@ -60,10 +62,23 @@ class Certificate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Certification:
-    """Whether a result has a certificate: it, or (``None``) ``why_not`` in words."""
+    """Whether a result has a certificate: it, or (``None``) ``why_not`` in words.
+
+    ``final`` : whether that is how it stays; not so while a proof is under way, or where one was cut short.
+    """
 
     certificate: Certificate | None = None
     why_not: str = ""
+    final: bool = True
+
+
+PENDING = Certification(
+    why_not="not finished when this report was written; a certificate beside it is of an earlier one", final=False
+)
+"""What a report says while its proof is written and verified, and for good where that is killed."""
+INTERRUPTED = Certification(
+    why_not="interrupted before it was complete; a certificate beside this report is of an earlier one", final=False
+)
 
 
 def problem_document(problem: Problem) -> dict[str, Any]:
@@ -100,9 +115,10 @@ def _is_known(problem: Problem) -> bool:
 def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path | None) -> Certification:
     """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` where no certificate is wanted.
 
+    A file that cannot be written is such a reason too: what the search found does not hang on it.
+
     Raises
     ------
-    InputError : the file cannot be written.
     ProofError : the result's proof has a fault.
     """
     if path is None:
@@ -111,7 +127,12 @@ def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path
         return Certification(why_not="only the trace, log-det and max-eigenvalue criteria have certificates")
     if result.proof is None:
         return Certification(why_not="the search stopped before it proved a bound")
-    return Certification(certificate=certify(problem, result, path))
+    try:
+        return Certification(certificate=certify(problem, result, path))
+    except InputError as error:
+        return Certification(why_not=f"could not be made: {error}", final=False)
+    except MemoryError:
+        return Certification(why_not="could not be made: not enough memory", final=False)
 
 
 def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:

@@ -15,7 +15,7 @@ __all__ = ["attack"]
 
 def attack(
     file: InputFile,
-    plan: Annotated[Path, typer.Option("--plan", help='JSON: {"elements": [...]} or {"controls": [...]}.')],
+    plan: Annotated[Path, typer.Option("--plan", help='JSON: {"elements": [...]}, {"controls": [...]} or a report.')],
     objective: ObjectiveOption = "trace",
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for the exact attack.")] = TIME_LIMIT,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the random attack.")] = 0,
@@ -31,7 +31,7 @@ def attack(
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
     from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
     from ratt_opt.attackers.exact import attack_survey
-    from ratt_opt.main_job.result import attack_document
+    from ratt_opt.main_job.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan

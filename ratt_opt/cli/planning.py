@@ -1,14 +1,18 @@
 """``ratt-opt demo`` and ``ratt-opt bound``: the main job on a scenario of the library's or of the user's."""
 
+from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
-from ratt_opt.cli.terminal import print_json, print_tables, progress
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, progress
+from ratt_opt.errors import ProofError, printable
 
 if TYPE_CHECKING:
+    from ratt_opt.main_job.result import BoundReport
     from ratt_opt.scenario.information_input import InformationInput
     from ratt_opt.scenario.model import Scenario
 
@@ -16,6 +20,8 @@ __all__ = ["bound", "demo"]
 
 DEMO_SEED = 14
 """A scenario on which the planners differ; on many others RATT and greedy find the same plan."""
+PROOF, EARLIER_PROOF = "certificate.json", "certificate.earlier.json"
+"""The certificate of a folder's report, and that of an earlier report when a later one has none."""
 
 
 def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> None:
@@ -40,7 +46,10 @@ def bound(
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
 ) -> None:
-    """Plan, find the worst attack, bracket the best plan; write report.json, plan.png, plan.svg, certificate.json."""
+    """Plan, find the worst attack, bracket the best plan; write the report, plan and certificate.
+
+    An interrupt (Ctrl-C) leaves a report of what is proved so far, marked so, and exits with 130.
+    """
     from ratt_opt.scenario.files import load_input
 
     source = load_input(file)
@@ -58,22 +67,51 @@ def _bound(
     as_json: bool,
 ) -> None:
     from ratt_opt._files import output_directory
+    from ratt_opt.certificates.write import PENDING
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.tables import report_tables
-    from ratt_opt.report.write import write_report
+    from ratt_opt.report.write import FILES, write_report
 
-    proof = output_directory(out) / "certificate.json"
-    path = proof if certificate else None
+    folder = output_directory(out, PROOF, *FILES)
     with progress() as tell:
-        report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, certificate=path, progress=tell)
+        report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, progress=tell)
+        wanted = certificate and not report.interrupted
         tell("report and figure")
-        files = write_report(report, out, source)
-    if report.certificate.certificate is None:
-        proof.unlink(missing_ok=True)  # an earlier run's: it is not about this report
-    else:
-        files.append(report.certificate.certificate.path)
+        files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)
+        if wanted:
+            tell("certificate")
+            report = _certified(report, folder)
+            files += [proof.path] if (proof := report.certificate.certificate) else []
+    if report.certificate.certificate is None and report.certificate.final and (folder / PROOF).exists():
+        (folder / PROOF).replace(folder / EARLIER_PROOF)  # it is not about this report
     if as_json:
         print_json(report.to_dict())
-        return
-    print_tables(report_tables(report, source.element_labels))
-    print("written: " + ", ".join(str(file) for file in files))
+    else:
+        print_tables(report_tables(report, source.element_labels))
+        print_lines(["written: " + ", ".join(printable(str(file)) for file in files)])
+    if report.interrupted:
+        raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then")
+
+
+def _certified(report: "BoundReport", folder: Path) -> "BoundReport":
+    """The report with its certificate, or why there is none, written over the one in the folder.
+
+    Raises ProofError for a fault in our own proof, and KeyboardInterrupt; the report in the folder then says so.
+    """
+    from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
+    from ratt_opt.report.write import write_verdict
+
+    began = monotonic()
+    failure: BaseException | None = None
+    try:
+        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF)
+    except ProofError as error:
+        proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
+    except KeyboardInterrupt as error:
+        proof, failure = INTERRUPTED, error
+    seconds = {**report.seconds, "certificate": monotonic() - began}
+    report = replace(report, certificate=proof, seconds=seconds)
+    write_verdict(report, folder)
+    if failure is not None:
+        raise failure
+    return report

@@ -1,12 +1,12 @@
 """``ratt-opt new`` and ``ratt-opt schema``: scenario files, and what they must look like."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ratt_opt.errors import InputError
+from ratt_opt.cli.terminal import print_json, print_lines
+from ratt_opt.errors import InputError, printable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,8 +35,10 @@ def new(
     ] = True,
 ) -> None:
     """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time)."""
+    from ratt_opt._files import output_file
     from ratt_opt.scenario.files import save_scenario
 
+    output_file(out)
     budgets = (sensing_attacks, link_attacks)
     drawn = {"robots": robots, "targets": targets, "seed": seed}
     if mrclam is None:
@@ -48,9 +50,8 @@ def new(
     if communication_range is not None:
         scenario = scenario.replace(communication_range=communication_range)
     save_scenario(scenario, out)
-    print(f"{out}: {scenario.n_robots} robots, {scenario.n_targets} targets")
-    for note in scenario.notes:
-        print(f"  {note}")
+    head = f"{printable(str(out))}: {scenario.n_robots} robots, {scenario.n_targets} targets"
+    print_lines([head, *(f"  {note}" for note in scenario.notes)])
 
 
 def schema(
@@ -59,7 +60,7 @@ def schema(
     """Print the JSON Schema of an input file."""
     from ratt_opt.scenario.files import scenario_schema
 
-    print(json.dumps(scenario_schema(kind), indent=1))
+    print_json(scenario_schema(kind))
 
 
 def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int]) -> "Scenario":

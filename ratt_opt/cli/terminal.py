@@ -1,47 +1,113 @@
-"""Where text goes: results to standard output, progress to standard error."""
+"""Where text goes: results to standard output, progress to standard error; what users wrote is text, never markup."""
 
 from __future__ import annotations
 
 import json
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
+
+from ratt_opt.errors import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from rich.console import RenderableType
 
-__all__ = ["fail", "print_json", "print_tables", "progress"]
+__all__ = [
+    "OutputError",
+    "WorkInterrupted",
+    "encode_anything",
+    "fail",
+    "flush",
+    "print_json",
+    "print_lines",
+    "print_tables",
+    "progress",
+]
+
+
+class WorkInterrupted(Exception):  # noqa: N818  (not an error: what is finished is kept)
+    """The user ended a command that kept what was finished; the text says what."""
+
+
+class OutputError(Exception):
+    """Standard output is closed, full or gone; the text says which."""
+
+
+def encode_anything() -> None:
+    """Show what the locale cannot encode by its escape, instead of failing in the middle of a line."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def fail(text: str, code: int) -> int:
-    """Print an error as one line and return its exit code."""
-    print(f"error: {' '.join(text.split())}", file=sys.stderr)
+    """Print an error as one line and return its exit code, also where standard error is closed."""
+    _complain(f"error: {printable(text)}")
     return code
 
 
 def print_json(document: object) -> None:
     """Print strict JSON."""
-    print(json.dumps(document, indent=1, allow_nan=False))
+    print_lines([json.dumps(document, indent=1, allow_nan=False)])
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines to standard output; raises :class:`OutputError` where they cannot arrive."""
+    with _delivered():
+        print("\n".join(lines))
 
 
 def print_tables(tables: Iterable[RenderableType]) -> None:
     """Print tables; piped, they are plain text as wide as their content needs."""
     from rich.console import Console
 
-    console = Console(soft_wrap=False) if sys.stdout.isatty() else Console(width=160, no_color=True)
-    for table in tables:
-        console.print(table)
+    with _delivered():
+        width, no_color = (None, None) if sys.stdout.isatty() else (160, True)
+        console = Console(width=width, no_color=no_color, markup=False, emoji=False)
+        for table in tables:
+            console.print(table)
+
+
+def flush() -> None:
+    """Send on what was printed; raises :class:`OutputError` where it cannot arrive."""
+    if sys.stdout is not None:
+        with _delivered():
+            pass
 
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """A spinner with the current line on a terminal, plain lines elsewhere."""
+    """A spinner with the current line on a terminal, plain lines elsewhere, nothing where nobody listens."""
     from rich.console import Console
+    from rich.text import Text
 
-    if not sys.stderr.isatty():
-        yield lambda text: print(text, file=sys.stderr, flush=True)
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield lambda text: _complain(printable(text) if text == text.strip() else f"  {printable(text)}")
         return
-    with Console(stderr=True).status("") as status:
-        yield lambda text: status.update(text.strip())
+    with Console(stderr=True).status(Text("")) as status:
+        yield lambda text: status.update(Text(printable(text)))
+
+
+@contextmanager
+def _delivered() -> Iterator[None]:
+    """What is printed inside is flushed; a stream that does not take it is not written to again."""
+    if sys.stdout is None:
+        raise OutputError("standard output is closed")
+    try:
+        yield
+        sys.stdout.flush()
+    except (OSError, ValueError) as error:
+        if isinstance(error, ValueError) and "closed file" not in str(error):
+            raise
+        sys.stdout = None  # the interpreter would flush it once more, and complain
+        reason = error.strerror if isinstance(error, OSError) else "it is closed"
+        raise OutputError(f"standard output does not take the result ({reason})") from None
+
+
+def _complain(line: str) -> None:
+    # print(file=None) would print to standard output.
+    if sys.stderr is not None:
+        with suppress(OSError, ValueError):
+            print(line, file=sys.stderr, flush=True)

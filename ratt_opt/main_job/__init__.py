@@ -1,6 +1,6 @@
 """The main job as one call: plan, attack, bracket the optimum, prove it, list the guarantees.
 
-Open ``bound.py`` first: the four steps in order, how they share the time, and what is told meanwhile. ``result.py`` is
-what it returns, also as plain data (what ``report.json`` holds). What tables and figures show is
-all in the result: ``report/`` computes nothing.
+Open ``bound.py`` first: the steps in order, and how they share the time. ``assessment.py`` puts one plan under attack,
+``result.py`` is what the call returns, ``document.py`` the same as plain data (what ``report.json`` holds). What tables
+and figures show is all in the result.
 """

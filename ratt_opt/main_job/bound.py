@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import partial
 from time import monotonic
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from ratt_opt._validation import readonly
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import certify_if_possible
+from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError
+from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import LARGEST_TABLE
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
 
@@ -67,6 +67,8 @@ class Steps:
             self.tell(line)
 
 
+T = TypeVar("T")
+
 ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
 on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
@@ -98,6 +100,8 @@ def bound(
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
+    An interrupt (Ctrl-C) once RATT has planned ends every search; the report holds what is proved so far.
+
     Parameters
     ----------
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
@@ -110,28 +114,35 @@ def bound(
 
     Raises
     ------
-    InputError : an argument breaks its rule, or the certificate cannot be written.
+    InputError : an argument breaks its rule. A certificate that cannot be written is a reason in the report.
     ProofError : the verifier finds a fault in the search's own proof.
     """
     check_limits(gap, time_limit)
+    began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
     budget, steps = Budget(time_limit), Steps(progress)
     with steps("RATT and the baselines"):
         plan = ratt(problem)
         alpha_cs = plan.alpha_cs
         assert alpha_cs is not None  # RATT's own plan says what it took the link attacks to be worth
-        robust = assess(problem, "ratt", plan, budget.part(ATTACK_SHARE))
-        baselines = tuple(_baselines(problem, budget))
+        robust = _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+        baselines = _kept(budget, lambda: tuple(_baselines(problem, budget)))
     with steps("the best possible plan"):
-        part = budget.part(OPTIMUM_SHARE)
-        optimum = solve_maxmin(problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, budget=part)
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
+        optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
         found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-        best = assess(problem, "maxmin", found, budget.part(ATTACK_SHARE), known=optimum.worst_case)
+        known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
+        best = _kept(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
+    with steps("other attacks on the recommended plan"):
+        shown = recommended((robust, best, *baselines))
+        views = _kept(budget, lambda: views_of(problem, shown, budget.part(ATTACK_SHARE)))
     with steps("curvature and guarantees"):
-        k, c = _curvatures(problem, budget.part(CURVATURE_SHARE))
-        guarantees = _guarantees(problem, robust, alpha_cs, budget.part(CURVATURE_SHARE), k=k, c=c)
+        k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
+        part = budget.part(CURVATURE_SHARE)
+        guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
-        proof = certify_if_possible(problem, optimum, certificate)
+        interrupted = budget.stop() is Stop.INTERRUPTED
+        proof = INTERRUPTED if interrupted else certify_if_possible(problem, optimum, certificate)
     return BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -145,30 +156,21 @@ def bound(
         inapplicable=inapplicable_guarantees(problem, alpha_cs),
         certificate=proof,
         seconds=steps.seconds,
+        created=began.isoformat(timespec="seconds"),
+        source=None if isinstance(scenario_or_problem, Problem) else scenario_or_problem,
+        views=views,
+        seeds={"random": RANDOM_SEED},
+        interrupted=interrupted,
     )
 
 
-def assess(
-    problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
-) -> PlanAssessment:
-    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
-    elements = plan.elements
-    worst = known or worst_case_attack(problem, elements, budget=budget)
-    seeing, f = problem.best_group(elements, worst.attack), problem.objective
-    posterior = None
-    if isinstance(f, InformationObjective):
-        posterior = readonly(np.linalg.inv(f.posterior_information(elements[sorted(seeing)])))
-    return PlanAssessment(
-        name=name,
-        elements=elements,
-        controls=tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True)),
-        bait=plan.bait,
-        worst_case=worst,
-        evaluations=plan.evaluations,
-        groups=problem.communication.groups(worst.attack.links),
-        best_group=seeing,
-        posterior=posterior,
-    )
+def _kept(budget: Budget, step: Callable[[], T]) -> T:
+    """What a step returns; interrupted outside its own searches, what it can say at once."""
+    try:
+        return step()
+    except KeyboardInterrupt:
+        budget.interrupt()
+        return step()
 
 
 def _problem_of(given: HasProblem | Problem, objective: str | None) -> Problem:
@@ -201,9 +203,14 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
         submodular = False
     else:
         return None, None
-    if submodular:
-        return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
-    return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+    try:
+        if submodular:
+            return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
+        return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+    except InputError:
+        if not isinstance(f, InformationObjective):
+            raise
+        return None, None  # non-decreasing by its formula, not in floating point: nothing can be said about ratios
 
 
 def _guarantees(

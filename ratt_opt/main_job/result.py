@@ -2,33 +2,41 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt.main_job.document import plan_document, report_document
+from ratt_opt.report.figure import plan_figure
+from ratt_opt.report.notebook import plan_view, report_view
+from ratt_opt.report.picture import picture_of
+from ratt_opt.report.write import write_report
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.criticality import BreakingBudget, Criticality
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["FORMAT", "VERSION", "BoundReport", "PlanAssessment", "attack_document"]
+__all__ = ["BoundReport", "PlanAssessment"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class PlanAssessment:
     """One planner's plan and its worst case; equal to another that says the same.
 
-    ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's own elements; ``bait`` :
-    RATT's bait robots, empty for other planners. ``groups`` : the connected groups that the worst attack leaves;
-    ``best_group`` : the robots that still see in the one whose value is the team's; ``posterior`` : (M, d, d)
-    covariances they leave, ``None`` for set functions that are no criterion of information matrices.
+    ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
+    own elements; ``bait`` : RATT's bait robots, empty for other planners.
+    ``groups`` : the connected groups that the worst attack leaves; ``best_group`` : the robots that still see in the
+    one whose value is the team's; ``posterior`` : (M, d, d) covariances they leave, ``None`` for set
+    functions that are no criterion of information matrices.
     """
 
     name: str
@@ -43,16 +51,10 @@ class PlanAssessment:
 
     def to_dict(self) -> dict[str, Any]:
         """The plan as plain data, as ``report.json`` has it."""
-        return {
-            "elements": self.elements.tolist(),
-            "controls": list(self.controls),
-            "bait": list(self.bait),
-            "worst_case": _worst_case(self.worst_case),
-            "evaluations": self.evaluations,
-            "groups": [sorted(group) for group in self.groups],
-            "best_group": sorted(self.best_group),
-            "posterior": None if self.posterior is None else self.posterior.tolist(),
-        }
+        return plan_document(self)
+
+    def _repr_html_(self) -> str:
+        return plan_view(self)
 
     def __repr__(self) -> str:
         return f"PlanAssessment({self.name}, keeps {self.worst_case.lower:.8g} to {self.worst_case.upper:.8g})"
@@ -70,14 +72,20 @@ class PlanAssessment:
 class BoundReport:
     """What to do now, the worst that can follow, and how far that is from the best possible.
 
-    Claims, all in floating point unless a certificate says more: each plan's worst case lies in its bracket;
-    ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least ``certified_ratio`` of ``Phi*``. ``best`` is
-    the plan the search for the optimum found. ``curvature`` is given for submodular criteria (log-det),
-    ``total_curvature`` for the others. ``inapplicable`` : the guarantees that do not apply here, and why.
-    ``certificate`` : the verified proof file of ``optimum``, or why there is none. ``seconds`` : wall time of each
-    step.
+    Claims, all in floating point unless a certificate says more: each plan's worst case lies in
+    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
+    ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
+    ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
+    ``inapplicable`` : the guarantees that do not apply here, and why.
+    ``certificate`` : the verified proof file of ``optimum``, or why there is none.
+    ``seconds`` : wall time of each step; ``created`` : when the call began (UTC, ISO 8601).
+    ``source`` : the scenario or model-free input that was given, ``None`` for a problem.
+    ``views`` : the recommended plan under other attacks too, for maps: its ``worst`` case; the worst found that spares
+    one of the robots or links which that attacks (``next worst``, where the worst attacks anything); and ``none``.
+    ``seeds`` : of everything drawn at random.
+    ``interrupted`` : the user ended the searches; the brackets hold all the same.
 
-    Two reports are equal when they say the same, whatever time it took.
+    Two reports are equal when they say the same, whenever that was and whatever time it took.
     """
 
     problem: Problem
@@ -92,6 +100,11 @@ class BoundReport:
     inapplicable: Mapping[str, str]
     certificate: Certification
     seconds: Mapping[str, float]
+    created: str = ""
+    source: object = None
+    views: Mapping[str, PlanAssessment] = field(default_factory=dict)
+    seeds: Mapping[str, int] = field(default_factory=dict)
+    interrupted: bool = False
 
     @property
     def objective(self) -> str:
@@ -144,40 +157,27 @@ class BoundReport:
         return max((float(guarantee) for guarantee in self.guarantees.values()), default=0.0)
 
     def to_dict(self) -> dict[str, Any]:
-        """The report as plain data: all that tables and figures show but the scenario; unknown numbers are ``None``."""
-        problem, optimum = self.problem, self.optimum
-        return {
-            "format": FORMAT,
-            "version": VERSION,
-            "n_robots": problem.n_robots,
-            "n_targets": self.n_targets,
-            "n_links": len(problem.communication.links),
-            "objective": self.objective,
-            "unit": self.unit,
-            "alpha_s": problem.alpha_s,
-            "alpha_c": problem.alpha_c,
-            "n_max": self.n_max,
-            "alpha_cs": self.alpha_cs,
-            "ratt": _shared(self, self.ratt),
-            "recommended": {"planner": self.recommended.name, **_shared(self, self.recommended)},
-            "optimum": {
-                "lower": _number(optimum.lower),
-                "upper": _number(self.upper),
-                "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
-                "stop": optimum.stop.value,
-                **_shared(self, self.best),
-            },
-            "certificate": _certificate(self.certificate),
-            "certified_ratio": _number(self.certified_ratio),
-            "guarantees": {name: _number(float(value)) for name, value in self.guarantees.items()},
-            "hypotheses": {name: list(value.hypotheses) for name, value in self.guarantees.items()},
-            "inapplicable": dict(self.inapplicable),
-            "guaranteed_share": self.guaranteed_share,
-            "baselines": {plan.name: _shared(self, plan) for plan in self.baselines},
-            "seconds": {name: _number(value) for name, value in self.seconds.items()},
-            "curvature": _curvature(self.curvature),
-            "total_curvature": _curvature(self.total_curvature),
-        }
+        """The report as plain data, which is what ``report.json`` holds: unknown numbers are ``None``."""
+        return report_document(self)
+
+    def save(self, directory: str | Path) -> list[Path]:
+        """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
+
+        ``report.json`` (all of it), ``report.html`` (to read), ``plan.csv`` (to execute), ``plan.png``, ``plan.svg``,
+        and a copy of the certificate where there is one.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        return write_report(self, directory)
+
+    def plot(self) -> Figure:
+        """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""
+        return plan_figure(self, picture_of(self.source, self))
+
+    def _repr_html_(self) -> str:
+        return report_view(self)
 
     def __repr__(self) -> str:
         best = f"the best plan keeps {self.optimum.lower:.8g} to {self.upper:.8g}"
@@ -186,85 +186,7 @@ class BoundReport:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, BoundReport):
             return NotImplemented
-        return self.to_dict() | {"seconds": None} == other.to_dict() | {"seconds": None}
+        apart = {"seconds": None, "created": None}
+        return self.to_dict() | apart == other.to_dict() | apart
 
     __hash__ = None  # type: ignore[assignment]  # equal reports may hold different, unhashable mappings
-
-
-FORMAT = "ratt-opt report"
-VERSION = 1
-"""Raised when a field changes its meaning or disappears; new fields alone do not raise it."""
-
-
-def attack_document(
-    objective: str,
-    elements: IntArray,
-    results: Mapping[str, AttackResult],
-    critical: Sequence[Criticality] | None = None,
-    budgets: Sequence[BreakingBudget] | None = None,
-) -> dict[str, Any]:
-    """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
-    document = {
-        "format": "ratt-opt attack",
-        "version": VERSION,
-        "objective": objective,
-        "elements": elements.tolist(),
-        "attacks": {name: _worst_case(result) for name, result in results.items()},
-    }
-    if critical:
-        document["critical"] = [_critical(row) for row in critical]
-    if budgets is not None:
-        document["breaking_budgets"] = [_budget(row) for row in budgets]
-    return document
-
-
-def _critical(row: Criticality) -> dict[str, Any]:
-    target = {"robot": row.target} if isinstance(row.target, int) else {"link": list(row.target)}
-    return {**target, "loss": row.loss, "gain_lower": row.gain_lower, "gain_upper": row.gain_upper}
-
-
-def _attack(attack: Attack) -> dict[str, Any]:
-    return {"sensing": sorted(attack.sensing), "links": [list(link) for link in sorted(attack.links)]}
-
-
-def _budget(row: BreakingBudget) -> dict[str, Any]:
-    budgets = {"alpha_s": row.alpha_s, "alpha_c": row.alpha_c}
-    return {**budgets, "value": row.value, **_attack(row.attack), "proved": row.is_proved}
-
-
-def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
-    """A plan with what it keeps as a share of the best possible."""
-    return {**plan.to_dict(), "share": _number(report.share(plan))}
-
-
-def _worst_case(result: AttackResult) -> dict[str, Any]:
-    bracket = {"lower": _number(result.lower), "upper": _number(result.upper)}
-    return {**bracket, **_attack(result.attack), "stop": result.stop.value}
-
-
-def _certificate(given: Certification) -> dict[str, Any]:
-    """The verifier's verdict, or why there is none."""
-    proof = given.certificate
-    if proof is None:
-        return {"file": None, "verified": False, "reason": given.why_not}
-    found = proof.verified
-    return {
-        "file": proof.path.name,
-        "verified": True,
-        "claim": {"lower": found.lower, "upper": found.upper},
-        "lower_proved": found.lower_proved,
-        "lower_method": found.lower_method,
-        "arithmetic": found.arithmetic,
-        "problem_hash": found.problem_hash,
-        "bytes": proof.size,
-    }
-
-
-def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:
-    if bracket is None:
-        return None
-    return {"lower": _number(bracket.lower), "upper": _number(bracket.upper), "domain": bracket.domain}
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

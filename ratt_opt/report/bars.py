@@ -4,47 +4,59 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.report.tables import share_text
+from ratt_opt.report.palette import INK, look_of
+from ratt_opt.report.tables import bracket_text, share_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ratt_opt.main_job.result import BoundReport
 
-__all__ = ["draw_bars"]
+__all__ = ["bar_ends", "draw_bars"]
 
-PLAN = "#0b6e99"
-OTHER = "#b8c4ca"
-LIMIT = "#c1121f"
+CLOSE = 0.5
+"""From this share of the bound on, what is missing is drawn, not what is kept: one per cent stays visible."""
+ROOM = 2.1
+"""The axis ends at so many times the longest bar, so that the numbers beside the bars have room."""
+
+
+NOTHING = 1e-9
+"""Less than this share of the bound is rounding: no whisker shows it, and it must not fill the axis."""
+
+
+def bar_ends(report: BoundReport) -> tuple[bool, list[tuple[float, float]], float]:
+    """Return whether bars show what is missing to the bound, the ends of each planner's bar, and the full length."""
+    ends = [(plan.worst_case.lower, plan.worst_case.upper) for plan in report.plans]
+    missing = min(low for low, _ in ends) >= CLOSE * report.upper > 0
+    if missing:
+        ends = [(max(report.upper - high, 0.0), max(report.upper - low, 0.0)) for low, high in ends]
+    longest = max([high for _, high in ends] + ([] if missing else [report.upper]))
+    return missing, ends, longest if longest > NOTHING * report.upper else max(report.upper, 1.0)
 
 
 def draw_bars(axes: Axes, report: BoundReport) -> None:
-    """Draw one bar a planner: its proved worst-case value and share of the upper bound, which a line marks."""
+    """Draw one bar a planner and its number: what it surely keeps, or, where all keep much, what it surely misses.
+
+    A whisker spans what is not decided of it, so a search that ran out of time shows a whisker, never a value.
+    """
     plans = report.plans
-    values = [plan.worst_case.lower for plan in plans]
-    chosen = [plan.name == report.recommended.name for plan in plans]
-    rows = range(len(plans))
-    axes.barh(rows, values, color=[PLAN if c else OTHER for c in chosen], height=0.62)
-    spread = max([*values, report.upper, 1e-300])
-    for row, plan, value, strong in zip(rows, plans, values, chosen, strict=True):
-        inside = value > 0.3 * spread
-        place = value - 0.02 * spread if inside else value + 0.02 * spread
-        colour = "white" if inside and strong else "black"
-        side = "right" if inside else "left"
-        axes.text(
-            place,
-            row,
-            f"{value:.6g}, {share_text(report.share(plan))}",
-            va="center",
-            ha=side,
-            fontsize=9,
-            color=colour,
-        )
-    axes.axvline(report.upper, color=LIMIT, linewidth=1.6, linestyle="--")
-    axes.set_title(f"no plan can keep more than {report.upper:.6g}", fontsize=9.5, color=LIMIT, loc="right")
-    axes.set_yticks(list(rows), [plan.name for plan in plans])
+    missing, ends, longest = bar_ends(report)
+    least = NOTHING * report.upper
+    for row, (plan, (low, high)) in enumerate(zip(plans, ends, strict=True)):
+        look, chosen = look_of(plan.name), plan.name == report.recommended.name
+        axes.barh(row, low, color=look.colour, hatch=look.hatch, height=0.62, edgecolor="white", linewidth=0)
+        if high - low > least:
+            axes.errorbar((low + high) / 2, row, xerr=(high - low) / 2, color=INK, capsize=5, linewidth=1.4)
+        kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper, digits=6)
+        text = f"{kept}, {share_text(report.share(plan))}"
+        at, weight = high + 0.02 * ROOM * longest, "bold" if chosen else "normal"
+        axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight)
+    axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
+    axes.set_title(f"no plan can keep more than {report.upper:.6g} (dashed)", fontsize=9.5, loc="right")
+    axes.set_yticks(range(len(plans)), [plan.name for plan in plans])
     axes.invert_yaxis()
-    axes.set_xlim(0, 1.06 * spread)
+    axes.set_xlim(0, ROOM * longest)
     unit = f" [{report.unit}]" if report.unit else ""
-    axes.set_xlabel(f"{report.objective} value kept under the worst attack{unit}")
+    what = "missing to that" if missing else "kept"
+    axes.set_xlabel(f"{report.objective} value {what} under the worst attack{unit}\n(whiskers: not decided)")
     axes.spines[["top", "right"]].set_visible(False)

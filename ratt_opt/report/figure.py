@@ -15,25 +15,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ratt_opt.main_job.result import BoundReport
-    from ratt_opt.report.map import Picture
+    from ratt_opt.report.picture import Picture
 
 __all__ = ["plan_figure", "save_figure"]
 
 
-def plan_figure(report: BoundReport, picture: Picture | None) -> Figure:
-    """Return the figure; without a ``picture`` (no positions are known) only the bars are drawn."""
+def plan_figure(report: BoundReport, picture: Picture) -> Figure:
+    """Return the figure: the map beside the bars."""
     from matplotlib.figure import Figure
 
     plan = report.recommended
     attack = plan.worst_case.attack
-    if picture is None:
-        figure = Figure(figsize=(9, 4.4), layout="constrained")
-        draw_bars(figure.subplots(), report)
-    else:
-        figure = Figure(figsize=(14, 8), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.35, 1))
-        draw_map(left, picture)
-        draw_bars(right, report)
+    figure = Figure(figsize=(14, 8), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.35, 1))
+    draw_map(left, picture)
+    draw_bars(right, report)
     share = share_text(report.share(plan))
     share = share if share.startswith("optimal") else f"{share} of the most any plan can keep"
     figure.suptitle(

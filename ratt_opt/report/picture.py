@@ -1,30 +1,89 @@
-"""What the map of a scenario shows under one plan and one attack."""
+"""What the map of a team shows under one plan and one attack."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ratt_opt.report.map import Picture
+import numpy as np
+
+from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
-    from ratt_opt.main_job.result import BoundReport
-    from ratt_opt.scenario.model import Scenario
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+    from ratt_opt.problem import Attack
+    from ratt_opt.report.description import Description
 
-__all__ = ["picture_of"]
+__all__ = ["Picture", "picture_of"]
 
 
-def picture_of(scenario: Scenario, report: BoundReport) -> Picture:
-    """Put together positions, covariances and the worst attack's groups for :func:`draw_map`."""
-    plan = report.recommended
-    assert plan.posterior is not None  # a scenario's problem has a criterion of information matrices
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """Lengths in metres, angles in radians; ``None`` where nothing is known.
+
+    ``places`` : (N, 2) robots after their controls, or a layout of the graph where ``is_layout``.
+    ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty where none.
+    ``targets`` : (M, 2) predicted means; ``target_names`` and ``weights`` : (M,); ``prior``, ``posterior`` :
+    (M, 2, 2) covariances, the latter with the best surviving group's measurements.
+    ``groups`` : connected groups left by the attack; ``best`` : the one that performs best.
+    """
+
+    places: FloatArray
+    is_layout: bool
+    headings: FloatArray | None
+    before: FloatArray | None
+    names: tuple[str, ...]
+    targets: FloatArray | None
+    target_names: tuple[str, ...] | None
+    weights: FloatArray | None
+    prior: FloatArray | None
+    posterior: FloatArray | None
+    links: frozenset[tuple[int, int]]
+    protected_robots: frozenset[int]
+    protected_links: frozenset[tuple[int, int]]
+    attack: Attack
+    groups: tuple[frozenset[int], ...]
+    best: frozenset[int]
+
+
+def picture_of(source: object, report: BoundReport, view: PlanAssessment | None = None) -> Picture:
+    """Put together what :func:`draw_map` draws; ``view``: one of the report's views, by default the worst."""
+    plan = report.recommended if view is None else view
+    problem, known = report.problem, describe(report.problem, source)
+    places = _places(report, plan, known)
+    after = None if known.poses_after is None else known.poses_after[plan.elements]
+    flat = known.targets is not None and plan.posterior is not None and plan.posterior.shape[-1] == 2
     return Picture(
-        before=scenario.poses,
-        after=scenario.predicted_poses[plan.elements],
-        targets=scenario.predicted_targets,
-        prior=scenario.prior,
-        posterior=plan.posterior,
-        links=report.problem.communication.links,
+        places=places,
+        is_layout=after is None and known.poses is None,
+        headings=None if after is None or after.shape[1] < 3 else after[:, 2],
+        before=None if known.poses is None or after is None else known.poses[:, :2],
+        names=known.robot_names,
+        targets=known.targets,
+        target_names=known.target_names,
+        weights=known.weights,
+        prior=problem.information_objective.prior if flat else None,
+        posterior=plan.posterior if flat else None,
+        links=problem.communication.links,
+        protected_robots=problem.protected_robots,
+        protected_links=problem.protected_links,
         attack=plan.worst_case.attack,
         groups=plan.groups,
-        best=next(group for group in plan.groups if plan.best_group <= group),
+        best=next((group for group in plan.groups if plan.best_group and plan.best_group <= group), plan.groups[0]),
     )
+
+
+def _places(report: BoundReport, plan: PlanAssessment, known: Description) -> FloatArray:
+    """(N, 2) where to draw the robots: after their controls, now, or by a layout of the graph."""
+    if known.poses_after is not None:
+        return known.poses_after[plan.elements][:, :2]
+    if known.poses is not None:
+        return known.poses[:, :2]
+    import networkx as nx
+
+    graph = nx.Graph(report.problem.communication.links)
+    graph.add_nodes_from(range(report.problem.n_robots))
+    every = report.problem.n_robots * (report.problem.n_robots - 1) // 2
+    laid = nx.circular_layout(graph) if graph.number_of_edges() == every else nx.spring_layout(graph, seed=0)
+    return np.array([laid[i] for i in range(report.problem.n_robots)], dtype=np.float64)

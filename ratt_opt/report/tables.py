@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 __all__ = [
     "attack_tables",
     "audit_table",
+    "bracket_text",
     "report_tables",
     "share_text",
+    "verdict_text",
 ]
 
 PROVED_OPTIMAL = 1e-9
@@ -67,12 +69,12 @@ def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
     return table
 
 
-def _bracket_text(lower: float, upper: float) -> str:
-    """The bracket as text: one number where both ends agree to eight digits, with up to ten of them."""
-    for digits in (10, 9, 8):
-        if f"{lower:.{digits}g}" == f"{upper:.{digits}g}":
-            return f"{upper:.{digits}g}"
-    return f"[{lower:.8g}, {upper:.8g}]"
+def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
+    """The bracket as text: one number where both ends agree to ``digits`` digits or up to two less."""
+    for shown in (digits, digits - 1, digits - 2):
+        if f"{lower:.{shown}g}" == f"{upper:.{shown}g}":
+            return f"{upper:.{shown}g}"
+    return f"[{lower:.{digits - 2}g}, {upper:.{digits - 2}g}]"
 
 
 def share_text(share: float) -> str:
@@ -86,7 +88,7 @@ def _attacks(results: Mapping[str, AttackResult]) -> Table:
     """One row an attacker: the value its attack leaves, and the attack."""
     table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
     for name, result in results.items():
-        proved = _bracket_text(result.lower, result.upper) if name == "exact" else ""
+        proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
         table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
     return table
 
@@ -96,7 +98,7 @@ def _critical(ranking: Iterable[Criticality]) -> Table:
     table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
     for row in ranking:
         name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
-        table.add_row(name, _bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
+        table.add_row(name, bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
     return table
 
 
@@ -115,7 +117,7 @@ def _planners(report: BoundReport) -> Table:
     for plan in report.plans:
         share = share_text(report.share(plan))
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
-        table.add_row(name, _bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
+        table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
     table.caption = "* recommended: the best proved worst case"
     return table
 
@@ -135,11 +137,11 @@ def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
 def _bracket(report: BoundReport) -> Table:
     table = _table("how good that is", "quantity", "value")
     optimum, problem = report.optimum, report.problem
-    table.add_row("best possible worst-case value", _bracket_text(optimum.lower, report.upper))
+    table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
     table.add_row("search stopped because", optimum.stop.value)
-    table.add_row("certificate", _verdict(report.certificate))
+    table.add_row("certificate", verdict_text(report.certificate))
     table.add_row("certified ratio of RATT", share_text(report.certified_ratio))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
     table.add_row("smallest largest group, n_max", str(report.n_max))
@@ -150,11 +152,12 @@ def _bracket(report: BoundReport) -> Table:
     return table
 
 
-def _verdict(given: Certification) -> str:
+def verdict_text(given: Certification) -> str:
+    """What the verifier proved, or why there is no certificate."""
     if given.certificate is None:
         return f"none: {given.why_not}"
     found = given.certificate.verified
-    bracket = _bracket_text(found.lower, found.upper)
+    bracket = bracket_text(found.lower, found.upper)
     if found.lower_proved:
         return f"verified, both ends proved in {found.arithmetic}: {bracket}"
     return f"verified, upper end proved in {found.arithmetic}, lower end searched in floating point: {bracket}"
@@ -173,7 +176,7 @@ def _guarantees(report: BoundReport) -> Table:
 
 
 def _curvature(bracket: Curvature) -> str:
-    return _bracket_text(bracket.lower, bracket.upper)
+    return bracket_text(bracket.lower, bracket.upper)
 
 
 def _robots(attack: Attack) -> str:

@@ -74,9 +74,13 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
 
     Raises
     ------
-    InputError : the file cannot be written.
+    InputError : the file cannot be written, or could not be read back.
     """
-    write_json(path, scenario.model_dump(mode="json"))
+    document = scenario.model_dump(mode="json")
+    length = len(json.dumps(document, indent=1))
+    if length >= LARGEST_FILE:
+        raise InputError("scenario", f"must make a file of at most {LARGEST_FILE} bytes", length)
+    write_json(path, document)
 
 
 def scenario_schema(kind: str = "scenario") -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.model import DEFAULT_CONTROLS, Robot, Scenario, Target
+from ratt_opt.scenario.problem_record import MOST_ENTRIES, MOST_ROBOTS
 from ratt_opt.scenario.sensor import Sensor
 
 if TYPE_CHECKING:
@@ -59,7 +60,12 @@ def random_scenario(
     Source: ratt.tex, Section VI.
     """
     n_robots = check_integer("n_robots", n_robots, low=1)
+    if n_robots > MOST_ROBOTS:
+        raise InputError("n_robots", f"must be at most {MOST_ROBOTS}", n_robots)
     n_targets = check_integer("n_targets", n_targets, low=1)
+    if 4 * n_robots * len(controls) * n_targets > MOST_ENTRIES:
+        rule = f"must have at most {MOST_ENTRIES} entries in all information matrices with {n_robots} robots"
+        raise InputError("n_targets", rule, n_targets)
     for name, value in (("side", side), ("prior_std", prior_std)):
         if not value > 0:
             raise InputError(name, "must be positive", value)

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.problem_record import Link, ProblemRecord
-from ratt_opt.scenario.record import Positive, Text, Whole
+from ratt_opt.scenario.record import Number, Positive, Text, Whole
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -23,6 +23,7 @@ LARGEST_ENTRY = 1e100
 
 Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY)]
 Matrix = tuple[tuple[Entry, ...], ...]
+Place = tuple[Number, Number]
 
 
 class InformationInput(ProblemRecord):
@@ -30,7 +31,9 @@ class InformationInput(ProblemRecord):
 
     ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
     each element; ``weights`` : (M,) or ``None``; ``labels`` : (E,) what each element is, or ``None``.
-    Links, budgets and protections are those of a scenario.
+    Links, budgets and protections are those of a scenario. For maps and tables only, each optional:
+    ``robot_names`` : (N,); ``target_names`` : (M,); ``robot_positions`` : (N, 2) now,
+    ``element_positions`` : (E, 2) after each element's control, ``target_positions`` : (M, 2), all x, y [m].
     """
 
     format: Literal["ratt-opt information"] = "ratt-opt information"
@@ -46,6 +49,11 @@ class InformationInput(ProblemRecord):
     protected_robots: tuple[Whole, ...] = ()
     protected_links: tuple[Link, ...] = ()
     notes: tuple[Text, ...] = ()
+    robot_names: tuple[Text, ...] | None = None
+    target_names: tuple[Text, ...] | None = None
+    robot_positions: tuple[Place, ...] | None = None
+    element_positions: tuple[Place, ...] | None = None
+    target_positions: tuple[Place, ...] | None = None
 
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
@@ -56,7 +64,9 @@ class InformationInput(ProblemRecord):
         missing = next(i for i in range(len(self.robot) + 1) if i not in owners)
         if missing <= max(self.robot):
             raise InputError("robot", "must give every robot at least one element", f"none for robot {missing}")
+        self._check_sizes(len(self.robot), len(self.prior[0]))
         self._check_links()
+        self._check_lengths()
         self.problem()
         return self
 
@@ -79,6 +89,18 @@ class InformationInput(ProblemRecord):
     def matrices(self) -> tuple[FloatArray, FloatArray]:
         """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
         return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
+
+    def _check_lengths(self) -> None:
+        for name, length, of in (
+            ("robot_names", self.n_robots, "robot"),
+            ("target_names", self.n_targets, "target"),
+            ("robot_positions", self.n_robots, "robot"),
+            ("element_positions", len(self.robot), "element"),
+            ("target_positions", self.n_targets, "target"),
+        ):
+            given = getattr(self, name)
+            if given is not None and len(given) != length:
+                raise InputError(name, f"must have {length} entries, one per {of}", len(given))
 
     @property
     def _owners(self) -> IntArray:

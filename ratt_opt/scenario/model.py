@@ -102,6 +102,7 @@ class Scenario(ProblemRecord):
     def _check_whole(self) -> Self:
         if self.links is not None and self.communication_range is not None:
             raise InputError("communication_range", "must be absent where links are listed", self.communication_range)
+        self._check_sizes(sum(len(robot.controls) for robot in self.robots), 2)
         self._check_links()
         self._check_ranges()
         self.problem()  # every rule of the matrices too: what loads can be planned

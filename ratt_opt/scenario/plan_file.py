@@ -21,13 +21,16 @@ __all__ = ["load_plan"]
 def load_plan(path: str | Path, problem: Problem) -> IntArray:
     """Read a plan: ``{"elements": [...]}`` with flat element indices, or ``{"controls": [...]}`` with the
     position of each robot's choice among its own controls. Other fields are ignored, so that parts of a
-    report (its ``ratt``, ``recommended`` or ``optimum``) can be used as they are.
+    report (its ``ratt``, ``recommended`` or ``optimum``) can be used as they are; a whole ``report.json`` stands for
+    its recommended plan.
 
     Raises
     ------
     FileFormatError : not strict JSON, neither field, or a choice that its robot does not have.
     """
     document = read_json(path)
+    if isinstance(document, dict) and document.get("format") == "ratt-opt report":
+        document = document.get("recommended")
     if not isinstance(document, dict) or not ({"elements", "controls"} & document.keys()):
         raise FileFormatError(str(path), 'must be an object with "elements" or "controls"', type(document).__name__)
     try:

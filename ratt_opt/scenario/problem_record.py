@@ -13,11 +13,17 @@ from ratt_opt.scenario.record import Record, Whole
 from ratt_opt.setfunctions.criteria.registry import criterion_called
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["Link", "ProblemRecord"]
+
+
+MOST_ROBOTS = 2000
+"""Robots; their complete graph has two million links, whose sets take about half a gigabyte."""
+MOST_ENTRIES = 2**25
+"""Numbers in all information matrices together (256 MiB); the objective holds a few arrays of that size."""
 
 
 def _ordered(link: tuple[int, int]) -> tuple[int, int]:
@@ -92,10 +98,26 @@ class ProblemRecord(Record):
 
     def _check_links(self) -> None:
         """Refuse links that name no robot or are repeated; a problem refuses the rest (budgets, protections)."""
-        known: set[tuple[int, int]] = set()
         for k, link in enumerate(self.links or ()):
             if link[1] >= self.n_robots:
                 raise InputError(f"links[{k}]", f"must join robots in [0, {self.n_robots - 1}]", list(link))
-            if link in known:
-                raise InputError(f"links[{k}]", "must not be repeated", list(link))
-            known.add(link)
+        lists: dict[str, Sequence[object]] = {
+            "links": self.links or (),
+            "protected_robots": self.protected_robots,
+            "protected_links": self.protected_links,
+        }
+        for name, entries in lists.items():
+            known: set[object] = set()
+            for k, entry in enumerate(entries):
+                if entry in known:
+                    raise InputError(f"{name}[{k}]", "must not be repeated", entry)
+                known.add(entry)
+
+    def _check_sizes(self, n_elements: int, dimension: int) -> None:
+        """Refuse what would not fit in memory, before anything is made of it."""
+        if self.n_robots > MOST_ROBOTS:
+            raise InputError("robots", f"must be at most {MOST_ROBOTS}", self.n_robots)
+        entries = n_elements * self.n_targets * dimension**2
+        if entries > MOST_ENTRIES:
+            rule = f"must have at most {MOST_ENTRIES} entries in all information matrices"
+            raise InputError("team", rule, f"{n_elements} elements, {self.n_targets} targets")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+import numpy as np
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from ratt_opt.errors import InputError
 
@@ -17,11 +18,17 @@ LARGEST = 1e12
 """Physical quantities beyond this, or positive ones below its inverse, are refused: squares and
 products of a few of them stay far from overflow and underflow, so no later step can meet infinity."""
 
-Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST)]
+
+def _plain(value: object) -> object:
+    """A NumPy number or boolean as Python's own: the first counts as a number, the second does not."""
+    return value.item() if isinstance(value, (np.number, np.bool_)) else value
+
+
+Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST), BeforeValidator(_plain)]
 """A number: no text, no boolean."""
-Positive = Annotated[float, Field(strict=True, ge=1 / LARGEST, le=LARGEST)]
-NonNegative = Annotated[float, Field(strict=True, ge=0, le=LARGEST)]
-Whole = Annotated[int, Field(strict=True, ge=0)]
+Positive = Annotated[float, Field(strict=True, ge=1 / LARGEST, le=LARGEST), BeforeValidator(_plain)]
+NonNegative = Annotated[float, Field(strict=True, ge=0, le=LARGEST), BeforeValidator(_plain)]
+Whole = Annotated[int, Field(strict=True, ge=0), BeforeValidator(_plain)]
 
 
 def _printable(text: str) -> str:

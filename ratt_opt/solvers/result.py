@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ratt_opt._values import ByValue, shown
+from ratt_opt._values import ByValue, Shown, plain, shown
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -17,7 +17,7 @@ __all__ = ["MaxMinResult"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MaxMinResult(ByValue):
+class MaxMinResult(ByValue, Shown):
     """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` keeps at least ``lower`` under any attack.
 
     ``Phi*`` is the largest worst-case value of any plan [unit of the objective]. Two results are equal when all
@@ -37,6 +37,11 @@ class MaxMinResult(ByValue):
     """The attack on ``elements`` that ``lower`` rests on; ``None`` where it was enumerated."""
     proof: UpperProof | None = None
     """What ``upper`` rests on; ``None`` where it was enumerated."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data, without its proof: unknown numbers are ``None``."""
+        names = ("elements", "lower", "upper", "stop", "evaluations", "nodes", "posterior_gap", "worst_case")
+        return {name: plain(getattr(self, name)) for name in names}
 
     def __repr__(self) -> str:
         bracket = f"{self.lower:.9g} <= Phi* <= {self.upper:.9g}"

@@ -37,7 +37,7 @@ def _strict(text: str) -> Any:
 
 def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["demo", "--out", str(tmp_path / "demo")]) == 0
-    written = ["certificate.json", "plan.png", "plan.svg", "report.json", "scenario.json"]
+    written = ["certificate.json", "plan.csv", "plan.png", "plan.svg", "report.html", "report.json", "scenario.json"]
     assert sorted(os.listdir(tmp_path / "demo")) == written
     report = _strict((tmp_path / "demo" / "report.json").read_text())
     assert report.keys() >= REPORT_FIELDS
@@ -115,7 +115,7 @@ def test_a_bound_comes_with_a_certificate_that_verifies(
     assert found["elements"] == report["optimum"]["elements"]
 
 
-def test_no_certificate_is_left_from_an_earlier_run(
+def test_an_earlier_runs_certificate_is_kept_under_another_name(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     command = ["bound", str(scenario_file), "--out", str(tmp_path / "o")]
@@ -129,7 +129,7 @@ def test_no_certificate_is_left_from_an_earlier_run(
 def test_a_bound_whose_proof_has_a_fault_fails(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A solver that claims too much: its proof is refused, nothing is printed as a result, no file is left."""
+    """A solver that claims too much: its proof is refused, nothing is printed as a result, the report says so."""
     real = write.upper_record
 
     def without_last_leaf(*arguments: Any) -> Any:
@@ -142,27 +142,30 @@ def test_a_bound_whose_proof_has_a_fault_fails(
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "error: upper proof: a case has no leaf" in shown.err
-    assert os.listdir(tmp_path / "o") == []
+    report = _strict((tmp_path / "o" / "report.json").read_text())
+    assert "a case has no leaf" in report["certificate"]["reason"]
+    assert not (tmp_path / "o" / "certificate.json").exists()
 
 
 @pytest.mark.parametrize(
-    ("edit", "text"),
+    "case",
     [
-        (lambda text: text[:-30], "complete JSON"),
-        (lambda text: text.replace('"version":1', '"version":2'), "version must be 1"),
-        (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper"),
-        (lambda text: text[:0], "complete JSON"),
+        (lambda text: text[:-30], "complete JSON", 2),
+        (lambda text: text.replace('"version":1', '"version":2'), "version must be 1", 2),
+        (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper", 1),
+        (lambda text: text[:0], "complete JSON", 2),
     ],
 )
 def test_verify_names_the_first_fault_in_one_line(
-    edit: Any, text: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    case: tuple[Any, str, int], scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    edit, text, code = case
     path = tmp_path / "o" / "certificate.json"
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
     path.write_text(edit(path.read_text()))
     capsys.readouterr()
     for arguments in (["verify", str(path)], ["verify", str(path), "--json"]):
-        assert run(arguments) == 1
+        assert run(arguments) == code
         shown = capsys.readouterr()
         assert shown.out == ""
         assert shown.err.startswith("error: ")
@@ -173,7 +176,7 @@ def test_verify_names_the_first_fault_in_one_line(
 def test_verify_refuses_a_missing_file_and_another_problem(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["verify", str(tmp_path / "none.json")]) == 1
+    assert run(["verify", str(tmp_path / "none.json")]) == 2
     assert "none.json" in capsys.readouterr().err
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
     certificate = str(tmp_path / "o" / "certificate.json")

@@ -9,7 +9,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.report.figure import plan_figure, save_figure
-from ratt_opt.report.map import CUT, SURVIVING
+from ratt_opt.report.palette import CUT, SURVIVING
 from ratt_opt.report.picture import picture_of
 
 
@@ -40,7 +40,9 @@ def test_links_groups_and_blinded_robots_are_the_worst_attack_s(drawn):
     assert shown.get(SURVIVING, 0) == sum({i, j} <= picture.best for i, j in kept)
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert "blinded robot" in labels
-    assert [text.get_text() for text in figure.axes[0].texts] == list("01234")
+    written = [text.get_text() for text in figure.axes[0].texts]
+    assert written == [*(f"T{j}" for j in range(4)), *"01234"]
+    assert labels[-1] == "heading"
 
 
 def test_posterior_is_what_the_best_group_leaves(drawn):
@@ -49,11 +51,77 @@ def test_posterior_is_what_the_best_group_leaves(drawn):
     assert lost == pytest.approx(report.recommended.worst_case.upper, rel=1e-12)
 
 
-def test_bars_are_the_planners_values(drawn):
-    report, _, figure = drawn
-    bars = figure.axes[1]
+def whisker_of(axes, row):
+    """The ends of the whisker of one bar, or ``None``."""
+    for container in axes.containers:
+        if hasattr(container, "has_xerr"):
+            for segments in container[2]:
+                (x0, y), (x1, _) = segments.get_segments()[0]
+                if y == row:
+                    return x0, x1
+    return None
+
+
+@pytest.mark.parametrize(("alpha_s", "seconds"), [(1, 60.0), (10, 60.0), (5, 1e-3)])
+def test_bars_are_what_is_decided_and_whiskers_what_is_not(alpha_s, seconds):
+    """Close values are drawn as what misses to the bound, far ones as what is kept; 10 of 10 blinded keep nothing."""
+    scenario = ro.random_scenario(10, 5, alpha_s=alpha_s, alpha_c=20 if seconds < 1 else 0, seed=2)
+    report = ro.bound(scenario, time_limit=seconds)
+    bars = plan_figure(report, picture_of(scenario, report)).axes[1]
     assert [label.get_text() for label in bars.get_yticklabels()] == [plan.name for plan in report.plans]
-    assert [bar.get_width() for bar in bars.patches] == [plan.worst_case.lower for plan in report.plans]
+    missing = "missing" in bars.get_xlabel()
+    assert missing == (0 < 0.5 * report.upper <= min(plan.worst_case.lower for plan in report.plans))
+    undecided = 0
+    for row, (plan, bar) in enumerate(zip(report.plans, bars.patches, strict=True)):
+        low, high = plan.worst_case.lower, plan.worst_case.upper
+        if missing:
+            low, high = report.upper - high, report.upper - low
+        assert bar.get_width() == pytest.approx(max(low, 0), abs=1e-12)
+        whisker = whisker_of(bars, row)
+        if high - low > 1e-9 * report.upper:
+            undecided += 1
+            assert whisker == pytest.approx((max(low, 0), max(high, 0)), abs=1e-9)
+        else:
+            assert whisker is None
+    assert (undecided > 0) == (seconds < 1)
+
+
+def test_a_model_free_file_s_names_places_weights_and_protections_are_shown():
+    rng = np.random.default_rng(0)
+    plain = {
+        "format": "ratt-opt information", "version": 1, "alpha_s": 1, "alpha_c": 1, "robot": [0, 0, 1, 2],
+        "prior": [[[2.0, 0.0], [0.0, 1.0]]] * 2,
+        "information": [[[[x, 0.0], [0.0, y]] for x, y in rng.random((2, 2))] for _ in range(4)],
+        "links": [[0, 1], [1, 2]], "protected_robots": [2], "protected_links": [[0, 1]], "weights": [1.0, 2.5],
+    }  # fmt: skip
+    known = {
+        "robot_names": ["ada", "bob", "cy"], "target_names": ["fox", "hare"],
+        "robot_positions": [[0.0, 0.0], [5.0, 1.0], [9.0, 3.0]], "target_positions": [[2.0, 4.0], [7.0, 5.0]],
+    }  # fmt: skip
+    given = ro.InformationInput(**plain, **known)
+    report = ro.bound(given)
+    axes = report.plot().axes[0]
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert {"protected robot", "protected link", "95 % after, best group"} <= set(labels)
+    assert {"ada", "bob", "cy", "T0 fox ×1", "T1 hare ×2.5"} <= {text.get_text() for text in axes.texts}
+    assert report.to_dict()["robot_names"] == known["robot_names"]
+    unplaced = ro.bound(ro.InformationInput(**plain)).plot().axes[0]
+    assert "layout" in unplaced.get_xlabel()
+    with pytest.raises(ro.InputError, match="robot_names must have 3 entries"):
+        ro.InformationInput(**plain, robot_names=["ada"])
+
+
+def test_from_twenty_robots_on_only_what_matters_is_drawn():
+    scenario = ro.random_scenario(24, 4, alpha_s=4, alpha_c=40, seed=1).replace(communication_range=40.0)
+    report = ro.bound(scenario, time_limit=5)
+    picture = picture_of(scenario, report)
+    axes = plan_figure(report, picture).axes[0]
+    numbered = {int(t.get_text()) for t in axes.texts if t.get_text().isdigit()}
+    assert picture.best | picture.attack.sensing <= numbered
+    rest = 24 - len(numbered)
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert (f"density of the other {rest} robots" in labels) == (rest > 0)
+    assert "link of another group" not in labels
 
 
 @pytest.mark.parametrize(("n_robots", "n_targets", "seed"), [(4, 4, 14), (8, 10, 0), (30, 25, 1)])
@@ -62,7 +130,13 @@ def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed):
     report = ro.bound(scenario, time_limit=1.0)
     figure = plan_figure(report, picture_of(scenario, report))
     figure.draw_without_rendering()
-    texts = [figure._suptitle, figure.axes[1].title, figure.axes[1]._right_title, *figure.axes[1].texts]
+    texts = [
+        figure._suptitle,
+        figure.axes[1].title,
+        figure.axes[1]._right_title,
+        figure.axes[1].xaxis.label,
+        *figure.axes[1].texts,
+    ]
     texts += [*figure.axes[1].get_yticklabels(), *figure.axes[0].get_legend().get_texts()]
     boxes = [text.get_window_extent() for text in texts if text is not None and text.get_text()]
     for box in boxes:

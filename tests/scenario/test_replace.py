@@ -52,6 +52,11 @@ GOOD_AND_BAD: list[tuple[Record, dict[str, tuple[Any, Any]]]] = [
             "protected_robots": ((1,), (2,)),
             "protected_links": (((0, 1),), ((0, 2),)),
             "notes": (("measured",), ("two\nlines",)),
+            "robot_names": (("a", "b"), ("a",)),
+            "target_names": (("a",), ("a", "b")),
+            "robot_positions": (((0.0, 0.0), (1.0, 1.0)), ((0.0, 0.0),)),
+            "element_positions": (((0.0, 0.0),) * 3, ((0.0, float("nan")),) * 3),
+            "target_positions": (((0.0, 0.0),), ()),
         },
     ),
     (

@@ -12,11 +12,13 @@ import time
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
+from analysis.studies import engine, versions
 from analysis.studies.engine import SweepError, run
 from analysis.studies.executors import local_processes, open_executor
 from analysis.studies.progress import Progress
@@ -186,7 +188,7 @@ def test_results_of_other_versions_or_formats_are_refused(tmp_path: Path) -> Non
     manifest = json.loads((tmp_path / "study.json").read_text())
     for change, text in (
         ({"made_with": "ratt_opt 0.0.1"}, "results made with ratt_opt .*; got ratt_opt 0.0.1 in"),
-        ({"format": 9}, "results of format 1; got format 9"),
+        ({"format": 9}, "results of format 2; got format 9"),
         ({"study": None, "fingerprint": 3}, "got study None version 1"),
     ):
         (tmp_path / "study.json").write_text(json.dumps(manifest | change))
@@ -285,3 +287,80 @@ def test_cases_have_distinct_names() -> None:
     case = Case(n_robots=2, n_targets=2, alpha_s=0, alpha_c=0)
     names = {case.name, replace(case, objective="logdet").name, replace(case, options=(("range_std", 0.1),)).name}
     assert len(names) == 3
+
+
+def test_rows_of_other_code_are_refused_or_kept_with_their_mark(tmp_path: Path) -> None:
+    """A change of any source file changes the hash; accepted, the rows stay and the manifest says what made them."""
+    before = _threads(tmp_path, 1)
+    path = tmp_path / "study.json"
+    manifest = json.loads(path.read_text())
+    assert manifest["made_with"].endswith(f"code {versions._hash_of_code()}")
+    for change in ({"made_with": "ratt_opt 0, code 0"}, {"measured_by": "0" * 12}):
+        path.write_text(json.dumps(manifest | change))
+        with pytest.raises(InputError, match="--accept-old-rows"):
+            _threads(tmp_path, 1)
+    with ThreadPoolExecutor(1) as executor:
+        table = run(STUDY, tmp_path, executor, trials=2, progress=Progress(), accept_old_rows=True)
+    found = json.loads(path.read_text())
+    assert found["older_rows_by"] == [{"made_with": manifest["made_with"], "measured_by": "0" * 12}]
+    assert before.splitlines()[1] in table.read_bytes().splitlines()
+    assert _threads(tmp_path, 2) == table.read_bytes()
+
+
+def test_the_hash_of_the_code_sees_every_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "__init__.py").write_text("x = 1\n")
+    (tmp_path / "a" / "b.py").write_text("y = 1\n")
+    monkeypatch.setattr(versions, "ratt_opt", SimpleNamespace(__file__=str(tmp_path / "a" / "__init__.py")))
+    first = versions._hash_of_code()
+    assert versions._hash_of_code() == first
+    (tmp_path / "a" / "b.py").write_text("y = 2\n")
+    assert versions._hash_of_code() != first
+
+
+@pytest.mark.parametrize("kind", ["cell", "encoding", "header", "huge", "quote", "empty line", "folder", "nul"])
+def test_every_damage_of_a_journal_is_one_line(tmp_path: Path, kind: str) -> None:
+    _threads(tmp_path, 1)
+    journal = tmp_path / "journal.csv"
+    data = journal.read_bytes()
+    lines = data.splitlines(keepends=True)
+    number = lines[2].split(b",")[-2]
+    damaged = {
+        "cell": data.replace(number, number.replace(b"1", b"2") if b"1" in number else b"1" + number, 1),
+        "encoding": data[:80] + b"\xff" + data[81:],
+        "header": data[3:],
+        "huge": data + b"x" * 200_000 + b"\n",
+        "quote": data + b'"a"b\n',
+        "empty line": data + b"\n",
+        "nul": data + b"\0\n",
+    }
+    if kind == "folder":
+        journal.unlink()
+        journal.mkdir()
+    else:
+        journal.write_bytes(damaged[kind])
+    with pytest.raises(InputError) as caught:
+        _threads(tmp_path, 2)
+    assert str(caught.value).isprintable()
+    if kind != "folder":
+        assert journal.read_bytes() == damaged[kind]
+
+
+class _NoWorkers(ThreadPoolExecutor):
+    """A cluster without workers: its futures never end."""
+
+    class _client:  # noqa: N801
+        @staticmethod
+        def nthreads() -> dict[str, int]:
+            return {}
+
+    def submit(self, function, /, *arguments, **named):  # type: ignore[no-untyped-def]
+        del function, arguments, named
+        return Future()
+
+
+def test_a_cluster_that_lost_its_workers_is_a_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engine, "LOOKS", 0.02)
+    monkeypatch.setattr(engine, "PATIENCE", 0.1)
+    with _NoWorkers(1) as executor, pytest.raises(SweepError, match=r"no worker for 0\.1 s; finished rows are kept"):
+        run(STUDY, tmp_path, executor, trials=1, progress=Progress())

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import ctx, fmpq, fmpq_mat, fmpz
 
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def definite(matrix: fmpq_mat) -> int:
         return 1 if minor > 0 else 0
     rows, strict = matrix.tolist(), 1
     for k, first in enumerate(rows):
+        tick()
         pivot = first[k]
         if pivot < 0 or (pivot == 0 and any(first[k + 1 :])):
             return -1

@@ -9,6 +9,7 @@ from flint import arb, ctx
 from ratt_opt.certificates.verifier.exact_matrices import definite, largest_of_inverse, total, trace_of_inverse
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
 from ratt_opt.certificates.verifier.statement import PRECISIONS
+from ratt_opt.certificates.verifier.work import tick
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -147,6 +148,7 @@ class LowerCheck:
 
     def _value(self, posterior: list[fmpq_mat]) -> Any:
         """Return a lower bound on the criterion (max-eigenvalue: d = 2), sharper at a higher precision."""
+        tick()
         pairs = list(zip(self.about.weights, posterior, strict=True))
         if self.about.objective == "maxeig":
             return self.about.prior_low - max(w * largest_of_inverse(m) for w, m in pairs)
@@ -164,6 +166,7 @@ def is_forced(n: int, alpha_s: int, alpha_c: int, size: int) -> bool:
     """
     best = [[0] * (alpha_s + 1)]
     for r in range(1, n + 1):
+        tick()
         options = [range(1, min(r, size - 1 + x) + 1) for x in range(alpha_s + 1)]
         part = [[k * k + best[r - k][x - max(0, k - size + 1)] for k in ks] for x, ks in enumerate(options)]
         best.append([max(values, default=-n * n - 1) for values in part])

@@ -14,6 +14,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 FORMAT = "ratt-opt certificate"
@@ -61,6 +62,7 @@ def walk(name: str, tree: object, root: Any, expand: Any) -> int:
     paths, leaves = [iter([root])], 0
     for node in array(f"{name} tree", tree):
         check_size(f"{name} tree (depth)", len(paths), DEEPEST_TREE)
+        tick()
         case = _next_case(paths)
         need(case is not None, f"{name} proof: a node is repeated or follows the last leaf")
         below = expand(node, case)

@@ -9,6 +9,7 @@ from flint import fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier.exact_matrices import defect_of, definite, total, trace
 from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed
+from ratt_opt.certificates.verifier.work import hold, refuse_wide, tick
 
 __all__ = ["PRECISIONS", "Statement"]
 
@@ -48,6 +49,7 @@ class Statement:
         need(self.safe_links <= self.links, "problem: a protected link does not exist")
         need(all(self.owner[e] == i for i, e in enumerate(self.plan)), "plan: an element is not its robot's")
         need(all(w > 0 for w in self.weights), "problem: a weight is not positive")
+        refuse_wide((x for row in (self.prior, *self.information) for x in row), self.d)
         need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
         self._derive(prior_range)
 
@@ -69,7 +71,7 @@ class Statement:
     def _derive(self, prior_range: object) -> None:
         """What the checks need; information must be semidefinite but for rounding."""
         self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
-        self.inverse = [p.inv() for p in self.prior]
+        self.inverse = [self._inverse(p) for p in self.prior]
         self.prior_trace = total(w * trace(p) for w, p in zip(self.weights, self.prior, strict=True))
         self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
         self.prior_low, self.prior_high = self._check_prior_range(prior_range)
@@ -79,6 +81,12 @@ class Statement:
             worst = total(max(self.defect[e][j] for e in own) for own in self.choices)
             room = inverse - self.identity * ((self.n + 1) * worst)
             need(definite(room) > 0, f"problem: information of target {j} is not positive semidefinite")
+
+    def _inverse(self, prior: fmpq_mat) -> fmpq_mat:
+        tick()
+        inverse = prior.inv()
+        hold(inverse[0, 0], self.d * self.d)
+        return inverse
 
     def _check_prior_range(self, given: object) -> tuple[fmpq, fmpq]:
         """Check ``low <= max_j w_j lambda_max(prior_j) <= high`` (max-eigenvalue only; empty otherwise)."""

@@ -14,6 +14,7 @@ from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
 from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, walk
 from ratt_opt.certificates.verifier.statement import PRECISIONS
+from ratt_opt.certificates.verifier.work import hold, tick
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.statement import Statement
 
 __all__ = ["UpperCheck"]
+
+BLOCK = 16
+"""Points whose scores are computed between two looks at the clock."""
 
 
 class _Cut(NamedTuple):
@@ -68,6 +72,8 @@ class UpperCheck:
             left, winners = case
             if isinstance(node, dict) and "weights" in node:
                 bounds.append(self._leaf(node, cuts, groups, left, winners))
+                if isinstance(bounds[-1], fmpq):
+                    hold(bounds[-1])
             elif isinstance(node, dict) and "attack" in node:
                 a = index("winner branch", fields("winner branch", node, "attack")[0], len(groups))
                 need(a not in winners, "upper proof: an attack's winner is declared twice")
@@ -94,6 +100,7 @@ class UpperCheck:
         pairs = list(zip(weights, used, strict=True))
         bound = total(w * cut.constant for w, cut in pairs)
         for i, elements in enumerate(left):
+            tick()
             active = [(w, cut.scores) for w, cut in pairs if i in cut.group]
             bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
         return bound / mass
@@ -112,6 +119,7 @@ class UpperCheck:
         allowed = cut <= self.about.links - self.about.safe_links and not blinded & self.about.safe_robots
         need(allowed, "upper proof: an attack hits what does not exist or is protected")
         groups: list[set[int]] = []
+        tick()
         for start in range(self.about.n):
             stack, group = [start], {start}
             while stack and not any(start in g for g in groups):
@@ -128,8 +136,15 @@ class UpperCheck:
         reading.check_size("points", len(given) * max(width, len(self.about.owner)), reading.MOST_CELLS)
         fenchel = [self._fenchel(point) for point in given]
         columns = [x for row in self.about.information for matrix in row for x in matrix.entries()]
-        rows = fmpq_mat(len(fenchel), width, [x for row, _ in fenchel for x in row])
-        scores = (rows * fmpq_mat(len(self.about.owner), width, columns).transpose()).tolist()
+        turned = fmpq_mat(len(self.about.owner), width, columns).transpose()
+        scores: list[list[fmpq]] = []
+        for k in range(0, len(fenchel), BLOCK):
+            rows = [x for row, _ in fenchel[k : k + BLOCK] for x in row]
+            block = (fmpq_mat(len(rows) // width, width, rows) * turned).tolist()
+            tick()
+            for row in block:
+                hold(max(row, key=lambda x: int(x.q)), len(row))
+            scores += block
         cuts = []
         for item in array("cuts", cut_list):
             a, g, p = array("cut", item, 3)
@@ -145,6 +160,7 @@ class UpperCheck:
         logdet: logdet L <= tr(Y L) - logdet Y - d, from log x <= x - 1 for the eigenvalues of Y L; W = w Y.
         maxeig: lambda_max(L^{-1}) >= 1/q >= 2t - t^2 q with q = v'Lv / v'v; W = w t^2 vv' / v'v for one target.
         """
+        tick()
         d, m = self.about.d, len(self.about.prior)
         if self.about.objective == "maxeig":
             target, size, vector = array("point", point, 3)

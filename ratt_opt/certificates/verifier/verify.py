@@ -6,6 +6,7 @@ arithmetic, logarithms in balls (python-flint).
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -16,6 +17,8 @@ from ratt_opt.certificates.verifier.reading import exact, fields, need
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verified import Verified
+from ratt_opt.certificates.verifier.work import SECONDS, limited
+from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,21 +26,34 @@ if TYPE_CHECKING:
 __all__ = ["verify_certificate"]
 
 
-def verify_certificate(path: str | Path, *, expected_problem: object = None) -> Verified:
+def verify_certificate(
+    path: str | Path, *, expected_problem: object = None, time_limit: float | None = SECONDS
+) -> Verified:
     """Decide whether the certificate at ``path`` proves its claim.
 
     Parameters
     ----------
-    expected_problem : the problem record it must be about (``problem_document(problem)``); any when ``None``
+    time_limit : seconds; no limit when ``None``
+    expected_problem : the problem record it must be about (``problem_document(problem)``), or a test of the record
+        (``same_problem``); any when ``None``
 
     Raises
     ------
     FileFormatError : the file is not a certificate of this version.
     ProofError : the proof has a fault; the text names the first one found.
+    UndecidedError : neither, within the time and memory that the verifier gives to one file.
     """
+    if time_limit is not None and not (isinstance(time_limit, (int, float)) and time_limit > 0):
+        raise InputError("time_limit", "must be a positive number of seconds", time_limit)
+    with limited(math.inf if time_limit is None else float(time_limit)):
+        return _decide(path, expected_problem)
+
+
+def _decide(path: str | Path, expected_problem: object) -> Verified:
     names = "format version problem plan claim prior_eigenvalue upper lower"
     _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", reading.load(path), names)
-    need(expected_problem in (None, problem), "the certificate is about a different problem than the one given")
+    same = expected_problem(problem) if callable(expected_problem) else expected_problem in (None, problem)
+    need(same, "the certificate is about a different problem than the one given")
     low, high = fields("claim", claim, "lower upper")
     lower, upper = exact("claim lower", low), exact("claim upper", high)
     need(lower <= upper, "claim: lower is above upper")

@@ -33,6 +33,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -
     base = objective.value(points)
     value = float(pool.outcome_values(base).min(initial=np.inf))
     unchanged, i = 0, 0
+    seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
     while unchanged < problem.n_robots:
         budget.check()
         choice = problem.choices[i]
@@ -49,6 +50,9 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -
                 current[i], value, base = others[k], float(worst[k]), values[k]
                 points[rows] += change[k]
                 unchanged = 0
+                if (key := current.tobytes()) in seen:
+                    return current
+                seen.add(key)
         i = (i + 1) % problem.n_robots
     return current
 

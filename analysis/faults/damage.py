@@ -1,0 +1,101 @@
+"""Damaged files and odd words, and the truth about what a certificate states."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import networkx as nx
+import numpy as np
+
+import ratt_opt as ro
+from ratt_opt.setfunctions.criteria.registry import criterion_called
+
+__all__ = ["ODD", "damaged", "truth"]
+
+ODD = (
+    "",
+    "0",
+    "-1",
+    "nan",
+    "inf",
+    "1e999",
+    "true",
+    "[b]",
+    "\x1b[2J",
+    "\u202e",
+    "\udc80",
+    "a\0b",
+    "9" * 5000,
+    "--",
+    "x=1",
+)
+VALUES: tuple[Any, ...] = (
+    None, True, False, 0, -1, 1, 2**53, 2**64, -0.0, 5e-324, 1e-12, 1e12, 1e300, "", "x", "[b]", "\u202e", "\ud800",
+    [], {}, [0, 0],
+)  # fmt: skip
+
+
+def damaged(data: bytes, rng: np.random.Generator) -> bytes:
+    """Bytes changed, cut or repeated, or one value of the JSON replaced."""
+    way = int(rng.integers(5))
+    if way == 0 or not data.lstrip().startswith(b"{"):
+        spots = rng.integers(0, len(data), int(rng.integers(1, 4)))
+        changed = bytearray(data)
+        for spot in spots:
+            changed[int(spot)] = int(rng.integers(256))
+        return bytes(changed)
+    if way == 1:
+        first, last = sorted(int(x) for x in rng.integers(0, len(data), 2))
+        return data[:first] + data[last:] if rng.random() < 0.5 else data[:last] + data[first:]
+    document = json.loads(data)
+    for _ in range(int(rng.integers(1, 3))):
+        _replace_one(document, rng)
+    return json.dumps(document).encode()
+
+
+def _replace_one(document: Any, rng: np.random.Generator) -> None:
+    """Walk to a random place of a document, and replace, scale, remove or repeat what is there."""
+    while True:
+        keys = list(document) if isinstance(document, dict) else list(range(len(document)))
+        if not keys:
+            return
+        key = keys[int(rng.integers(len(keys)))]
+        value = document[key]
+        if isinstance(value, (dict, list)) and value and rng.random() < 0.85:
+            document = value
+            continue
+        way = int(rng.integers(4))
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if way == 0 and number:
+            document[key] = value * (1 + float(rng.normal(0, 10.0 ** rng.integers(-16, 1))))
+        elif way == 1 and number:
+            document[key] = value + int(rng.integers(-2, 3))
+        elif way == 2 and isinstance(document, list):
+            document.insert(key, value)
+        elif way == 3 and rng.random() < 0.3:
+            del document[key]
+        else:
+            document[key] = VALUES[int(rng.integers(len(VALUES)))]
+        return
+
+
+def truth(document: Any, elements: list[int]) -> tuple[float, float]:
+    """The plan's worst case and the optimum of the problem that a certificate states, by brute force."""
+    record = document["problem"]
+    d = record["dimension"]
+
+    def full(flat: list[float]) -> Any:
+        matrix = np.zeros((d, d))
+        matrix[np.tril_indices(d)] = flat
+        return matrix + np.tril(matrix, -1).T
+
+    graph: nx.Graph = nx.Graph()
+    graph.add_nodes_from(range(max(record["owners"]) + 1))
+    graph.add_edges_from(record["links"])
+    information = np.array([[full(x) for x in row] for row in record["information"]])
+    prior = np.array([full(x) for x in record["prior"]])
+    objective = criterion_called(record["objective"])(prior, information, record["weights"])
+    safe = frozenset(record["protected_robots"]), frozenset((i, j) for i, j in record["protected_links"])
+    problem = ro.Problem(objective, record["owners"], graph, record["alpha_s"], record["alpha_c"], *safe)
+    return ro.worst_case_attack(problem, elements).lower, ro.exhaustive_optimum(problem).upper

@@ -1,0 +1,254 @@
+(* Translates a certificate file into the checker's data. Of this file, the statement depends on [problem] and [claim]
+   only: proofs are hints that the checker decides. A JSON number stands for the binary64 float nearest to it. *)
+
+module Big = Z
+open Checker
+open Json
+
+exception Format of string
+exception Fault of string
+
+let format where rule = raise (Format (where ^ " " ^ rule))
+
+let largest_index = 1_000_000
+let table : nat array ref = ref [| O |]
+
+(* Unary numbers, shared. *)
+let nat_of_int k =
+  if k < 0 || k > largest_index then format "an integer" "is out of range";
+  let have = Array.length !table in
+  if k >= have then begin
+    let size = max (k + 1) (2 * have) in
+    let fresh = Array.make size O in
+    Array.blit !table 0 fresh 0 have;
+    for i = have to size - 1 do fresh.(i) <- S fresh.(i - 1) done;
+    table := fresh
+  end;
+  !table.(k)
+
+let fields where names = function
+  | Record pairs when List.sort compare (List.map fst pairs) = List.sort compare names ->
+      List.map (fun name -> List.assoc name pairs) names
+  | _ -> format where ("must be a record of " ^ String.concat ", " names)
+
+let array where = function List l -> l | _ -> format where "must be a list"
+
+let is_integer text = not (String.exists (fun c -> c = '.' || c = 'e' || c = 'E') text)
+
+let integer where = function
+  | Number text when is_integer text -> (match int_of_string_opt text with Some k -> k | None -> format where "is too large")
+  | _ -> format where "must be an integer"
+
+let index where value =
+  let k = integer where value in
+  if k < 0 then format where "must not be negative";
+  k
+
+let nat where value = nat_of_int (index where value)
+
+(* Strictly ascending indices. *)
+let indices where value =
+  let found = List.map (index where) (array where value) in
+  let rec ascending = function a :: (b :: _ as rest) -> a < b && ascending rest | _ -> true in
+  if not (ascending found) then format where "must be strictly ascending";
+  found
+
+let nats where value = List.map nat_of_int (indices where value)
+
+let links where value =
+  let pair item = match indices where item with [ i; j ] -> (i, j) | _ -> format where "must hold pairs" in
+  let found = List.map pair (array where value) in
+  if List.length (List.sort_uniq compare found) < List.length found then format where "must not repeat a link";
+  List.map (fun (i, j) -> (nat_of_int i, nat_of_int j)) found
+
+(* [man / 2^sc], exactly. *)
+let dyadic_of_float x =
+  let fraction, exponent = Float.frexp x in
+  let mantissa = Big.of_float (Float.ldexp fraction 53) in
+  let exponent = exponent - 53 in
+  if Big.equal mantissa Big.zero then { man = Big.zero; sc = Big.zero }
+  else if exponent >= 0 then { man = Big.shift_left mantissa exponent; sc = Big.zero }
+  else begin
+    let drop = min (Big.trailing_zeros mantissa) (-exponent) in
+    { man = Big.shift_right mantissa drop; sc = Big.of_int (-exponent - drop) }
+  end
+
+let exact where = function
+  | Number text when is_integer text ->
+      let value = Big.of_string text in
+      if Big.gt (Big.abs value) (Big.shift_left Big.one 53) then format where "must be a number";
+      { man = value; sc = Big.zero }
+  | Number text ->
+      let x = float_of_string text in
+      if not (Float.is_finite x) then format "number" "must be finite";
+      dyadic_of_float x
+  | _ -> format where "must be a number"
+
+let exacts where value = List.map (exact where) (array where value)
+
+let objective = function
+  | String "trace" -> Trace
+  | String "maxeig" -> MaxEigenvalue
+  | String "logdet" -> format "objective" "is log-det, which the verified checker does not cover"
+  | _ -> raise (Fault "the objective must be trace, logdet or maxeig")
+
+let problem value =
+  match
+    fields "problem"
+      [ "objective"; "dimension"; "prior"; "information"; "weights"; "owners"; "links"; "alpha_s"; "alpha_c";
+        "protected_robots"; "protected_links" ]
+      value
+  with
+  | [ kind; d; prior; information; weights; owners; pairs; blinded; cut; safe_robots; safe_links ] ->
+      let kind = objective kind in
+      let d = index "dimension" d in
+      if d > 100 then format "dimension" "must be at most 100";
+      let owners = List.map (index "owners") (array "owners" owners) in
+      let top = List.fold_left max 0 owners in
+      if top >= 1000 then format "owners" "must be below 1000";
+      let size = List.length owners in
+      let row value = List.map (exacts "information") (array "information" value) in
+      let pb =
+        { objective = kind; dimension = nat_of_int d; priors = List.map (exacts "prior") (array "prior" prior);
+          weights = exacts "weights" weights; informations = List.map row (array "information" information);
+          net =
+            { top_robot = nat_of_int top; owners = List.map nat_of_int owners; link_list = links "links" pairs;
+              blind_budget = nat "alpha_s" blinded; cut_budget = nat "alpha_c" cut;
+              kept_robots = nats "protected_robots" safe_robots; kept_links = links "protected_links" safe_links } } in
+      if index "alpha_s" blinded > top + 1 || index "alpha_c" cut > List.length (array "links" pairs) then
+        format "problem" "has a budget out of range";
+      (pb, size)
+  | _ -> assert false
+
+let claim plan value =
+  match fields "claim" [ "lower"; "upper" ] value with
+  | [ low; high ] -> { plan = List.map (nat "plan") (array "plan" plan); lower = exact "claim" low; upper = exact "claim" high }
+  | _ -> assert false
+
+(* Trees are listed in preorder. *)
+let consume name nodes build =
+  let rest = ref nodes in
+  let next () =
+    match !rest with [] -> raise (Fault (name ^ " proof: a case has no leaf")) | node :: tail -> rest := tail; node in
+  let tree = build next in
+  if !rest <> [] then raise (Fault (name ^ " proof: a node is repeated or follows the last leaf"));
+  tree
+
+let deepest = 2500
+
+let rec upper_node groups next depth =
+  if depth > deepest then format "upper tree" "is too deep";
+  let again () = upper_node groups next (depth + 1) in
+  let rec children k = if k = 0 then [] else let first = again () in first :: children (k - 1) in
+  match next () with
+  | Record pairs as node when List.mem_assoc "weights" pairs -> (
+      match fields "leaf" [ "cuts"; "weights" ] node with
+      | [ cuts; weights ] ->
+          let cuts = List.map (nat "leaf cut") (array "leaf cuts" cuts) and weights = exacts "leaf weights" weights in
+          if List.length cuts <> List.length weights then format "leaf weights" "must be one for each cut";
+          Leaf (List.combine cuts weights)
+      | _ -> assert false)
+  | Record pairs as node when List.mem_assoc "attack" pairs ->
+      let a = match fields "winner branch" [ "attack" ] node with [ a ] -> index "winner branch" a | _ -> assert false in
+      if a >= Array.length groups then format "winner branch" "names no attack";
+      OnWinner (nat_of_int a, children groups.(a))
+  | node -> (
+      match fields "element branch" [ "robot"; "parts" ] node with
+      | [ robot; parts ] ->
+          let blocks = List.map (nats "element branch") (array "parts" parts) in
+          let kids = children (List.length blocks) in
+          OnElement (nat "element branch robot" robot, List.combine blocks kids)
+      | _ -> assert false)
+
+let rec size_node next depth =
+  if depth > deepest then format "lower tree" "is too deep";
+  match integer "lower tree" (next ()) with
+  | -1 -> SetWorth
+  | -2 -> TooFew
+  | -3 -> Average
+  | i ->
+      if i < 0 then format "lower tree" "has an unknown leaf";
+      let inside = size_node next (depth + 1) in
+      Taken (nat_of_int i, inside, size_node next (depth + 1))
+
+let rec attack_node next parts depth =
+  if depth > deepest then format "lower tree" "is too deep";
+  match integer "lower tree" (next ()) with
+  | -1 -> Beyond
+  | i when i < 0 -> Worth (nat_of_int (-2 - i))
+  | i when i mod 2 = 0 ->
+      let blinded = attack_node next parts (depth + 1) in
+      Blinded (nat_of_int (i / 2), blinded, attack_node next parts (depth + 1))
+  | i ->
+      let rec children p =
+        if p > parts then []
+        else let first = attack_node next (if p = parts then parts + 1 else parts) (depth + 1) in first :: children (p + 1) in
+      Group (nat_of_int (i / 2), children 0)
+
+let lower_proof value =
+  let kind = match value with Record pairs -> List.assoc_opt "kind" pairs | _ -> None in
+  match kind with
+  | Some (String "forced_size") -> (
+      match fields "lower proof" [ "kind"; "size"; "tree" ] value with
+      | [ _; size; tree ] ->
+          ForcedSize (nat "forced size" size, consume "lower" (array "lower tree" tree) (fun next -> size_node next 0))
+      | _ -> assert false)
+  | Some (String "attack_tree") -> (
+      match fields "lower proof" [ "kind"; "tree" ] value with
+      | [ _; tree ] -> AttackTree (consume "lower" (array "lower tree" tree) (fun next -> attack_node next 0 0))
+      | _ -> assert false)
+  | _ ->
+      if fields "lower proof" [ "kind" ] value <> [ String "enumerated" ] then
+        raise (Fault "lower proof: the kind must be attack_tree, forced_size or enumerated");
+      NoLower
+
+let attack value =
+  match fields "attack" [ "robots"; "links" ] value with
+  | [ robots; pairs ] -> (nats "attack robots" robots, links "attack links" pairs)
+  | _ -> assert false
+
+let exacts_of_length where length value =
+  let found = exacts where value in
+  if List.length found <> length then format where (Printf.sprintf "must be a list of %d entries" length);
+  found
+
+let point kind d value =
+  match (kind, value) with
+  | Trace, _ -> TracePoint (List.map (exacts_of_length "point Y" (d * (d + 1) / 2)) (array "point" value))
+  | MaxEigenvalue, List [ target; size; direction ] ->
+      EigenPoint (nat "point target" target, exact "point t" size, exacts_of_length "point v" d direction)
+  | _ -> format "point" "must be a list of 3 entries"
+
+let cut value =
+  match array "cut" value with
+  | [ a; g; k ] -> ((nat "cut attack" a, nat "cut group" g), nat "cut point" k)
+  | _ -> format "cut" "must be a list of 3 entries"
+
+let rec int_of_nat = function O -> 0 | S k -> 1 + int_of_nat k
+
+let proofs pb prior_range upper lower =
+  match fields "upper proof" [ "attacks"; "points"; "cuts"; "tree" ] upper with
+  | [ attacks; points; cuts; tree ] ->
+      let listed = List.map attack (array "attacks" attacks) in
+      let arity a = if attack_ok pb.net a then List.length (seeing_groups pb.net a) else raise (Fault "upper proof: an attack is not allowed") in
+      let groups = Array.of_list (List.map arity listed) in
+      let zero = { man = Big.zero; sc = Big.zero } in
+      let low, high =
+        match (pb.objective, exacts "prior_eigenvalue" prior_range) with
+        | Trace, [] -> (zero, zero)
+        | MaxEigenvalue, [ low; high ] -> (low, high)
+        | _ -> format "prior_eigenvalue" "must be a list of two entries, of none for trace" in
+      { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
+        cut_list = List.map cut (array "cuts" cuts);
+        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups next 0);
+        lower_part = lower_proof lower }
+  | _ -> assert false
+
+let certificate document =
+  match
+    fields "certificate" [ "format"; "version"; "problem"; "plan"; "claim"; "prior_eigenvalue"; "upper"; "lower" ] document
+  with
+  | [ String "ratt-opt certificate"; Number "1"; stated; plan; claimed; prior_range; upper; lower ] ->
+      let pb, _ = problem stated in
+      (pb, claim plan claimed, proofs pb prior_range upper lower)
+  | _ -> format "certificate" "must be version 1 of a ratt-opt certificate"

@@ -1,0 +1,257 @@
+(** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
+From Coq Require Import ZArith.
+From mathcomp Require Import all_ssreflect.
+From Ratt Require Import Dyadic DyadicMatrix Graph UpperTree LowerTree Forced.
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+
+(** ** Data *)
+Inductive criterion := Trace | MaxEigenvalue.
+
+(** Symmetric matrices are lower triangles, row by row. [informations]: by element, then by target. *)
+Record problem := Problem {
+  objective : criterion;
+  dimension : nat;
+  priors : seq (seq dyadic);
+  weights : seq dyadic;
+  informations : seq (seq (seq dyadic));
+  net : network
+}.
+Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
+
+(** Where a linear bound touches: one symmetric matrix per target, or a target, a length and a direction. *)
+Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
+Inductive lower_proof := ForcedSize of nat & size_tree | AttackTree of attack_tree | NoLower.
+Record proofs := Proofs {
+  prior_low : dyadic;
+  prior_high : dyadic;
+  listed : seq listed_attack;
+  points : seq point;
+  cut_list : seq (nat * nat * nat);
+  upper_part : upper_tree;
+  lower_part : lower_proof
+}.
+
+(** ** Small tools *)
+Fixpoint all_some (T : Type) (s : seq (option T)) : option (seq T) :=
+  match s with
+  | [::] => Some [::]
+  | Some x :: s' => if all_some s' is Some r then Some (x :: r) else None
+  | None :: _ => None
+  end.
+Definition some_or (T : Type) (x y : option T) : option T := if x is Some _ then x else y.
+
+Section Matrices.
+Variable d : nat.
+
+(** Symmetric [Q] with [Q <= P^-1] (or [>=]) in the Loewner order, checked as [P - P Q P >= 0]. *)
+Definition near_inverse (p : N) (h : dmat * dyadic) : dmat :=
+  mkm d (fun i j => quotient_near p (get h.1 (maxn i j) (minn i j)) h.2).
+Definition sandwich (P Q : dmat) : dmat := mmul d (mmul d P Q) P.
+Definition below_inverse (P Q : dmat) : bool := is_psd d (msub d P (sandwich P Q)).
+Definition above_inverse (P Q : dmat) : bool := is_psd d (msub d (sandwich P Q) P).
+Definition checked (ok : dmat -> bool) (Q : dmat) : option dmat := if ok Q then Some Q else None.
+Definition inverse_bound (ok : dmat -> bool) (shift : dmat -> dyadic -> dmat) (P : dmat) : option dmat :=
+  let h := inverse_hint d P in
+  let attempt p e := let Q := near_inverse p h in
+    some_or (checked ok Q) (checked ok (shift Q (dtiny e))) in
+  some_or (attempt 224%num 200%num) (attempt 1200%num 1150%num).
+Definition inverse_low (P : dmat) : option dmat :=
+  inverse_bound (below_inverse P) (fun Q e => msub d Q (mscalar d e)) P.
+Definition inverse_high (P : dmat) : option dmat :=
+  inverse_bound (above_inverse P) (fun Q e => madd d Q (mscalar d e)) P.
+
+(** [delta >= 0] with [A + delta I >= 0]: stored information is semidefinite up to rounding only. *)
+Definition dabs (x : dyadic) : dyadic := dmax x (dopp x).
+Definition enough_of (A : dmat) : dyadic :=
+  dmul (dnat d) (foldl (fun m row => foldl (fun m x => dmax m (dabs x)) m row) d0 A).
+Definition defect_ok (A : dmat) (delta : dyadic) : bool := dle d0 delta && is_psd d (madd d A (mscalar d delta)).
+Definition defect (A : dmat) : option dyadic :=
+  if is_psd d A then Some d0
+  else let e := enough_of A in
+    let tries := [seq dmul e (dtiny (N.of_nat k)) | k <- rev (iota 28 37)] in
+    if [seq x <- tries | defect_ok A x] is x :: _ then Some x else None.
+End Matrices.
+
+(** ** The criterion's penalty (what is left of the posterior), bounded from above *)
+Section Penalty.
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic).
+
+Definition trace_up (p : N) (s : seq dmat) : option dyadic :=
+  if all_some [seq trace_inverse_up p d (nth [::] s j) | j <- iota 0 m] is Some ys then
+    Some (dsum [seq dmul (nth d0 ws j) (nth d0 ys j) | j <- iota 0 m])
+  else None.
+Definition is_at_most (x : option dyadic) (y : dyadic) : bool := if x is Some z then dle z y else false.
+Definition eigen_enough (room : dyadic) (s : seq dmat) : bool :=
+  dlt d0 room && all (fun j => is_pd d (nth [::] s j) &&
+    is_psd d (msub d (mscale d room (nth [::] s j)) (mscalar d (nth d0 ws j)))) (iota 0 m).
+
+(** Hint for two rows: [w / lambda_min], a little more. *)
+Definition root_up (p : N) (x : dyadic) : dyadic :=
+  Dyadic (Z.add (Z.sqrt (Z.shiftr (Z.shiftl (man x) (Z.of_N (p + p))) (Z.of_N (sc x)))) 2) p.
+Definition eigen_hint (p : N) (w : dyadic) (A : dmat) : dyadic :=
+  let t := dadd (get A 0 0) (get A 1 1) in
+  let det := dsub (dmul (get A 0 0) (get A 1 1)) (dmul (get A 1 0) (get A 0 1)) in
+  let disc := dsub (dmul t t) (dmul (dnat 4) det) in
+  quotient_up p (dmul w (dadd t (root_up p disc))) (dmul (dnat 2) det).
+Definition eigen_up (room : dyadic) (s : seq dmat) : option dyadic :=
+  let y := if d == 2%N then
+      foldl dmax d0 [seq eigen_hint 160 (nth d0 ws j) (nth [::] s j) | j <- iota 0 m]
+    else room in
+  if eigen_enough y s then Some y else None.
+
+Definition penalty_up (room : dyadic) (s : seq dmat) : option dyadic :=
+  match kind with Trace => trace_up 160 s | MaxEigenvalue => eigen_up room s end.
+Definition penalty_within (room : dyadic) (s : seq dmat) : bool :=
+  match kind with
+  | Trace => is_at_most (trace_up 128 s) room || is_at_most (trace_up 1024 s) room
+  | MaxEigenvalue => eigen_enough room s
+  end.
+End Penalty.
+
+(** ** The lower end *)
+Section Lower.
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (lows : seq dmat) (rows : seq (seq dmat)).
+Variables (claimed room : dyadic).
+
+Definition combine (f : nat -> dmat) : seq dmat := mkseq f m.
+Definition add_robot (s : seq dmat) (i : nat) : seq dmat :=
+  combine (fun j => madd d (nth [::] s j) (nth [::] (nth [::] rows i) j)).
+Definition add_times (r : nat) (s : seq dmat) (i : nat) : seq dmat :=
+  combine (fun j => madd d (nth [::] s j) (mscale d (dnat r) (nth [::] (nth [::] rows i) j))).
+(** A claim of at most 0 needs no more than the prior's information. *)
+Definition as_good_as_prior (s : seq dmat) : bool :=
+  dle claimed d0 && all (fun j => is_psd d (msub d (nth [::] s j) (nth [::] lows j))) (iota 0 m).
+Definition worth (s : seq dmat) : bool := as_good_as_prior s || penalty_within kind d m ws room s.
+Definition average_worth (s : seq dmat) (rest : seq nat) (r : nat) : bool :=
+  uniq rest && (r <= size rest)%N &&
+  let cases := [seq add_times r s i | i <- rest] in
+  (all as_good_as_prior cases) ||
+  (if all_some [seq penalty_up kind d m ws room c | c <- cases] is Some ys then
+     let t := nth d0 (sort (fun x y => dle y x) ys) r.-1 in
+     dle (dadd (dsum [seq dmax d0 (dsub y t) | y <- ys]) (dmul (dnat r) t)) (dmul (dnat r) room)
+   else false).
+End Lower.
+
+(** ** The upper end's linear bounds *)
+Section Cuts.
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (ps highs : seq dmat) (infos : seq (seq dmat)).
+Variables (base_high : dyadic).
+
+(** A weight matrix per target ([::] for none) and a constant. *)
+Definition dots (Ws Is : seq dmat) : dyadic :=
+  dsum [seq mdot d x.1 x.2 | x <- zip Ws Is & ~~ nilp x.1].
+Definition gradient (pt : point) : option (seq dmat * dyadic) :=
+  match kind, pt with
+  | Trace, TracePoint ys =>
+      if size ys == m then
+        let Ys := [seq unpack d y | y <- ys] in
+        let Ws := mkseq (fun j => mscale d (nth d0 ws j) (mmul d (nth [::] Ys j) (nth [::] Ys j))) m in
+        let c := dsum [seq dmul (nth d0 ws j) (dsub (mtrace d (nth [::] ps j))
+                   (dmul (dnat 2) (mtrace d (nth [::] Ys j)))) | j <- iota 0 m] in
+        Some (Ws, dadd c (dots Ws highs))
+      else None
+  | MaxEigenvalue, EigenPoint j t v =>
+      let s := dsum [seq dmul (nth d0 v i) (nth d0 v i) | i <- iota 0 d] in
+      let b := quotient_up 256 (dmul t t) s in
+      if [&& (j < m)%N, dlt d0 s & dle (dmul t t) (dmul b s)] then
+        let W := mkm d (fun i k => dmul (dmul (nth d0 ws j) b) (dmul (nth d0 v i) (nth d0 v k))) in
+        let Ws := mkseq (fun i => if i == j then W else [::]) m in
+        Some (Ws, dadd (dsub base_high (dmul (dnat 2) (dmul (nth d0 ws j) t))) (dots Ws highs))
+      else None
+  | _, _ => None
+  end.
+Definition point_scores (g : seq dmat * dyadic) : seq dyadic * dyadic := ([seq dots g.1 row | row <- infos], g.2).
+Definition masked (owner group : seq nat) (s : seq dyadic) : seq dyadic :=
+  [seq if x.1 \in group then x.2 else d0 | x <- zip owner s].
+Definition cut_bounds (owner : seq nat) (groups : seq (seq (seq nat))) (pts : seq (seq dyadic * dyadic))
+    (cs : seq (nat * nat * nat)) : seq cut_bound :=
+  [seq let: (a, g, k) := c in let q := nth ([::], d0) pts k in
+       CutBound a g q.2 (masked owner (nth [::] (nth [::] groups a) g) q.1) | c <- cs].
+Definition cuts_in_range (groups : seq (seq (seq nat))) (n : nat) (cs : seq (nat * nat * nat)) : bool :=
+  all (fun c => let: (a, g, k) := c in
+    [&& (a < size groups)%N, (g < size (nth [::] groups a))%N & (k < n)%N]) cs.
+End Cuts.
+
+(** ** All of it *)
+Section Check.
+Variables (pb : problem) (cl : claim) (pr : proofs).
+Let d := dimension pb.
+Let m := size (priors pb).
+Let w := net pb.
+Let ws := weights pb.
+Definition prior_matrices : seq dmat := [seq unpack (dimension pb) x | x <- priors pb].
+Definition info_matrices : seq (seq dmat) := [seq [seq unpack (dimension pb) x | x <- row] | row <- informations pb].
+
+Definition shapes_ok : bool :=
+  let k := ((d * d.+1)./2)%N in
+  [&& (0 < d)%N, (0 < m)%N, all (fun x => size x == k) (priors pb), size ws == m, all (fun x => dlt d0 x) ws,
+      size (informations pb) == size (owners w)
+    & all (fun row => (size row == m) && all (fun x => size x == k) row) (informations pb)].
+Definition plan_ok : bool :=
+  [&& size (plan cl) == robots w, all (fun e => e < size (owners w))%N (plan cl)
+    & all (fun i => nth 0%N (owners w) (nth 0%N (plan cl) i) == i) (iota 0 (robots w))].
+Definition priors_ok : bool := all (is_pd d) prior_matrices.
+
+(** Largest defects of the elements of each robot, summed: no plan has more. *)
+Definition worst_defect (defects : seq (seq dyadic)) (j : nat) : dyadic :=
+  dsum [seq largest_of (fun e => nth d0 (nth [::] defects e) j) (nth [::] (all_plans w) i) | i <- iota 0 (robots w)].
+Definition room_ok (lows : seq dmat) (defects : seq (seq dyadic)) : bool :=
+  all (fun j => is_pd d (msub d (nth [::] lows j)
+    (mscalar d (dmul (dnat (robots w).+1) (worst_defect defects j))))) (iota 0 m).
+Definition prior_range_ok : bool :=
+  match objective pb with
+  | Trace => true
+  | MaxEigenvalue =>
+      all (fun j => is_psd d (msub d (mscalar d (prior_high pr)) (mscale d (nth d0 ws j) (nth [::] prior_matrices j)))) (iota 0 m)
+      && has (fun j => ~~ is_pd d (msub d (mscalar d (prior_low pr)) (mscale d (nth d0 ws j) (nth [::] prior_matrices j))))
+           (iota 0 m)
+  end.
+Definition trace_total : dyadic := dsum [seq dmul (nth d0 ws j) (mtrace d (nth [::] prior_matrices j)) | j <- iota 0 m].
+Definition base_low : dyadic := match objective pb with Trace => trace_total | MaxEigenvalue => prior_low pr end.
+
+Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : bool :=
+  let rows := [seq nth [::] info_matrices e | e <- plan cl] in
+  let room := dsub base_low (lower cl) in
+  let loss j := dsum [seq nth d0 (nth [::] defects e) j | e <- plan cl] in
+  let start := mkseq (fun j => msub d (nth [::] lows j) (mscalar d (loss j))) m in
+  let add := add_robot d m rows in
+  let good := worth (objective pb) d m ws lows (lower cl) room in
+  match lower_part pr with
+  | ForcedSize k t =>
+      [&& complete w, is_forced w k
+        & check_sizes w add good (average_worth (objective pb) d m ws lows rows (lower cl) room) k t start [::] 0]
+  | AttackTree t =>
+      let near := [seq neighbours (link_list w) i | i <- iota 0 (robots w)] in
+      check_attacks w near start add good t [::] [::] [::]
+  | NoLower => false
+  end.
+
+Definition check_upper_part (highs : seq dmat) : bool :=
+  let groups := [seq seeing_groups w a | a <- listed pr] in
+  let grads := [seq gradient (objective pb) d m ws prior_matrices highs (prior_high pr) pt | pt <- points pr] in
+  if all_some grads is Some gs then
+    let pts := [seq point_scores d info_matrices g | g <- gs] in
+    let cuts := cut_bounds (owners w) groups pts (cut_list pr) in
+    [&& all (attack_ok w) (listed pr), cuts_in_range groups (size gs) (cut_list pr), dle d0 (upper cl)
+      & check_upper w groups cuts (upper cl) (upper_part pr) (all_plans w) [::]]
+  else false.
+
+(** What the checker found out. *)
+Inductive verdict := Refused | UpperOnly | Proved.
+
+Definition has_lower : bool := if lower_part pr is NoLower then false else true.
+
+Definition check : verdict :=
+  if [&& network_ok w, shapes_ok, plan_ok, priors_ok, prior_range_ok & dle (lower cl) (upper cl)] then
+    match all_some [seq inverse_low d P | P <- prior_matrices], all_some [seq inverse_high d P | P <- prior_matrices],
+          all_some [seq all_some [seq defect d A | A <- row] | row <- info_matrices] with
+    | Some lows, Some highs, Some defects =>
+        if room_ok lows defects && check_upper_part highs then
+          if has_lower then (if check_lower_part lows defects then Proved else Refused) else UpperOnly
+        else Refused
+    | _, _, _ => Refused
+    end
+  else Refused.
+End Check.

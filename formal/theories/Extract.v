@@ -1,0 +1,9 @@
+(** Extraction of the checker to OCaml: [Z], [N] and [positive] become Zarith integers (Coq's own mapping), booleans,
+    options, pairs and lists OCaml's; [nat] stays unary. *)
+From Coq Require Import Extraction ExtrOcamlBasic ExtrOcamlZBigInt ZArith.
+From Ratt Require Import Dyadic Graph UpperTree LowerTree Checker.
+
+(** Only a hint is computed with it; every use is checked. *)
+Extract Constant Z.sqrt => "Big_int_Z.(fun x -> if sign_big_int x < 0 then zero_big_int else sqrt_big_int x)".
+Extraction Language OCaml.
+Extraction "checker.ml" check seeing_groups attack_ok.

@@ -1,0 +1,717 @@
+(** What the checker accepts is true. *)
+From Coq Require Import ZArith.
+From mathcomp Require Import all_ssreflect all_algebra.
+From mathcomp.algebra_tactics Require Import ring.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Dyadic DyadicMatrix Graph UpperTree LowerTree Forced Checker.
+Set Implicit Arguments.
+Unset Strict Implicit.
+Unset Printing Implicit Defensive.
+Import Order.Theory GRing.Theory Num.Theory.
+Local Open Scope ring_scope.
+
+Lemma all_someP (T : Type) (s : seq (option T)) r : all_some s = Some r -> s = map Some r.
+Proof.
+elim: s r => [|[x|] s IH] r //=; first by case=> <-.
+by case e: (all_some s) => [r'|] // [<-] /=; rewrite (IH _ e).
+Qed.
+
+Lemma all_some_nth (T U : Type) (f : T -> option U) (s : seq T) r x0 y0 i : all_some [seq f x | x <- s] = Some r ->
+  size r = size s /\ ((i < size s)%N -> f (nth x0 s i) = Some (nth y0 r i)).
+Proof.
+move/all_someP => e; have sz : size r = size s by rewrite -(size_map f) e size_map.
+split=> // il; have := congr1 (fun q => nth None q i) e.
+by rewrite (nth_map x0) // (nth_map y0) ?sz.
+Qed.
+
+Lemma rearrange (V : zmodType) (a b x y z : V) : b + x = (a - y) + ((b - a) + ((x + z) + (y - z))).
+Proof.
+by rewrite [x + z + _]addrACA subrr addr0 [b - a + _]addrACA addrCA [- a + y]addrC -(opprB a y) subrr addr0.
+Qed.
+
+Lemma tangent_shape (F : realFieldType) (h a t b x y : F) :
+  h - (a * (2%:R * t) - a * b * (x + y)) = h - 2%:R * (a * t) + a * b * x + a * b * y.
+Proof. by ring. Qed.
+
+Lemma rearrange2 (V : zmodType) (a b x y z t : V) : b + (x + y) = a - (z + t) + x + (b - a) + (y + t + z).
+Proof.
+rewrite -[y + t + z]addrA [t + z]addrC; move: (z + t) => q; set u := a - q.
+rewrite [u + x + _ + _]addrACA; have -> : b - a + q = b - u by rewrite /u opprB addrA addrAC.
+by rewrite -[u + x + y]addrA [RHS]addrC [RHS]addrA subrK.
+Qed.
+
+Section Pieces.
+Variables (F : realFieldType) (d : nat).
+Local Notation val := (val F).
+Local Notation mx := (mx F d).
+
+Lemma sub_symmetrical A B : symmetrical (mx A) -> symmetrical (mx B) -> symmetrical (mx (msub d A B)).
+Proof. by move=> a b; rewrite mx_sub /symmetrical linearB /= a b. Qed.
+Lemma add_symmetrical A B : symmetrical (mx A) -> symmetrical (mx B) -> symmetrical (mx (madd d A B)).
+Proof. by move=> a b; rewrite mx_add /symmetrical linearD /= a b. Qed.
+Lemma scale_symmetrical x A : symmetrical (mx A) -> symmetrical (mx (mscale d x A)).
+Proof. by move=> a; rewrite mx_scale /symmetrical linearZ /= a. Qed.
+Lemma scalar_symmetrical x : symmetrical (mx (mscalar d x)).
+Proof. by rewrite mx_scalar /symmetrical tr_scalar_mx. Qed.
+Lemma near_symmetrical p h : symmetrical (mx (near_inverse d p h)).
+Proof. by rewrite /symmetrical mx_mkm; apply/matrixP => i j; rewrite !mxE maxnC minnC. Qed.
+Lemma sandwich_symmetrical P Q : symmetrical (mx P) -> symmetrical (mx Q) -> symmetrical (mx (sandwich d P Q)).
+Proof. by move=> a b; rewrite /sandwich !mx_mul /symmetrical !trmx_mul a b mulmxA. Qed.
+
+Lemma inverse_boundP ok (shift : dmat -> dyadic -> dmat) P Q : inverse_bound d ok shift P = Some Q ->
+  (forall Q e, symmetrical (mx Q) -> symmetrical (mx (shift Q e))) -> ok Q /\ symmetrical (mx Q).
+Proof.
+rewrite /inverse_bound /some_or /checked => h s; move: h.
+by do ?[case: ifP => ?]; case=> // <-; split=> //; do ?apply: s; apply: near_symmetrical.
+Qed.
+
+(** [v' (P^-1 - Q) v] is [y' (P - P Q P) y] at [y = P^-1 v]. *)
+Lemma sandwich_form (P Q : 'M[F]_d) v : symmetrical P -> P \in unitmx ->
+  form (invmx P - Q) v v = form (P - P *m Q *m P) (invmx P *m v) (invmx P *m v).
+Proof.
+move=> s u; rewrite !formBm; congr (_ - _).
+  by rewrite [RHS]form_mul mulKVmx // dotC -form_mul.
+by rewrite [RHS]form_mul -!mulmxA mulKVmx // /dot trmx_mul (symmetrical_inv s) !mulmxA mulmxKV // -mulmxA.
+Qed.
+
+Lemma inverse_lowP P Q : symmetrical (mx P) -> pd (mx P) -> inverse_low d P = Some Q ->
+  symmetrical (mx Q) /\ psd (invmx (mx P) - mx Q).
+Proof.
+move=> s p /inverse_boundP [|ok sQ]; first by move=> A e sA; apply: sub_symmetrical; last exact: scalar_symmetrical.
+split=> // v; rewrite sandwich_form ?pd_unit //.
+have sym : symmetrical (mx (msub d P (sandwich d P Q))) by apply: sub_symmetrical => //; apply: sandwich_symmetrical.
+by have := is_psdP sym ok; rewrite mx_sub /sandwich !mx_mul; apply.
+Qed.
+
+Lemma formN (A : 'M[F]_d) v : form (- A) v v = - form A v v.
+Proof. by rewrite -scaleN1r formZm mulN1r. Qed.
+
+Lemma inverse_highP P Q : symmetrical (mx P) -> pd (mx P) -> inverse_high d P = Some Q ->
+  symmetrical (mx Q) /\ psd (mx Q - invmx (mx P)).
+Proof.
+move=> s p /inverse_boundP [|ok sQ]; first by move=> A e sA; apply: add_symmetrical; last exact: scalar_symmetrical.
+split=> // v; rewrite -opprB formN sandwich_form ?pd_unit // -formN opprB.
+have sym : symmetrical (mx (msub d (sandwich d P Q) P)) by apply: sub_symmetrical => //; apply: sandwich_symmetrical.
+by have := is_psdP sym ok; rewrite mx_sub /sandwich !mx_mul; apply.
+Qed.
+
+Lemma defectP A x : symmetrical (mx A) -> defect d A = Some x -> 0 <= val x /\ psd (mx A + (val x)%:M).
+Proof.
+move=> s; rewrite /defect; case: ifP => [h [<-]|_].
+  rewrite val0; split=> // v; rewrite formDm form_scalar mul0r addr0; exact: is_psdP.
+set l := [seq y <- _ | _]; case e: l => [//|y l'] [<-].
+have : y \in l by rewrite e mem_head.
+rewrite mem_filter => /andP[/andP[y0 h] _]; rewrite (val_le F) val0 in y0; split=> //.
+have := is_psdP (add_symmetrical s (scalar_symmetrical y)) h; by rewrite mx_add mx_scalar.
+Qed.
+End Pieces.
+
+Section Sound.
+Variables (F : realFieldType) (pb : problem) (cl : claim) (pr : proofs).
+Local Notation val := (val F).
+Local Notation d := (dimension pb).
+Local Notation m := (size (priors pb)).
+Local Notation w := (net pb).
+Local Notation ws := (weights pb).
+Local Notation target := 'I_(size (priors pb)).
+Local Notation robot := 'I_(top_robot (net pb)).+1.
+Local Notation element := 'I_(top_element (net pb)).+1.
+
+(** ** What the data say *)
+Definition prior_of (j : target) : 'M[F]_d := mx F d (unpack d (nth [::] (priors pb) j)).
+Definition info_of (e : element) (j : target) : 'M[F]_d :=
+  mx F d (unpack d (nth [::] (nth [::] (informations pb) e) j)).
+Definition weight_of (j : target) : F := val (nth d0 ws j).
+Definition plan_of : {ffun robot -> element} := [ffun i : robot => inord (nth 0%N (plan cl) i)].
+
+Variable lmax : 'M[F]_d -> F.
+Definition value (S : {set element}) : F :=
+  match objective pb with
+  | Trace => trace_value prior_of info_of weight_of S
+  | MaxEigenvalue => maxeig_value prior_of info_of weight_of lmax S
+  end.
+Hypothesis lmaxP : objective pb = MaxEigenvalue -> largest_eigenvalue lmax.
+
+Definition penalty (L : target -> 'M[F]_d) : F :=
+  match objective pb with Trace => trace_penalty weight_of L | MaxEigenvalue => maxeig_penalty weight_of lmax L end.
+Definition base : F :=
+  match objective pb with Trace => trace_base prior_of weight_of | MaxEigenvalue => maxeig_base prior_of weight_of lmax end.
+
+Lemma valueE S : value S = base - penalty (posterior prior_of info_of S).
+Proof. by rewrite /value /base /penalty; case: (objective pb). Qed.
+
+Hypotheses (net_good : network_ok w) (shapes : shapes_ok pb) (plan_good : plan_ok pb cl) (priors_good : priors_ok pb).
+Hypothesis range_good : prior_range_ok pb pr.
+
+Let dim_pos : (0 < d)%N. Proof. by case/and3P: shapes. Qed.
+Let targets_pos : (0 < m)%N. Proof. by case/and3P: shapes. Qed.
+Let j0 : target := Ordinal targets_pos.
+Let weights_size : size ws = m. Proof. by case/and4P: shapes => _ _ _ /andP[/eqP]. Qed.
+Let infos_size : size (informations pb) = size (owners w).
+Proof. by case/and4P: shapes => _ _ _ /and4P[_ _ /eqP]. Qed.
+Let rows_size e : (e < size (owners w))%N -> size (nth [::] (informations pb) e) = m.
+Proof.
+case/and4P: shapes => _ _ _ /and4P[_ _ /eqP <- /allP h] el.
+by have /andP[/eqP] := h _ (mem_nth [::] el).
+Qed.
+
+Lemma weight_gt0 j : 0 < weight_of j.
+Proof.
+case/and4P: shapes => _ _ _ /and3P[_ /allP h _]; have := h (nth d0 ws j).
+by rewrite (val_lt F) val0 mem_nth ?weights_size // => /(_ isT).
+Qed.
+Lemma weight_ge0 j : 0 <= weight_of j. Proof. exact/ltW/weight_gt0. Qed.
+
+Lemma owners_pos : (0 < size (owners w))%N.
+Proof. by case/and3P: net_good. Qed.
+Lemma element_lt (e : element) : (e < size (owners w))%N.
+Proof. by apply: leq_trans (ltn_ord e) _; rewrite /top_element prednK ?owners_pos. Qed.
+
+Lemma nth_prior (j : nat) : (j < m)%N -> nth [::] (prior_matrices pb) j = unpack d (nth [::] (priors pb) j).
+Proof. by move=> jm; rewrite (nth_map [::]). Qed.
+Lemma nth_info (e j : nat) : (e < size (owners w))%N -> (j < m)%N ->
+  nth [::] (nth [::] (info_matrices pb) e) j = unpack d (nth [::] (nth [::] (informations pb) e) j).
+Proof. by move=> el jm; rewrite (nth_map [::]) ?infos_size // (nth_map [::]) ?rows_size. Qed.
+
+Lemma prior_good j : symmetrical (prior_of j) /\ pd (prior_of j).
+Proof.
+have s := unpack_symmetrical F d (nth [::] (priors pb) j); split=> //.
+apply/is_pdP => //; rewrite -nth_prior //; have /allP := priors_good; apply.
+by apply: mem_nth; rewrite size_map.
+Qed.
+Lemma info_symmetrical e j : symmetrical (info_of e j).
+Proof. exact: unpack_symmetrical. Qed.
+
+Lemma value0 : value set0 = 0.
+Proof.
+by rewrite /value; case: (objective pb); [apply: trace_value0 | apply: maxeig_value0].
+Qed.
+
+Lemma penalty_antitone A B : good A -> (forall j, symmetrical (B j)) -> (forall j, psd (B j - A j)) ->
+  penalty B <= penalty A.
+Proof.
+rewrite /penalty; case e: (objective pb) => gA sB AB; first exact: (trace_penalty_antitone weight_ge0).
+exact: (maxeig_penalty_antitone weight_ge0 (lmaxP e)).
+Qed.
+
+Lemma penalty_convex (I : eqType) (s : seq I) (A : I -> target -> 'M[F]_d) : s != [::] ->
+  (forall i, i \in s -> good (A i)) ->
+  penalty (fun j => (size s)%:R^-1 *: \sum_(i <- s) A i j) <= (size s)%:R^-1 * \sum_(i <- s) penalty (A i).
+Proof.
+rewrite /penalty; case e: (objective pb) => s0 gA; first exact: (trace_penalty_convex weight_ge0).
+exact: (maxeig_penalty_convex weight_ge0 (lmaxP e)).
+Qed.
+
+Lemma sum_contributed p (G : {set robot}) (f : element -> 'M[F]_d) : is_plan (team_of w) p ->
+  \sum_(e in contributed p G) f e = \sum_(i in G) f (p i).
+Proof. by move=> okp; rewrite big_imset //= => i j _ _; apply: plan_inj okp i j. Qed.
+
+Lemma posterior_sym S j : symmetrical (posterior prior_of info_of S j).
+Proof.
+rewrite /symmetrical /posterior linearD /= (symmetrical_inv (proj1 (prior_good j))).
+by congr (_ + _); apply: symmetrical_sum => e _; apply: info_symmetrical.
+Qed.
+
+Lemma scalar_sum (G : {set robot}) (f : robot -> F) :
+  \sum_(i in G) (f i)%:M = (\sum_(i in G) f i)%:M :> 'M[F]_d.
+Proof. by apply/matrixP => i k; rewrite summxE mxE -sumrMnl; apply: eq_bigr => e _; rewrite mxE. Qed.
+Lemma scalar_sub (x y : F) : (x - y)%:M = x%:M - y%:M :> 'M[F]_d.
+Proof. by apply/matrixP => i k; rewrite !mxE mulrnBl. Qed.
+
+(** ** Tables *)
+Variables (lows highs : seq dmat) (defects : seq (seq dyadic)).
+Hypothesis lowsE : all_some [seq inverse_low d P | P <- prior_matrices pb] = Some lows.
+Hypothesis highsE : all_some [seq inverse_high d P | P <- prior_matrices pb] = Some highs.
+Hypothesis defectsE : all_some [seq all_some [seq defect d A | A <- row] | row <- info_matrices pb] = Some defects.
+Hypothesis room : room_ok pb lows defects.
+
+Lemma lowP (j : target) : symmetrical (mx F d (nth [::] lows j)) /\ psd (invmx (prior_of j) - mx F d (nth [::] lows j)).
+Proof.
+have [_ h] := all_some_nth [::] [::] j lowsE; rewrite size_map in h; have := h (ltn_ord j); rewrite nth_prior //.
+by have [s p] := prior_good j; apply: inverse_lowP.
+Qed.
+Lemma highP (j : target) : symmetrical (mx F d (nth [::] highs j)) /\ psd (mx F d (nth [::] highs j) - invmx (prior_of j)).
+Proof.
+have [_ h] := all_some_nth [::] [::] j highsE; rewrite size_map in h; have := h (ltn_ord j); rewrite nth_prior //.
+by have [s p] := prior_good j; apply: inverse_highP.
+Qed.
+
+Definition delta (e j : nat) : F := val (nth d0 (nth [::] defects e) j).
+Lemma deltaP (e : element) (j : target) : 0 <= delta e j /\ psd (info_of e j + (delta e j)%:M).
+Proof.
+have el := element_lt e; have [_ h] := all_some_nth [::] [::] e defectsE.
+rewrite size_map infos_size in h; have {h} h := h el.
+have [_ h2] := all_some_nth [::] d0 j h; rewrite (nth_map [::]) ?infos_size // size_map rows_size // in h2.
+have := h2 (ltn_ord j); rewrite -(nth_map [::] [::] (fun row => [seq unpack d x | x <- row])) ?infos_size //.
+rewrite -[map _ (informations pb)]/(info_matrices pb) nth_info //.
+by apply: defectP; apply: unpack_symmetrical.
+Qed.
+
+Lemma worst_ge p (G : {set robot}) (j : target) : is_plan (team_of w) p ->
+  \sum_(i in G) delta (p i) j <= (robots w).+1%:R * val (worst_defect pb defects j).
+Proof.
+move=> okp; have le : \sum_(i : robot) delta (p i) j <= val (worst_defect pb defects j).
+  rewrite /worst_defect val_sum big_map.
+  rewrite (_ : iota 0 (robots w) = index_iota 0 (robots w)); last by rewrite /index_iota subn0.
+  rewrite (big_mkord xpredT (fun i => val (largest_of (fun e => nth d0 (nth [::] defects e) j) (nth [::] (all_plans w) i)))).
+  apply: ler_sum => i _; apply: (largest_ofP F (fun e => nth d0 (nth [::] defects e) j)).
+  exact: in_all_plans.
+have ge0 : 0 <= \sum_(i : robot) delta (p i) j by apply: sumr_ge0 => i _; case: (deltaP (p i) j).
+apply: le_trans (_ : \sum_(i : robot) delta (p i) j <= _).
+  rewrite big_mkcond; apply: ler_sum => i _; case: ifP => // _; by case: (deltaP (p i) j).
+have w0 := le_trans ge0 le; apply: le_trans le _; rewrite -[X in X <= _]mul1r.
+by apply: ler_wpmul2r; rewrite // ler1n.
+Qed.
+
+Lemma posterior_pd p (G : {set robot}) : is_plan (team_of w) p ->
+  good (posterior prior_of info_of (contributed p G)).
+Proof.
+move=> okp j; split; first exact: posterior_sym.
+set D := (robots w).+1%:R * val (worst_defect pb defects j).
+have pdl : pd (mx F d (nth [::] lows j) - D%:M).
+  have /allP/(_ (j : nat)) := room; rewrite mem_iota add0n ltn_ord => /(_ isT).
+  have [sl _] := lowP j; have ss := sub_symmetrical sl (scalar_symmetrical F d (dmul (dnat (robots w).+1) (worst_defect pb defects j))).
+  by move/(is_pdP ss); rewrite mx_sub mx_scalar val_mul val_nat.
+have -> : posterior prior_of info_of (contributed p G) j = (mx F d (nth [::] lows j) - D%:M) +
+    ((invmx (prior_of j) - mx F d (nth [::] lows j)) + (\sum_(i in G) (info_of (p i) j + (delta (p i) j)%:M) +
+    (D - \sum_(i in G) delta (p i) j)%:M)).
+  rewrite /posterior sum_contributed // big_split /= scalar_sum scalar_sub.
+  exact: rearrange.
+apply: pd_add pdl _; apply: psdD; first by case: (lowP j).
+apply: psdD; first by apply: psd_sum => i _; case: (deltaP (p i) j).
+by apply: psd_scalar; rewrite subr_ge0; apply: worst_ge.
+Qed.
+
+(** ** Linear bounds on groups *)
+Lemma mx_nil : mx F d [::] = 0.
+Proof. by apply/matrixP => i j; rewrite !mxE /get !nth_nil /= val0. Qed.
+
+Lemma dotsE Ws Is : size Ws = m -> size Is = m ->
+  val (dots d Ws Is) = \sum_(j : target) \tr ((mx F d (nth [::] Ws j))^T *m mx F d (nth [::] Is j)).
+Proof.
+move=> sW sI; rewrite /dots val_sum big_map big_filter.
+rewrite (_ : \sum_(x <- zip Ws Is | ~~ nilp x.1) _ = \sum_(x <- zip Ws Is) val (mdot d x.1 x.2)); last first.
+  rewrite big_mkcond; apply: eq_bigr => -[W A] _ /=; case: ifP => // /negbFE/nilP ->.
+  by rewrite mx_dot mx_nil trmx0 mul0mx mxtrace0.
+rewrite (big_nth ([::], [::])) size_zip sW sI minnn big_mkord; apply: eq_bigr => j _.
+by rewrite nth_zip ?sW // mx_dot.
+Qed.
+
+Lemma info_row_size e : (e < size (owners w))%N -> size (nth [::] (info_matrices pb) e) = m.
+Proof. by move=> el; rewrite (nth_map [::]) ?infos_size // size_map rows_size. Qed.
+
+Lemma dots_info Ws (e : element) : size Ws = m ->
+  val (dots d Ws (nth [::] (info_matrices pb) e)) = \sum_(j : target) \tr ((mx F d (nth [::] Ws j))^T *m info_of e j).
+Proof.
+move=> sW; rewrite dotsE ?info_row_size ?element_lt //; apply: eq_bigr => j _.
+by rewrite nth_info ?element_lt.
+Qed.
+
+Lemma highs_size : size highs = m.
+Proof. by have [-> _] := all_some_nth [::] [::] 0 highsE; rewrite size_map. Qed.
+
+Lemma base_high : objective pb = MaxEigenvalue -> base <= val (prior_high pr).
+Proof.
+move=> e; rewrite /base e; move: range_good; rewrite /prior_range_ok e => /andP[/allP h _].
+apply: largest_le => // j; have := h j; rewrite mem_iota add0n ltn_ord nth_prior // => /(_ isT).
+have [s _] := prior_good j; have w0 := weight_gt0 j.
+have sm : symmetrical (mx F d (msub d (mscalar d (prior_high pr)) (mscale d (nth d0 ws j) (unpack d (nth [::] (priors pb) j))))).
+  by apply: sub_symmetrical; [apply: scalar_symmetrical | apply: scale_symmetrical].
+move/(is_psdP sm); rewrite mx_sub mx_scalar mx_scale -/(weight_of j) -/(prior_of j) => p.
+rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e s) => v; have := p v.
+rewrite !formBm !form_scalar formZm !subr_ge0 => le.
+by rewrite mulrAC ler_pdivl_mulr // [form _ _ _ * _]mulrC.
+Qed.
+
+Lemma gradientP pt g : gradient (objective pb) d m ws (prior_matrices pb) highs (prior_high pr) pt = Some g ->
+  size g.1 = m /\ forall p (G : {set robot}), is_plan (team_of w) p ->
+  value (contributed p G) <= val g.2 + \sum_(i in G) val (dots d g.1 (nth [::] (info_matrices pb) (p i))).
+Proof.
+rewrite /gradient; case e: (objective pb); case: pt => [ys|j t v] //; case: ifP => // cond [<-] /=.
+  rewrite size_mkseq; split=> // p G okp; set Ws := mkseq _ m.
+  have sW : size Ws = m by rewrite size_mkseq.
+  pose Y (j : target) := mx F d (unpack d (nth [::] ys j)).
+  have Ys j : symmetrical (Y j) := unpack_symmetrical F d _.
+  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: (Y j *m Y j).
+    rewrite nth_mkseq // mx_scale mx_mul (nth_map [::]) ?(eqP cond) // -/(Y j).
+    by rewrite linearZ /= trmx_mul Ys.
+  rewrite val_add dotsE ?highs_size // val_sum_iota.
+  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m Y j *m info_of (p i) j))); last first.
+    move=> i _; rewrite dots_info //; apply: eq_bigr => j _.
+    by rewrite We -scalemxAl linearZ.
+  rewrite [X in _ <= _ + X]exchange_big /= -!big_split /value e /trace_value /trace_base /trace_penalty -sumrB; apply: ler_sum => j _ /=.
+  have [sL pL] := posterior_pd G okp j; have [sP pP] := prior_good j.
+  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr val_mul val_sub val_mul !mx_trace val_nat.
+  rewrite nth_prior // (nth_map [::]) ?(eqP cond) // -/(prior_of j) -/(Y j) -!mulrDr.
+  apply: ler_wpmul2l; first exact: weight_ge0.
+  have := trace_fenchel (Y j) sL pL; rewrite Ys => fen.
+  have sand A : \tr (Y j *m A *m Y j) = \tr (Y j *m Y j *m A) by rewrite mxtrace_mulC mulmxA.
+  have up : \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j) <=
+      \tr (Y j *m Y j *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m Y j *m info_of (p i) j).
+    rewrite sand /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /=.
+    rewrite -mulmxBr -sand; apply: psd_trace => x; have [_ ph] := highP j.
+    have := ph (Y j *m x); rewrite /form trmx_mul Ys !mulmxA //.
+  rewrite -[X in _ <= X]addrA -addrA ler_add2l; apply: le_trans (_ : - (2%:R * \tr (Y j) - \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j)) <= _); first by rewrite ler_opp2.
+  by rewrite opprB addrC ler_add2l.
+move/and3P: cond => [jm s0 bt]; set s := dsum _ in s0 bt; set b := quotient_up _ _ _ in bt *.
+rewrite size_mkseq; split=> // p G okp; set W := mkm _ _; set Ws := mkseq _ m.
+have sW : size Ws = m by rewrite size_mkseq.
+pose jt : target := Ordinal jm; pose V : 'cV[F]_d := \col_i val (nth d0 v i).
+have VV : dot V V = val s.
+  by rewrite dot_sum val_sum_iota; apply: eq_bigr => i _; rewrite mxE val_mul expr2.
+rewrite (val_lt F) val0 -VV in s0; rewrite (val_le F) !val_mul -VV in bt.
+have V0 : V != 0 by apply: contraTneq s0 => ->; rewrite /dot mulmx0 mxE ltxx.
+have mW : mx F d W = (weight_of jt * val b) *: (V *m V^T).
+  by rewrite mx_mkm; apply/matrixP => i k; rewrite !mxE !val_mul big_ord1 !mxE.
+have one (A : target -> 'M[F]_d) : \sum_(k : target) \tr ((mx F d (nth [::] Ws k))^T *m A k) =
+    weight_of jt * val b * form (A jt) V V.
+  rewrite (bigD1 jt) //= big1 ?addr0 => [|k ne].
+    rewrite nth_mkseq // eqxx mW linearZ /= trmx_mul trmxK -scalemxAl linearZ /=; congr (_ * _).
+    by rewrite mxtrace_mulC mulmxA mxtrace_mulC mulmxA /form /mxtrace big_ord1.
+  by rewrite nth_mkseq // ifN ?mx_nil ?trmx0 ?mul0mx ?mxtrace0 //.
+rewrite val_add val_sub !val_mul val_nat dotsE ?highs_size // one.
+rewrite (eq_bigr (fun i => weight_of jt * val b * form (info_of (p i) jt) V V)); last first.
+  by move=> i _; rewrite dots_info // one.
+have [sL pL] := posterior_pd G okp jt; set L := posterior _ _ _ in sL pL.
+have w0 := weight_gt0 jt; have b0 : 0 <= val b.
+  by rewrite -(pmulr_lge0 _ s0); apply: le_trans bt; rewrite -expr2 sqr_ge0.
+have fen := largest_eigenvalue_fenchel (lmaxP e) (val t) sL pL V0.
+have Lb : form (L jt) V V <= form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V.
+  rewrite /L /posterior sum_contributed // formDm form_sum ler_add2r -subr_ge0 -formBm.
+  by have [_ h] := highP jt; apply: h.
+have le1 : 2%:R * val t - val b * form (L jt) V V <= lmax (invmx (L jt)).
+  apply: le_trans fen; rewrite ler_add2l ler_opp2 mulrA ler_pdivr_mulr // [X in _ <= X]mulrAC.
+  by apply: ler_wpmul2r; [apply: (pd_psd pL) | rewrite expr2].
+rewrite valueE -/L /penalty e -!mulr_sumr.
+have le2 : weight_of jt * lmax (invmx (L jt)) <= maxeig_penalty weight_of lmax L.
+  exact: (le_largest (fun k => weight_of k * lmax (invmx (L k)))).
+have le3 : weight_of jt * (2%:R * val t) - weight_of jt * val b *
+    (form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V) <= maxeig_penalty weight_of lmax L.
+  apply: le_trans le2; rewrite -mulrA -mulrBr; apply: ler_wpmul2l; first exact: ltW.
+  by apply: le_trans le1; rewrite ler_add2l ler_opp2; apply: ler_wpmul2l.
+have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
+by rewrite (tangent_shape (val (prior_high pr)) (weight_of jt) (val t) (val b)) lexx.
+Qed.
+
+Theorem upper_sound p : check_upper_part pb cl pr highs -> is_plan (team_of w) p ->
+  worst_case (team_of w) value p <= val (upper cl).
+Proof.
+rewrite /check_upper_part; set groups := [seq seeing_groups w a | a <- listed pr].
+case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs].
+set cuts := cut_bounds _ _ _ _ => /and4P[lok /allP range u0 tree] okp.
+have sizes k : (k < size gs)%N -> size (nth ([::], d0) pts k).1 = size (owners w).
+  by move=> kl; rewrite (nth_map ([::], d0)) //= !size_map infos_size.
+apply: (upper_treeP net_good value0 lok erefl _ okp _ tree u0).
+  apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
+  by rewrite size_map size_zip sizes // minnn.
+move=> k; rewrite size_map => kl; rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
+have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
+set grp := nth [::] (nth [::] groups a) g.
+have [szg h] := all_some_nth (TracePoint [::]) ([::], d0) q eg.
+rewrite szg in ql; have [s1 bound] := gradientP (h ql).
+have := bound p (set_of w grp) okp; rewrite -szg in ql.
+rewrite (nth_map ([::], d0)) //=; congr (_ <= _ + _).
+rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last first.
+  by rewrite size_zip !size_map infos_size minnn element_lt.
+rewrite nth_zip ?size_map ?infos_size //= (nth_map [::]) ?size_map ?infos_size ?element_lt //.
+have -> : nth 0%N (owners w) (p i) = i.
+  have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
+  by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
+by case: ifP => // _; rewrite val0.
+Qed.
+
+(** ** The plan's worst case *)
+Lemma nth_plan (i : robot) : (plan_of i : nat) = nth 0%N (plan cl) i.
+Proof.
+case/and3P: plan_good => /eqP sz /allP lt _; rewrite ffunE inordK //.
+have := lt (nth 0%N (plan cl) i); rewrite mem_nth ?sz ?ltn_ord // => /(_ isT) h.
+by apply: leq_trans h _; rewrite /top_element prednK ?owners_pos.
+Qed.
+
+Lemma plan_ofP : is_plan (team_of w) plan_of.
+Proof.
+apply/forallP => i; rewrite /= nth_plan; apply/eqP/val_inj; rewrite /= /robot_of.
+case/and3P: plan_good => _ _ /allP/(_ (i : nat)); rewrite mem_iota add0n ltn_ord => /(_ isT)/eqP ->.
+by rewrite inordK.
+Qed.
+
+Let rows := [seq nth [::] (info_matrices pb) e | e <- plan cl].
+Definition plan_loss (j : nat) : dyadic := dsum [seq nth d0 (nth [::] defects e) j | e <- plan cl].
+Let start := mkseq (fun j => msub d (nth [::] lows j) (mscalar d (plan_loss j))) m.
+Let add := add_robot d m rows.
+Let plan_room := dsub (base_low pb pr) (lower cl).
+Local Notation below := (fun i => (i < robots w)%N).
+Local Notation info_at i j := (info_of (plan_of (robot_of w i)) j).
+
+Definition fam (s : seq dmat) (j : target) : 'M[F]_d := mx F d (nth [::] s j).
+(** What a case knows of target [j] when the robots of the list [T] see together. *)
+Definition known (T : seq nat) (j : target) : 'M[F]_d :=
+  mx F d (nth [::] lows j) - (val (plan_loss j))%:M + \sum_(i <- T) info_at i j.
+
+Lemma plan_size : size (plan cl) = robots w.
+Proof. by case/and3P: plan_good => /eqP. Qed.
+
+Lemma rows_at i (j : target) : (i < robots w)%N -> mx F d (nth [::] (nth [::] rows i) j) = info_at i j.
+Proof.
+move=> il; have e := nth_plan (robot_of w i); rewrite robot_ofK // in e.
+by rewrite (nth_map 0%N) ?plan_size // -e nth_info ?element_lt.
+Qed.
+
+Lemma famE T j : all below T -> fam (foldl add start T) j = known T j.
+Proof.
+elim/last_ind: T => [|T i IH] b.
+  by rewrite /fam /known big_nil addr0 nth_mkseq // mx_sub mx_scalar.
+move: b; rewrite all_rcons => /andP[il b].
+rewrite -cats1 foldl_cat /= /fam nth_mkseq // mx_add rows_at // -/(fam _ j) IH //.
+by rewrite /known big_cat big_seq1 /= addrA.
+Qed.
+
+Lemma known_symmetrical T j : symmetrical (known T j).
+Proof.
+rewrite /symmetrical /known linearD linearB /= tr_scalar_mx (proj1 (lowP j)); congr (_ + _).
+by apply: symmetrical_sum => i _; apply: info_symmetrical.
+Qed.
+
+Lemma plan_lossE j : val (plan_loss j) = \sum_(i : robot) delta (plan_of i) j.
+Proof.
+rewrite /plan_loss val_sum big_map (big_nth 0%N) plan_size big_mkord; apply: eq_bigr => i _.
+by rewrite /delta nth_plan.
+Qed.
+
+(** The group's information, compared with what the case knows. *)
+Lemma known_below T (G : {set robot}) j : uniq T -> all below T -> (forall i, i \in T -> robot_of w i \in G) ->
+  exists2 R, psd R & posterior prior_of info_of (contributed plan_of G) j =
+    known T j + (invmx (prior_of j) - mx F d (nth [::] lows j)) + R.
+Proof.
+move=> uT bT TG; pose S := set_of w T.
+have SG : S \subset G by apply/subsetP => i; rewrite inE => /TG; rewrite robot_of_val.
+have sumT : \sum_(i <- T) info_at i j = \sum_(i in S) info_of (plan_of i) j.
+  rewrite -(big_map (robot_of w) xpredT (fun i => info_of (plan_of i) j)) -[RHS]big_enum /=.
+  apply: perm_big; apply: uniq_perm; rewrite ?enum_uniq //.
+    rewrite map_inj_in_uniq // => x y xT yT /(congr1 (@nat_of_ord _)); rewrite !robot_ofK //; exact: (allP bT).
+  move=> i; rewrite mem_enum inE; apply/mapP/idP => [[x xT ->]|iT]; last by exists (i : nat); rewrite ?robot_of_val.
+  by rewrite robot_ofK //; apply: (allP bT).
+exists (\sum_(i in G :\: S) (info_of (plan_of i) j + (delta (plan_of i) j)%:M) +
+        (\sum_(i | i \notin G :\: S) delta (plan_of i) j)%:M).
+  apply: psdD; first by apply: psd_sum => i _; case: (deltaP (plan_of i) j).
+  by apply: psd_scalar; apply: sumr_ge0 => i _; case: (deltaP (plan_of i) j).
+rewrite /posterior sum_contributed ?plan_ofP // (big_setID S) /= (setIidPr SG) /known sumT plan_lossE.
+have -> : (\sum_(i : robot) delta (plan_of i) j)%:M = (\sum_(i | i \notin G :\: S) delta (plan_of i) j)%:M +
+    (\sum_(i in G :\: S) delta (plan_of i) j)%:M :> 'M[F]_d.
+  rewrite (bigID (fun i => i \in G :\: S)) /= addrC.
+  by apply/matrixP => i k; rewrite !mxE mulrnDl.
+rewrite big_split /= scalar_sum; exact: rearrange2.
+Qed.
+
+Lemma good_above A L : good A -> (forall j, symmetrical (L j)) -> (forall j, exists2 R, psd R & L j = A j + R) ->
+  penalty L <= penalty A.
+Proof.
+by move=> gA sL h; apply: penalty_antitone => // j; have [R pR ->] := h j; rewrite addrC addKr.
+Qed.
+
+Lemma base_lowP : val (base_low pb pr) <= base.
+Proof.
+rewrite /base_low /base; case e: (objective pb).
+  rewrite /trace_total val_sum_iota /trace_base; apply: ler_sum => j _.
+  by rewrite val_mul mx_trace nth_prior.
+move: range_good; rewrite /prior_range_ok e => /andP[_ /hasP[j]]; rewrite mem_iota add0n => /andP[_ jm] npd.
+pose k : target := Ordinal jm; apply: le_trans (le_largest (fun j => weight_of j * lmax (prior_of j)) k).
+rewrite leNgt; apply: contra npd => lt.
+have [s p] := prior_good k; rewrite nth_prior //.
+have sm : symmetrical (mx F d (msub d (mscalar d (prior_low pr)) (mscale d (nth d0 ws j) (unpack d (nth [::] (priors pb) j))))).
+  by apply: sub_symmetrical; [apply: scalar_symmetrical | apply: scale_symmetrical].
+apply/(is_pdP sm); rewrite mx_sub mx_scalar mx_scale => v v0.
+have /(lmaxP e s)/(_ v) := lexx (lmax (prior_of k)); rewrite !formBm !form_scalar formZm !subr_ge0 => le.
+rewrite subr_gt0; apply: (@le_lt_trans _ _ (weight_of k * lmax (prior_of k) * dot v v)).
+  rewrite -mulrA; exact: (ler_wpmul2l (weight_ge0 k) le).
+by rewrite ltr_pmul2r ?dot_gt0.
+Qed.
+
+Lemma enough_value (S : {set element}) : penalty (posterior prior_of info_of S) <= val plan_room ->
+  val (lower cl) <= value S.
+Proof.
+rewrite /plan_room val_sub ler_subr_addr addrC -ler_subr_addr => h; rewrite valueE.
+by apply: le_trans h _; rewrite ler_add2r base_lowP.
+Qed.
+
+Section Lower.
+Let kind := objective pb.
+
+Lemma all_some_iota (U : Type) (f : nat -> option U) y0 r (j : target) :
+  all_some [seq f i | i <- iota 0 m] = Some r -> f j = Some (nth y0 r j).
+Proof.
+move=> h; have [_ h2] := all_some_nth 0%N y0 j h; rewrite size_iota in h2.
+by have := h2 (ltn_ord j); rewrite nth_iota // add0n.
+Qed.
+
+Lemma trace_upP p s y : trace_up d m ws p s = Some y -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ trace_penalty weight_of (fam s) <= val y.
+Proof.
+rewrite /trace_up; case e: (all_some _) => [ys|//] [<-] sym.
+have h j := trace_inverse_upP (sym j) (all_some_iota d0 j e).
+split=> [j|]; first by split=> //; case: (h j).
+rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l; first exact: weight_ge0.
+by case: (h j).
+Qed.
+
+Lemma eigen_enoughP x s : eigen_enough d m ws x s -> (forall j, symmetrical (fam s j)) ->
+  kind = MaxEigenvalue -> good (fam s) /\ maxeig_penalty weight_of lmax (fam s) <= val x.
+Proof.
+rewrite /eigen_enough (val_lt F) val0 => /andP[x0 /allP h] sym e.
+have each (j : target) : pd (fam s j) /\ psd (val x *: fam s j - (weight_of j)%:M).
+  have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT)/andP[h1 h2]; split; first by apply/(is_pdP (sym j)).
+  have sm : symmetrical (mx F d (msub d (mscale d x (nth [::] s j)) (mscalar d (nth d0 ws j)))).
+    by apply: sub_symmetrical; [apply: scale_symmetrical; apply: sym | apply: scalar_symmetrical].
+  by have := is_psdP sm h2; rewrite mx_sub mx_scale mx_scalar.
+split=> [j|]; first by split=> //; case: (each j).
+apply: largest_le => // j; have [pA pB] := each j; have w0 := weight_gt0 j; have u0 : 0 < weight_of j / val x by rewrite divr_gt0.
+rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e (symmetrical_inv (sym j))).
+have pu : pd ((weight_of j / val x)%:M : 'M[F]_d).
+  by move=> v v0; rewrite form_scalar mulr_gt0 ?dot_gt0.
+have su : symmetrical ((weight_of j / val x)%:M : 'M[F]_d) by rewrite /symmetrical tr_scalar_mx.
+have diff : psd (fam s j - (weight_of j / val x)%:M).
+  move=> v; rewrite -(pmulr_rge0 _ x0); have := pB v; rewrite !formBm formZm !form_scalar mulrBr mulrA.
+  by rewrite mulrCA divff ?gt_eqF // mulr1.
+have := inverse_antitone su (sym j) pu diff; rewrite invmx_scalar invf_div //.
+Qed.
+
+Lemma withinP x s : penalty_within kind d m ws x s -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ penalty (fam s) <= val x.
+Proof.
+rewrite /penalty_within /penalty -/kind; case e: kind => h sym; last exact: eigen_enoughP.
+case/orP: h; rewrite /is_at_most; case eu: (trace_up _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
+  by have [g h] := trace_upP eu sym; split=> //; apply: le_trans h le.
+Qed.
+
+Lemma penalty_upP x s y : penalty_up kind d m ws x s = Some y -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ penalty (fam s) <= val y.
+Proof.
+rewrite /penalty_up /penalty -/kind; case e: kind => h sym; first exact: trace_upP h sym.
+move: h; rewrite /eigen_up; case: ifP => // h [<-]; exact: eigen_enoughP.
+Qed.
+
+Lemma fam_symmetrical T j : all below T -> symmetrical (fam (foldl add start T) j).
+Proof. by move=> b; rewrite famE //; apply: known_symmetrical. Qed.
+
+(** At least the prior's information: worth at least 0. *)
+Lemma prior_worth T (G : {set robot}) : uniq T -> all below T -> (forall i, i \in T -> robot_of w i \in G) ->
+  (forall j, psd (known T j - mx F d (nth [::] lows j))) -> dle (lower cl) d0 ->
+  val (lower cl) <= value (contributed plan_of G).
+Proof.
+move=> uT bT TG h; rewrite (val_le F) val0 => le; apply: le_trans le _.
+have base0 : base = penalty (posterior prior_of info_of (contributed plan_of set0)).
+  have := value0; rewrite valueE => /eqP; rewrite subr_eq0 => /eqP ->; by rewrite /contributed imset0.
+rewrite valueE base0 subr_ge0; apply: good_above; first exact: (posterior_pd _ plan_ofP).
+  by move=> j; apply: posterior_sym.
+move=> j; have [R pR ->] := known_below j uT bT TG; exists ((known T j - mx F d (nth [::] lows j)) + R).
+  by apply: psdD.
+rewrite /posterior /contributed imset0 big_set0 addr0.
+by rewrite [known T j + _]addrCA !addrA.
+Qed.
+
+Lemma worth_sound T : uniq T -> all below T ->
+  worth kind d m ws lows (lower cl) plan_room (foldl add start T) ->
+  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Proof.
+move=> uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
+  apply: (prior_worth uT bT TG) le => j; have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT).
+  have sm := sub_symmetrical (fam_symmetrical j bT) (proj1 (lowP j)).
+  by move/(is_psdP sm); rewrite mx_sub -/(fam _ j) famE.
+have [g le] := withinP h (fun j => fam_symmetrical j bT).
+apply: enough_value; apply: le_trans le; apply: good_above => // j; first exact: posterior_sym.
+have [R pR ->] := known_below j uT bT TG; exists ((invmx (prior_of j) - mx F d (nth [::] lows j)) + R).
+  by apply: psdD => //; case: (lowP j).
+by rewrite famE // [RHS]addrA.
+Qed.
+
+(** The average of the cases, each with one robot's information [r] times. *)
+Lemma known_average (T T' : seq nat) r j : size T' = r -> (0 < r)%N ->
+  known (T ++ T') j = (size T')%:R^-1 *: \sum_(i <- T') (known T j + r%:R *: info_at i j).
+Proof.
+move=> sT r0; have rn : (r%:R : F) != 0 by rewrite pnatr_eq0 -lt0n.
+rewrite big_split /= sT scalerDr -scaler_sumr scalerA mulVf // scale1r.
+rewrite big_const_seq count_predT iter_addr_0 sT -scaler_nat scalerA mulVf // scale1r.
+by rewrite /known big_cat addrA.
+Qed.
+
+Lemma case_fam T i j r : all below T -> (i < robots w)%N ->
+  fam (add_times d m rows r (foldl add start T) i) j = known T j + r%:R *: info_at i j.
+Proof.
+move=> b il; rewrite /fam nth_mkseq // mx_add mx_scale val_nat rows_at // -/(fam _ j) famE //.
+Qed.
+
+Lemma average_sound T rest r : uniq T -> all below T -> (0 < r)%N ->
+  average_worth kind d m ws lows rows (lower cl) plan_room (foldl add start T) rest r ->
+  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
+  (forall i, i \in T ++ T' -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Proof.
+move=> uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
+have bTT : all below (T ++ T') by rewrite all_cat bT.
+have uT' : uniq T' by move: uTT; rewrite cat_uniq => /and3P[].
+pose st := foldl add start T; pose A i := fam (add_times d m rows r st i).
+have AE i j : i \in T' -> A i j = known T j + r%:R *: info_at i j.
+  by move=> iT; apply: case_fam => //; apply: (allP bT').
+have Asym i j : i \in T' -> symmetrical (A i j).
+  move=> iT; rewrite AE // /symmetrical linearD linearZ /= known_symmetrical; congr (_ + _ *: _).
+  exact: info_symmetrical.
+have T'0 : T' != [::] by rewrite -size_eq0 sz -lt0n.
+have avg j : known (T ++ T') j = (size T')%:R^-1 *: \sum_(i <- T') A i j.
+  rewrite (known_average T j sz r0); congr (_ *: _); rewrite big_seq [RHS]big_seq.
+  by apply: eq_bigr => i iT; rewrite AE.
+case/orP: h => [/allP h|].
+  have each i : i \in T' -> as_good_as_prior d m lows (lower cl) (add_times d m rows r st i).
+    by move=> /sub iR; apply: h; apply: map_f.
+  have le : dle (lower cl) d0.
+    by case: (T') T'0 each => [//|i T1] _ each; case/andP: (each i (mem_head _ _)).
+  apply: (prior_worth uTT bTT TG) le => j.
+  have -> : known (T ++ T') j - mx F d (nth [::] lows j) =
+      (size T')%:R^-1 *: \sum_(i <- T') (A i j - mx F d (nth [::] lows j)).
+    rewrite avg sumrB scalerBr; congr (_ - _); rewrite big_const_seq count_predT iter_addr_0 -scaler_nat scalerA.
+    by rewrite mulVf ?scale1r // pnatr_eq0 size_eq0.
+  apply: psdZ; first by rewrite invr_ge0 ler0n.
+  rewrite big_seq; apply: psd_sum => i iT; have /andP[_ /allP hj] := each i iT.
+  have := hj j; rewrite mem_iota add0n ltn_ord => /(_ isT).
+  have sm := sub_symmetrical (Asym i j iT) (proj1 (lowP j)).
+  by move/(is_psdP sm); rewrite mx_sub -/(fam _ j).
+case e: (all_some _) => [ys|//]; cbv zeta; set tau := nth d0 _ r.-1.
+rewrite (val_le F) val_add !val_mul val_nat val_sum big_map => le.
+pose y i := val (nth d0 ys (index i rest)).
+have szy : size ys = size rest by have [-> _] := all_some_nth [::] d0 0 e; rewrite size_map.
+have each i : i \in T' -> good (A i) /\ penalty (A i) <= y i.
+  move=> iT; have iR := sub _ iT; have [_ h] := all_some_nth [::] d0 (index i rest) e.
+  rewrite size_map index_mem (nth_map 0%N) ?index_mem // nth_index // in h.
+  by apply: penalty_upP (h iR) _ => j; apply: Asym.
+apply: enough_value; apply: le_trans (_ : penalty (fun j => (size T')%:R^-1 *: \sum_(i <- T') A i j) <= _).
+  apply: good_above => [j||j]; last 1 first.
+  - have [R pR ->] := known_below j uTT bTT TG.
+    exists ((invmx (prior_of j) - mx F d (nth [::] lows j)) + R); last by rewrite avg [RHS]addrA.
+    by apply: psdD => //; case: (lowP j).
+  - split; first by apply: average_symmetrical => i; apply: Asym.
+    by apply: average_pd => // i /each[g _]; case: (g j).
+  by move=> j; apply: posterior_sym.
+apply: le_trans (penalty_convex T'0 (fun i iT => proj1 (each i iT))) _.
+have r0' : 0 < (size T')%:R :> F by rewrite ltr0n sz.
+rewrite ler_pdivr_mull // sz; apply: le_trans le.
+pose f i := Num.max 0 (y i - val tau).
+apply: (@le_trans _ _ (\sum_(i <- T') (f i + val tau))).
+  rewrite big_seq [X in _ <= X]big_seq; apply: ler_sum => i /each[_ h]; apply: le_trans h _.
+  by rewrite -ler_subl_addr /f le_maxr lexx orbT.
+rewrite big_split /= big_const_seq count_predT iter_addr_0 sz mulr_natl ler_add2r.
+have -> : \sum_(i <- T') f i = \sum_(i <- rest | i \in T') f i.
+  rewrite -[RHS]big_filter; apply: perm_big; apply: uniq_perm; rewrite ?filter_uniq // => i.
+  by rewrite mem_filter; case iT: (i \in T') => //=; rewrite (sub _ iT).
+apply: (@le_trans _ _ (\sum_(i <- rest) f i)).
+  by rewrite big_mkcond; apply: ler_sum => i _; case: ifP => // _; rewrite /f le_maxr lexx.
+rewrite (big_nth 0%N) [X in _ <= X](big_nth d0) szy big_mkord [X in _ <= X]big_mkord; apply: ler_sum => k _.
+by rewrite /f /y index_uniq // val_max val0 val_sub.
+Qed.
+
+Theorem lower_sound : check_lower_part pb cl pr lows defects ->
+  forall a, allowed (team_of w) a -> val (lower cl) <= team_value (team_of w) value plan_of a.
+Proof.
+rewrite /check_lower_part; case: (lower_part pr) => [k t|t|//].
+  move=> /and3P[full forced h] a oka; have [i ki] := forcedP net_good full oka forced.
+  apply: (size_treeP worth_sound average_sound ki h).
+move=> h a oka; exact: (attack_treeP net_good erefl worth_sound oka h).
+Qed.
+End Lower.
+End Sound.

@@ -1,0 +1,80 @@
+"""How much the verifier works on one file before it says that the file is not decided.
+
+A certificate comes from strangers: a short file can state numbers, matrices or trees that take days. The limits
+are asked between single operations, each of which is short because wide matrices are refused first.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from ratt_opt.errors import UndecidedError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from flint import fmpq, fmpq_mat
+
+__all__ = ["SECONDS", "hold", "limited", "refuse_wide", "tick"]
+
+SECONDS = 600.0
+"""For one file, unless the caller says otherwise; what the library writes for 30 robots takes seconds."""
+MOST_BITS = 2**33
+"""Of exact numbers held at once (1 GiB)."""
+WIDEST = 2**28
+"""Largest ``d^4 * bits`` of a matrix: its exact inverse takes some 2e-8 s of each (4.6 s at d = 30, 300 bits)."""
+BITS_OF_A_FLOAT = 2200
+"""Numerator and common denominator of the widest range that binary64 floats can have, in bits."""
+
+
+@dataclass(slots=True)
+class _Work:
+    ends: float
+    limit: float
+    bits: int = 0
+
+
+_CURRENT: ContextVar[_Work | None] = ContextVar("ratt_opt_verifier_work", default=None)
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Limit what is checked inside the block; outside of one there is no limit (when a proof is being written)."""
+    token = _CURRENT.set(_Work(monotonic() + seconds, seconds))
+    try:
+        yield
+    finally:
+        _CURRENT.reset(token)
+
+
+def tick() -> None:
+    """Raise :class:`UndecidedError` when the time is up."""
+    work = _CURRENT.get()
+    if work is not None and monotonic() > work.ends:
+        raise UndecidedError(f"not decided within {work.limit:g} s")
+
+
+def hold(number: fmpq, count: int = 1) -> None:
+    """Count the bits of ``count`` numbers like this one that stay in memory."""
+    work = _CURRENT.get()
+    if work is None:
+        return
+    work.bits += count * (int(number.p).bit_length() + int(number.q).bit_length())
+    if work.bits > MOST_BITS:
+        raise UndecidedError(f"not decided within {MOST_BITS // 2**23} MiB of exact numbers")
+
+
+def refuse_wide(matrices: Iterable[fmpq_mat], d: int) -> None:
+    """Raise :class:`UndecidedError` where a single operation on one of the matrices would take too long."""
+    if d**4 * BITS_OF_A_FLOAT <= WIDEST:
+        return
+    for matrix in matrices:
+        tick()
+        sizes = [(int(x.p).bit_length(), int(x.q).bit_length()) for x in matrix.entries()]
+        bits = max(p for p, _ in sizes) + max(q for _, q in sizes)
+        if d**4 * bits > WIDEST:
+            raise UndecidedError(f"not decided: numbers of {bits} bits in matrices of {d} rows are too wide")

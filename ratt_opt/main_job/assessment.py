@@ -1,0 +1,87 @@
+"""One plan under attack: what is left of the team in its worst case, and under other attacks worth seeing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import readonly
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.task import AttackResult
+from ratt_opt.main_job.result import PlanAssessment
+from ratt_opt.problem import Attack, Plan, Problem
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from ratt_opt.budget import Budget
+
+__all__ = ["assess", "recommended", "views_of"]
+
+MOST_SPARED = 12
+"""Robots or links of the worst attack that are spared in turn to find the next worst one; each costs an attack. A map
+shows one next attack, so more would only sharpen which one."""
+
+
+def recommended(plans: Iterable[PlanAssessment]) -> PlanAssessment:
+    """Return the plan with the best proved worst case; the first among equals."""
+    return max(plans, key=lambda plan: plan.worst_case.lower)
+
+
+def assess(
+    problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
+) -> PlanAssessment:
+    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
+    elements = plan.elements
+    worst = known or worst_case_attack(problem, elements, budget=budget)
+    seeing, f = problem.best_group(elements, worst.attack), problem.objective
+    posterior = None
+    if isinstance(f, InformationObjective):
+        posterior = readonly(np.linalg.inv(f.posterior_information(elements[sorted(seeing)])))
+    return PlanAssessment(
+        name=name,
+        elements=elements,
+        controls=tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True)),
+        bait=plan.bait,
+        worst_case=worst,
+        evaluations=plan.evaluations,
+        groups=problem.communication.groups(worst.attack.links),
+        best_group=seeing,
+        posterior=posterior,
+    )
+
+
+def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[str, PlanAssessment]:
+    """Return a plan under its worst attack, the worst found that spares part of it, and no attack.
+
+    The bracket of each is still of the plan's worst case: its upper end is the value under the attack shown.
+    """
+    plan = Plan(elements=worst.elements, evaluations=worst.evaluations, bait=worst.bait)
+
+    def under(attack: Attack) -> PlanAssessment:
+        value = problem.team_value(plan.elements, attack)
+        bracket = AttackResult(
+            attack=attack, lower=worst.worst_case.lower, upper=value, stop=Stop.HEURISTIC, evaluations=1
+        )
+        return assess(problem, worst.name, plan, budget, known=bracket)
+
+    attacks = [
+        worst_case_attack(spared, plan.elements, budget=budget).attack
+        for spared in _spared(problem, worst.worst_case.attack)
+    ]
+    nexts = sorted((under(attack) for attack in attacks), key=lambda view: view.worst_case.upper)
+    return {"worst": worst, **({"next worst": nexts[0]} if nexts else {}), "none": under(Attack())}
+
+
+def _spared(problem: Problem, attack: Attack) -> Iterator[Problem]:
+    """The problem with one blinded robot (or cut link, where none is blinded) protected, each in turn."""
+    if attack.sensing:
+        for i in sorted(attack.sensing)[:MOST_SPARED]:
+            yield replace(problem, protected_robots=problem.protected_robots | {i})
+    else:
+        for link in sorted(attack.links)[:MOST_SPARED]:
+            yield replace(problem, protected_links=problem.protected_links | {link})

@@ -1,0 +1,82 @@
+"""Who and what the numbers of a problem stand for: names, labels, places, as far as its source tells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.scenario.information_input import InformationInput
+from ratt_opt.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.problem import Problem
+
+__all__ = ["Description", "describe"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Description:
+    """Names are empty, and the rest ``None``, where the source does not tell.
+
+    ``robot_names`` : (N,); ``target_names`` : (M,); ``weights`` : (M,) importance of the targets.
+    ``labels`` : (E,) what each element is ("3 m/s, 1 rad/s"); ``controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
+    ``poses`` : (N, 2 or 3) x, y [m] (and heading [rad]) now; ``poses_after`` : (E, 2 or 3) after each element.
+    ``targets`` : (M, 2) predicted positions [m].
+    """
+
+    robot_names: tuple[str, ...]
+    target_names: tuple[str, ...] | None
+    weights: FloatArray | None
+    labels: tuple[str, ...] | None
+    controls: FloatArray | None = None
+    poses: FloatArray | None = None
+    poses_after: FloatArray | None = None
+    targets: FloatArray | None = None
+
+    def robot(self, i: int) -> str:
+        """Robot ``i`` for people: its number, and its name where it has one."""
+        return f"{i} {self.robot_names[i]}".rstrip()
+
+    def label(self, element: int) -> str:
+        """What an element is; its index where nothing is known."""
+        return self.labels[element] if self.labels else f"element {element}"
+
+    def pose_after(self, element: int) -> list[float] | None:
+        """Where its robot is after an element's control: x, y [m], heading [rad] as far as known."""
+        return None if self.poses_after is None else [float(x) for x in self.poses_after[element]]
+
+
+def describe(problem: Problem, source: object = None) -> Description:
+    """Collect what ``source`` (a scenario, the contents of a model-free file, or neither) tells about a problem."""
+    weights = getattr(problem.objective, "weights", None)
+    if isinstance(source, Scenario):
+        return Description(
+            robot_names=tuple(robot.name for robot in source.robots),
+            target_names=tuple(target.name for target in source.targets),
+            weights=weights,
+            labels=source.element_labels,
+            controls=source.controls,
+            poses=source.poses,
+            poses_after=source.predicted_poses,
+            targets=source.predicted_targets,
+        )
+    n_targets = getattr(problem.objective, "n_targets", None)
+    unnamed = (("",) * problem.n_robots, None if n_targets is None else ("",) * n_targets)
+    if not isinstance(source, InformationInput):
+        return Description(robot_names=unnamed[0], target_names=unnamed[1], weights=weights, labels=None)
+    return Description(
+        robot_names=source.robot_names or unnamed[0],
+        target_names=source.target_names or unnamed[1],
+        weights=weights,
+        labels=source.labels,
+        poses=_array(source.robot_positions),
+        poses_after=_array(source.element_positions),
+        targets=_array(source.target_positions),
+    )
+
+
+def _array(places: tuple[tuple[float, float], ...] | None) -> FloatArray | None:
+    return None if places is None else np.array(places)

@@ -1,0 +1,50 @@
+"""How results show themselves in a notebook: a table of the planners, the plan, and the figure."""
+
+from __future__ import annotations
+
+import io
+from html import escape
+from typing import TYPE_CHECKING
+
+from ratt_opt.report.figure import plan_figure
+from ratt_opt.report.picture import picture_of
+from ratt_opt.report.tables import bracket_text, share_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+
+__all__ = ["html_table", "plan_view", "report_view"]
+
+
+def html_table(caption: str, columns: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return a table with a caption and headed columns; every text is escaped."""
+    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in columns)
+    body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><caption>{escape(caption)}</caption><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def plan_view(plan: PlanAssessment) -> str:
+    """Return one plan as a table: what each robot does, and what is left of it."""
+    attack = plan.worst_case.attack
+    rows = [
+        (i, element, "yes" if i in plan.bait else "", "blinded" if i in attack.sensing else "sees")
+        for i, element in enumerate(plan.elements.tolist())
+    ]
+    kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
+    title = f"{plan.name}: keeps {kept} with {len(attack.sensing)} robots blinded and {len(attack.links)} links cut"
+    return html_table(title, ("robot", "element", "bait", "under attack"), rows)
+
+
+def report_view(report: BoundReport) -> str:
+    """Return the planners' table and the figure, which needs no file beside it."""
+    rows = [
+        (plan.name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share_text(report.share(plan)))
+        for plan in report.plans
+    ]
+    table = html_table("what each planner keeps", ("planner", "worst-case value", "of the best possible"), rows)
+    drawing = io.StringIO()
+    plan_figure(report, picture_of(report.source, report)).savefig(drawing, format="svg", metadata={"Date": None})
+    svg = drawing.getvalue()
+    return table + svg[svg.index("<svg") :]

@@ -1,0 +1,136 @@
+"""The map of a page: robots and targets tell who they are, to a mouse, a keyboard or a screen reader."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.report.description import describe
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+    from ratt_opt.report.picture import Picture
+
+__all__ = ["legend_html", "map_svg"]
+
+WIDTH, HEIGHT, MARGIN = 800.0, 560.0, 40.0
+SIGMAS = 2.4477
+"""Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
+MOST_LINKS = 400
+"""More links of groups than this are not drawn: they would be one blot, and make the page large. Cut ones are."""
+
+
+def map_svg(picture: Picture, report: BoundReport, view: PlanAssessment) -> str:
+    """Return one drawing; lengths are in proportion, north is up."""
+    place = _frame(picture)
+    at = [place(x) for x in picture.places]
+    parts = [*_links(picture, at), *_targets(picture, place), *_robots(picture, at, report, view)]
+    label = escape(f"Map of {len(at)} robots under attack; tab through robots and targets for their details")
+    return (
+        f'<svg class="map" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="group" aria-label="{label}">{"".join(parts)}</svg>'
+    )
+
+
+def legend_html() -> str:
+    """Return what the marks of the map mean."""
+    entries = (
+        ("<circle cx='10' cy='10' r='8' class='seeing'/>", "robot of the best group"),
+        ("<rect x='3' y='3' width='14' height='14' class='lost'/>", "robot of another group"),
+        ("<path d='M3 3L17 17M17 3L3 17' class='cross'/>", "blinded robot"),
+        ("<circle cx='10' cy='10' r='8' class='guard'/>", "protected robot"),
+        ("<path d='M0 10H20' class='link'/>", "link"),
+        ("<path d='M0 10H20' class='link guarded'/>", "protected link"),
+        ("<path d='M0 10H20' class='cut'/>", "cut link"),
+        ("<path d='M10 2L18 17H2Z' class='target'/>", "target (dotted: 95 % before, filled: after measuring)"),
+    )
+    items = (f"<li><svg width='20' height='20' aria-hidden='true'>{mark}</svg> {text}</li>" for mark, text in entries)
+    return f'<ul class="legend">{"".join(items)}</ul>'
+
+
+class _Frame:
+    """Metres to places on the page."""
+
+    def __init__(self, points: FloatArray) -> None:
+        self.low = points.min(axis=0)
+        span = np.maximum(points.max(axis=0) - self.low, 1e-9)
+        self.scale = float(min((WIDTH - 2 * MARGIN) / span[0], (HEIGHT - 2 * MARGIN) / span[1]))
+        if float(span.max()) <= 1e-9:
+            self.scale = 1.0
+        self.rest = (np.array([WIDTH, HEIGHT]) - self.scale * span) / 2
+
+    def __call__(self, point: FloatArray) -> tuple[float, float]:
+        x, y = self.scale * (point - self.low) + self.rest
+        return float(x), HEIGHT - float(y)
+
+
+def _frame(picture: Picture) -> _Frame:
+    points = picture.places if picture.targets is None else np.vstack([picture.places, picture.targets])
+    return _Frame(points)
+
+
+def _links(picture: Picture, at: list[tuple[float, float]]) -> Iterator[str]:
+    kept, cut = sorted(picture.links - picture.attack.links), sorted(picture.attack.links)
+    shown = kept if len(kept) <= MOST_LINKS else sorted(picture.protected_links)
+    for kind, links in (("link", shown), ("cut", cut)):
+        for i, j in links:
+            (x, y), (u, v) = at[i], at[j]
+            guarded = " guarded" if (i, j) in picture.protected_links else ""
+            yield f'<line x1="{x:.1f}" y1="{y:.1f}" x2="{u:.1f}" y2="{v:.1f}" class="{kind}{guarded}"/>'
+
+
+def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
+    if picture.targets is None:
+        return
+    for j, target in enumerate(picture.targets):
+        x, y = place(target)
+        text = f"target {j}"
+        text += f" {picture.target_names[j]}" if picture.target_names and picture.target_names[j] else ""
+        text += "" if picture.weights is None else f", weight {picture.weights[j]:g}"
+        if picture.prior is not None and picture.posterior is not None:
+            for kind, covariance in (("before", picture.prior[j]), ("after", picture.posterior[j])):
+                yield _ellipse(x, y, covariance, place.scale, kind)
+            deviation = np.sqrt(np.trace(picture.posterior[j]))
+            text += f", root of the trace left after measuring {deviation:.3g} m"
+        mark = f'<path d="M{x:.1f} {y - 8:.1f}l8 14h-16Z" class="target"/>'
+        yield f'<g tabindex="0" role="img" aria-label="{escape(text)}"><title>{escape(text)}</title>{mark}</g>'
+        yield f'<text x="{x + 9:.1f}" y="{y + 12:.1f}" class="small">T{j}</text>'
+
+
+def _ellipse(x: float, y: float, covariance: FloatArray, scale: float, kind: str) -> str:
+    variances, axes = np.linalg.eigh(covariance)
+    rx, ry = SIGMAS * scale * np.sqrt(variances)
+    turn = -float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0])))
+    where = f'transform="translate({x:.1f} {y:.1f}) rotate({turn:.1f})"'
+    return f'<ellipse rx="{rx:.1f}" ry="{ry:.1f}" {where} class="{kind}"/>'
+
+
+def _robots(
+    picture: Picture, at: list[tuple[float, float]], report: BoundReport, view: PlanAssessment
+) -> Iterator[str]:
+    known = describe(report.problem, report.source)
+    for i, (x, y) in enumerate(at):
+        hit, best = i in picture.attack.sensing, i in picture.best
+        role = "blinded" if hit else "sees, in the best group" if best else "cut off from the best group"
+        guarded = ", protected" if i in picture.protected_robots else ""
+        text = f"robot {known.robot(i)}: {known.label(int(view.elements[i]))}; {role}{guarded}"
+        if hit:
+            mark = f'<path d="M{x - 9:.1f} {y - 9:.1f}l18 18m0 -18l-18 18" class="cross"/>'
+        elif best:
+            mark = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="10" class="seeing"/>'
+        else:
+            mark = f'<rect x="{x - 9:.1f}" y="{y - 9:.1f}" width="18" height="18" class="lost"/>'
+        mark += f'<circle cx="{x:.1f}" cy="{y:.1f}" r="14" class="guard"/>' if guarded else ""
+        if picture.headings is not None:
+            u, v = np.cos(picture.headings[i]), -np.sin(picture.headings[i])
+            mark += f'<path d="M{x + 10 * u:.1f} {y + 10 * v:.1f}l{12 * u:.1f} {12 * v:.1f}" class="heading"/>'
+        yield f'<g tabindex="0" role="img" aria-label="{escape(text)}"><title>{escape(text)}</title>{mark}</g>'
+        inside = "number light" if best and not hit else "number" if hit else "number dark"
+        shift = -17 if hit else 0
+        yield f'<text x="{x + shift:.1f}" y="{y + 4:.1f}" class="{inside}">{i}</text>'
+        if picture.names[i]:
+            yield f'<text x="{x + 12:.1f}" y="{y - 10:.1f}" class="small">{escape(picture.names[i])}</text>'

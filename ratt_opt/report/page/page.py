@@ -1,0 +1,138 @@
+"""The page: its sections in order. It holds the numbers of ``report.json`` and nothing else."""
+
+from __future__ import annotations
+
+from html import escape
+from importlib import resources
+from typing import TYPE_CHECKING
+
+from ratt_opt.report.bars import bar_ends
+from ratt_opt.report.notebook import html_table
+from ratt_opt.report.page.map_drawing import legend_html, map_svg
+from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
+from ratt_opt.report.picture import picture_of
+from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
+from ratt_opt.report.tables import bracket_text, share_text, verdict_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+
+__all__ = ["report_page"]
+
+VIEW_TITLES = {
+    "worst": "worst attack",
+    "next worst": "next worst: spares a part of the worst attack",
+    "none": "no attack",
+}
+
+
+def report_page(report: BoundReport) -> str:
+    """Return the whole page as HTML."""
+    folder = resources.files("ratt_opt.report.page")
+    style, script = ((folder / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
+    colours = {"seeing": SURVIVING, "lost": LOST, "blinded": BLINDED, "target": TARGET, "ink": INK}
+    palette = ":root{" + "".join(f"--{name}:{colour};" for name, colour in colours.items()) + "}"
+    plan = report.recommended
+    title = f"{report.problem.n_robots} robots: the {plan.name} plan under attack"
+    return (
+        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{escape(title)}</title><style>{palette}{style}</style></head><body>"
+        f'<a class="skip" href="#planners">Skip the map</a><main><h1>{escape(title)}</h1>'
+        f"{''.join(_sections(report))}</main><script>{script}</script></body></html>\n"
+    )
+
+
+def _sections(report: BoundReport) -> Iterator[str]:
+    plan = report.recommended
+    unit = f" {report.unit}" if report.unit else ""
+    kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
+    yield (
+        f"<p>This plan keeps <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}) under the worst "
+        f"attack that blinds at most {report.problem.alpha_s} robots and cuts at most {report.problem.alpha_c} links: "
+        f"of what any plan could keep that is {escape(share_text(report.share(plan)))}, and no plan keeps more than "
+        f"{report.upper:.10g}.</p>"
+    )
+    yield from _map_section(report)
+    yield from _planner_section(report)
+    yield from _trust_section(report)
+    yield from _plan_section(report)
+    seconds = [(name, f"{value:.2f}") for name, value in report.seconds.items()]
+    yield html_table("Seconds of each step", ("step", "seconds"), seconds)
+    yield f"<footer>ratt-opt, {escape(report.created)}. Every number in full precision: report.json.</footer>"
+
+
+def _map_section(report: BoundReport) -> Iterator[str]:
+    """The map once for each attack, of which one is shown; on paper the worst."""
+    yield '<section aria-labelledby="map-h"><h2 id="map-h">Map</h2><fieldset><legend>Show the team under</legend>'
+    for k, name in enumerate(report.views):
+        checked = " checked" if k == 0 else ""
+        key = name.replace(" ", "-")
+        yield (
+            f'<label><input type="radio" name="view" value="{key}" id="show-{key}"{checked}> '
+            f"{escape(VIEW_TITLES[name])}</label>"
+        )
+    yield "</fieldset>"
+    for k, (name, view) in enumerate(report.views.items()):
+        hidden = " hidden" if k else ""
+        svg = map_svg(picture_of(report.source, report, view), report, view)
+        yield (
+            f'<figure class="view" id="view-{name.replace(" ", "-")}"{hidden}>{svg}'
+            f"<figcaption>{escape(_caption(name, view))}</figcaption></figure>"
+        )
+    yield f'{legend_html()}<p id="hint" role="status" aria-live="polite">Point at a robot or target, or tab to it.</p>'
+    yield "</section>"
+
+
+def _caption(name: str, view: PlanAssessment) -> str:
+    attack = view.worst_case.attack
+    blinded = " ".join(map(str, sorted(attack.sensing))) or "none"
+    cut = " ".join(f"{i}-{j}" for i, j in sorted(attack.links)) or "none"
+    left = f"value left {view.worst_case.upper:.10g}"
+    return f"{VIEW_TITLES[name]}: {left}; blinded robots: {blinded}; cut links: {cut}"
+
+
+def _planner_section(report: BoundReport) -> Iterator[str]:
+    """A bar a planner: filled as far as it is sure, half-tone as far as it is not decided."""
+    missing, brackets, longest = bar_ends(report)
+    what = "missing to the best possible" if missing else "kept"
+    yield '<section aria-labelledby="planners"><h2 id="planners">What each planner keeps</h2><div class="wide"><table>'
+    yield '<thead><tr><th scope="col">planner</th><th scope="col">worst-case value</th><th scope="col">of the best '
+    yield f'possible</th><th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
+    for plan, bracket in zip(report.plans, brackets, strict=True):
+        low, high = plan.worst_case.lower, plan.worst_case.upper
+        ends = [100 * min(max(x / longest, 0.0), 1.0) for x in bracket]
+        mark = " (recommended)" if plan.name == report.recommended.name else ""
+        bar = (
+            f'<svg class="bar" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">'
+            f'<rect width="100" height="8" class="room"/><rect width="{ends[1]:.3f}" height="8" class="open"/>'
+            f'<rect width="{ends[0]:.3f}" height="8" fill="{look_of(plan.name).colour}"/></svg>'
+        )
+        yield (
+            f'<tr><th scope="row">{escape(plan.name + mark)}</th><td data-lower="{low!r}" data-upper="{high!r}">'
+            f"{bracket_text(low, high)}</td><td>{escape(share_text(report.share(plan)))}</td><td>{bar}</td></tr>"
+        )
+    yield "</tbody></table></div></section>"
+
+
+def _trust_section(report: BoundReport) -> Iterator[str]:
+    yield '<section aria-labelledby="trust"><h2 id="trust">How far to trust that</h2>'
+    yield f"<p>Certificate: {escape(verdict_text(report.certificate))}."
+    if report.certificate.certificate is not None:
+        yield " Check it again, in a program that shares nothing with the search: "
+        yield "<code>ratt-opt verify certificate.json</code>."
+    optimum = bracket_text(report.optimum.lower, report.upper)
+    yield f"</p><p>Best possible: {optimum}; the search for it stopped because: {report.optimum.stop.value}.</p>"
+    rows = [(name, f"{float(g):.6g}", "; ".join(g.hypotheses)) for name, g in report.guarantees.items()]
+    rows += [(name, "none", f"does not apply: {why}") for name, why in report.inapplicable.items()]
+    yield f'<div class="wide">{html_table("Guaranteed before planning", ("guarantee", "share", "needs"), rows)}</div>'
+    yield "</section>"
+
+
+def _plan_section(report: BoundReport) -> Iterator[str]:
+    rows = [[f"{x:.4g}" if isinstance(x, float) else x for x in row] for row in plan_rows(report)]
+    yield '<section aria-labelledby="plan"><h2 id="plan">The plan</h2><div class="wide">'
+    yield html_table("Positions are those after the control", PLAN_COLUMNS, rows)
+    yield "</div></section>"

@@ -1,0 +1,44 @@
+"""One look for each planner and each thing on a map, in every figure.
+
+Colours alone stay apart: at least ``LEAST_COLOUR_DISTANCE`` (CIE 1976) under normal vision, protanopia and
+deuteranopia, and ``LEAST_GREY_DISTANCE`` of lightness in grey; markers, hatches and line styles say the same again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["BLINDED", "CUT", "INK", "LOST", "PLANNERS", "SURVIVING", "TARGET", "Look", "look_of"]
+
+LEAST_COLOUR_DISTANCE = 20.0
+"""About nine times what is just noticeable."""
+LEAST_GREY_DISTANCE = 10.0
+"""Lightness steps (of 100) between any two colours of one figure on a grey print."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How a planner is drawn: colour, marker of points and curves, hatch of bars."""
+
+    colour: str
+    marker: str
+    hatch: str
+
+
+PLANNERS = {
+    "ratt": Look("#0b5394", "o", ""),
+    "maxmin": Look("#4a0d1f", "D", "///"),
+    "greedy": Look("#30a574", "s", "..."),
+    "myopic": Look("#86648a", "v", "xxx"),
+    "random": Look("#f3c6dd", "X", "\\\\\\"),
+    "nonrobust": Look("#e69f00", "^", "++"),
+}
+"""RATT blue and Greedy green as in the paper; the lightness of each is its own."""
+SURVIVING, LOST, BLINDED, TARGET = "#0b5394", "#b4b9be", "#e0451b", "#33200a"
+CUT = BLINDED
+INK = "#222222"
+
+
+def look_of(planner: str) -> Look:
+    """Return a planner's look; that of others than the library's own is plain grey."""
+    return PLANNERS.get(planner, Look("#6c757d", "P", "oo"))

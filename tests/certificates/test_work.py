@@ -1,0 +1,91 @@
+"""The verifier ends on every file: files that ask for too much are neither proved nor refuted, in bounded time."""
+
+from __future__ import annotations
+
+import json
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from ratt_opt import InputError, ProofError, verify_certificate
+from ratt_opt.certificates.verifier import work
+from ratt_opt.errors import UndecidedError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def _document(d: int, exponent: int, tree: list[Any], upper: float = 1.0) -> dict[str, Any]:
+    """One robot with two elements, one target with d coordinates whose scales span ``2 ** exponent``."""
+    scales = [2.0 ** (exponent * i / max(d - 1, 1) - exponent / 2) * (1 + i / 7) for i in range(d)]
+    # Diagonally dominant, and full: exact elimination meets every width.
+    full = [[s if i == j else 0.01 * min(s, scales[j]) / d for j in range(i + 1)] for i, s in enumerate(scales)]
+    prior = [x for row in full for x in row]
+    zero = [0.0] * len(prior)
+    point = [zero]
+    return {
+        "format": "ratt-opt certificate",
+        "version": 1,
+        "problem": {
+            "objective": "trace", "dimension": d, "prior": [prior], "information": [[zero], [prior]], "weights": [1.0],
+            "owners": [0, 0], "links": [], "alpha_s": 0, "alpha_c": 0, "protected_robots": [], "protected_links": [],
+        },
+        "plan": [0],
+        "claim": {"lower": 0.0, "upper": upper},
+        "prior_eigenvalue": [],
+        "upper": {"attacks": [{"robots": [], "links": []}], "points": [point], "cuts": [[0, 0, 0]], "tree": tree},
+        "lower": {"kind": "enumerated"},
+    }  # fmt: skip
+
+
+LEAF = {"cuts": [0], "weights": [1.0]}
+
+
+def _verify(document: dict[str, Any], path: Path, seconds: float) -> float:
+    """Verify; return the seconds it took."""
+    path.write_text(json.dumps(document))
+    began = monotonic()
+    with pytest.raises(UndecidedError, match="not decided"):
+        verify_certificate(path, time_limit=seconds)
+    return monotonic() - began
+
+
+def test_the_documents_are_certificates_where_they_are_small(tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(_document(2, 4, [LEAF], upper=1e9)))
+    found = verify_certificate(path)
+    assert found.upper == 1e9
+    assert not found.lower_proved
+    path.write_text(json.dumps(_document(2, 4, [LEAF], upper=1e-9)))
+    with pytest.raises(ProofError, match="only proves") as refuted:
+        verify_certificate(path)
+    assert not isinstance(refuted.value, UndecidedError)
+
+
+def test_short_files_with_wide_numbers_are_refused_before_the_work(tmp_path: Path) -> None:
+    document = _document(30, 1800, [LEAF])
+    assert len(json.dumps(document)) < 60_000
+    assert _verify(document, tmp_path / "c.json", 60.0) < 5
+
+
+def test_many_leaves_end_at_the_limit(tmp_path: Path) -> None:
+    """Two megabytes of nodes over wide numbers."""
+    branch = {"robot": 0, "parts": [[0], [1]]}
+    tree = [branch, LEAF, LEAF]
+    for _ in range(12):  # a robot's single element may be branched on again and again
+        tree = [{"robot": 0, "parts": [[0, 1]]}, *tree]
+    wide = {"cuts": [0] * 100_000, "weights": [1.5] * 100_000}
+    document = _document(12, 300, [*tree[:-1], wide])
+    assert _verify(document, tmp_path / "c.json", 0.2) < 5
+
+
+def test_memory_is_a_limit_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work, "MOST_BITS", 1000)
+    _verify(_document(4, 200, [LEAF]), tmp_path / "c.json", 60.0)
+
+
+@pytest.mark.parametrize("limit", [0, -1, float("nan"), "1"])
+def test_a_limit_is_a_positive_number(limit: Any, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="time_limit must be a positive number"):
+        verify_certificate(tmp_path / "none.json", time_limit=limit)

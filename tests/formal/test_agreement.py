@@ -1,0 +1,71 @@
+"""The checker extracted from its Coq proof and the Python verifier decide alike: certificates and mutations of them.
+
+Kinds of refusal (a fault, no certificate) may differ; acceptance, and of which ends, may not.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.certificates.cases import certified
+from tests.formal.verified import bases, decisions, disagreements, mutants, python_decision
+from tests.strategies import random_problem
+
+
+def sweep(folder, seeds, share):
+    """Disagreements, mutants, and mutants that were accepted."""
+    seen = 0
+
+    def documents():
+        nonlocal seen
+        for rng, document in bases(folder, seeds):
+            for at, value, new, mutant in mutants(rng, document, share):
+                seen += 1
+                yield (at, value, new), mutant
+
+    found, accepted = disagreements(folder, documents())
+    return found, seen, accepted
+
+
+def test_certificates_are_accepted_by_both(tmp_path):
+    for seed in range(16):
+        rng = np.random.default_rng([48, seed])
+        problem = random_problem(rng, int(rng.integers(1, 5)), kind=("trace", "maxeig")[seed % 2], controls=2)
+        path = tmp_path / f"{seed}.json"
+        certified(problem, path)
+        assert decisions([path]) == [python_decision(path)]
+
+
+def test_a_raised_claim_is_refused(tmp_path):
+    path = tmp_path / "lie.json"
+    for _, document in bases(tmp_path, range(8)):
+        for side, factor in (("upper", 1 - 1e-9), ("lower", 1 + 1e-9)):
+            lie = json.loads(json.dumps(document))
+            lie["claim"][side] *= factor
+            other = "lower" if side == "upper" else "upper"
+            lie["claim"][other] = 0.0 if other == "lower" else document["claim"]["upper"] * 2
+            path.write_text(json.dumps(lie))
+            assert decisions([path]) == [1]
+
+
+def test_mutations_are_decided_alike(tmp_path):
+    found, seen, accepted = sweep(tmp_path, range(4), 0.12)
+    assert not found
+    assert seen >= 200
+    assert accepted >= 20  # mutations that leave the claim proved, such as a larger upper end
+
+
+@pytest.mark.slow
+def test_ten_thousand_mutations_are_decided_alike(tmp_path):
+    found, seen, _ = sweep(tmp_path, range(12, 60), 0.25)
+    assert not found
+    assert seen >= 10_000
+
+
+def test_logarithms_are_not_covered(tmp_path):
+    path = tmp_path / "logdet.json"
+    certified(random_problem(np.random.default_rng(3), 2, kind="logdet", controls=2), path)
+    assert decisions([path]) == [2]

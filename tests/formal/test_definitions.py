@@ -1,0 +1,108 @@
+"""The definitions in Coq and Python agree: values proved in formal/theories/Examples.v, computed again here."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from fractions import Fraction
+from pathlib import Path
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt import Attack, Problem, TraceObjective, exhaustive_optimum
+from tests.oracles import brute_force_worst_case
+
+FORMAL = Path(__file__).parents[2] / "formal"
+EXAMPLES = ("relay", "safe", "split")
+TEXT = (FORMAL / "theories" / "Examples.v").read_text()
+
+
+def defined(name):
+    """The right side of a definition in the Coq file."""
+    found = re.search(rf"^Definition {name} : [^=]* := (.*)\.$", TEXT, re.MULTILINE)
+    assert found is not None, name
+    return found[1]
+
+
+def numbers(text):
+    """All whole numbers in a text."""
+    return [int(x) for x in re.findall(r"\d+", text)]
+
+
+def lists(text):
+    """The bracketed lists of a text as lists of numbers, pairs in pieces of two."""
+    return [numbers(part) for part in re.findall(r"\[::([^\]]*)\]", text)]
+
+
+def pairs(flat):
+    """Numbers two by two."""
+    return list(zip(flat[::2], flat[1::2], strict=True))
+
+
+def example(name):
+    """The problem, plan, value, attack, group and seeing robots of an example, as Coq has them."""
+    text = defined(f"{name}_net")
+    owners, links, safe_robots, safe_links = lists(text)
+    alpha_s, alpha_c = numbers(re.sub(r"\[::[^\]]*\]", "", text).split("Network")[1])[1:]
+    graph = nx.Graph()
+    graph.add_nodes_from(range(max(owners) + 1))
+    graph.add_edges_from(pairs(links))
+    information = np.array([float(x) for x in numbers(defined(f"{name}_infos"))]).reshape(-1, 1, 1, 1)
+    problem = Problem(
+        TraceObjective(np.ones((1, 1, 1)), information),
+        np.array(owners),
+        graph,
+        alpha_s,
+        alpha_c,
+        frozenset(safe_robots),
+        frozenset(pairs(safe_links)),
+    )
+    blinded, cut = lists(defined(f"{name}_attack"))
+    mantissa, scale = numbers(defined(f"{name}_value"))
+    plan, group, sees = (numbers(defined(f"{name}_{what}")) for what in ("plan", "group", "sees"))
+    return problem, plan, Fraction(mantissa, 2**scale), Attack(frozenset(blinded), frozenset(pairs(cut))), group, sees
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_worst_case_and_optimum(name):
+    problem, plan, value, *_ = example(name)
+    assert brute_force_worst_case(problem, problem.check_plan(plan)) == pytest.approx(float(value), abs=1e-12)
+    optimum = exhaustive_optimum(problem)
+    assert optimum.lower == pytest.approx(float(value), abs=1e-12)
+    assert optimum.upper == pytest.approx(float(value), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_attacks_and_groups(name):
+    problem, _, _, attack, group, sees = example(name)
+    problem.check_attack(attack)
+    found = next(g for g in problem.communication.groups(attack.links) if 0 in g)
+    assert sorted(found) == group
+    assert sorted(found - attack.sensing) == sees
+
+
+def test_every_definition_distinguishes_the_examples():
+    """Without the relay, without protection, or with other groups the values would be others."""
+    relay, plan, value, *_ = example("relay")
+    cut_off = Problem(relay.objective, relay.robot, nx.empty_graph(3), 1, 0)
+    assert brute_force_worst_case(cut_off, cut_off.check_plan(plan)) < float(value)
+    safe, plan, value, *_ = example("safe")
+    for robots, links in ((frozenset(), safe.protected_links), (safe.protected_robots, frozenset())):
+        bare = Problem(safe.objective, safe.robot, safe.graph, safe.alpha_s, safe.alpha_c, robots, links)
+        assert exhaustive_optimum(bare).upper < float(value)
+
+
+def test_coq_accepts_the_examples():
+    coqc = shutil.which("coqc")
+    if coqc is None:
+        pytest.skip("coqc is not installed (Debian: coq libcoq-mathcomp-algebra)")
+    done = subprocess.run(
+        [shutil.which("make") or "make", "-C", str(FORMAL), "theories/Examples.vo"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]

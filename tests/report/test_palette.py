@@ -1,0 +1,32 @@
+"""Colours of one figure stay apart for everyone, and what they say is said again by shape."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import pytest
+
+from ratt_opt.report import palette
+from tests.report.colour_vision import VISIONS, distance
+
+ON_A_MAP = (palette.SURVIVING, palette.LOST, palette.BLINDED, palette.TARGET)
+OF_PLANNERS = tuple(look.colour for look in palette.PLANNERS.values())
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+@pytest.mark.parametrize("colours", [ON_A_MAP, OF_PLANNERS], ids=["map", "planners"])
+def test_colours_stay_apart(colours, vision):
+    least = palette.LEAST_GREY_DISTANCE if vision == "grey" else palette.LEAST_COLOUR_DISTANCE
+    assert min(distance(a, b, vision) for a, b in combinations(colours, 2)) >= least
+
+
+def test_the_simulation_knows_what_is_confused():
+    """Red and green of equal lightness: far apart to most, close to people without one kind of cone."""
+    assert distance("#c1584f", "#84803a", "normal") > 40
+    assert distance("#c1584f", "#84803a", "deuteranopia") < 20
+    assert distance("#ffffff", "#000000", "grey") == pytest.approx(100, abs=0.1)
+
+
+def test_planners_differ_without_colour():
+    looks = palette.PLANNERS.values()
+    assert len({look.marker for look in looks}) == len({look.hatch for look in looks}) == len(palette.PLANNERS)

@@ -1,0 +1,60 @@
+"""The pages lead somewhere: every link has a target, and the distribution holds what they speak of."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tarfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)(?:#[^)]*)?\)")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_no_link_is_broken(page: Path) -> None:
+    broken = [link for link in LINK.findall(page.read_text(encoding="utf-8")) if not (page.parent / link).exists()]
+    assert broken == []
+
+
+def test_every_document_is_reached_from_the_readme() -> None:
+    seen, ahead = set(), [ROOT / "README.md"]
+    while ahead:
+        page = ahead.pop()
+        seen.add(page.resolve())
+        if page.suffix == ".md":
+            found = ((page.parent / link).resolve() for link in LINK.findall(page.read_text(encoding="utf-8")))
+            ahead += [path for path in found if path not in seen]
+    assert {path.resolve() for path in (ROOT / "docs").rglob("*") if path.suffix in {".md", ".png"}} <= seen
+
+
+def test_the_readme_is_short() -> None:
+    """About 600 words besides code and tables."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    prose = re.sub(r"```.*?```|^\|.*$|<!--.*?-->", "", text, flags=re.DOTALL | re.MULTILINE)
+    assert len(prose.split()) <= 650
+
+
+def test_the_source_distribution_holds_docs_licence_and_builds_the_same_wheel(tmp_path: Path) -> None:
+    def build(kind: str, cwd: Path) -> Path:
+        code = f"import hatchling.build; print(hatchling.build.build_{kind}({str(tmp_path / cwd.name)!r}))"
+        (tmp_path / cwd.name).mkdir(exist_ok=True)
+        done = subprocess.run([sys.executable, "-c", code], cwd=cwd, check=True, capture_output=True, text=True)
+        return tmp_path / cwd.name / done.stdout.split()[-1]
+
+    source = build("sdist", ROOT)
+    with tarfile.open(source) as archive:
+        archive.extractall(tmp_path / "unpacked", filter="data")
+    (unpacked,) = (tmp_path / "unpacked").iterdir()
+    for name in ("LICENSE", "CITATION.cff", "docs/guide.md", "docs/audit.md", "tests/conftest.py"):
+        assert (unpacked / name).exists(), name
+    here, again = build("wheel", ROOT), build("wheel", unpacked)
+    assert here.name == again.name
+    assert here.read_bytes() == again.read_bytes()
+    information = (unpacked / "PKG-INFO").read_text(encoding="utf-8")
+    assert "License-Expression: BSD-3-Clause" in information
+    assert "License-File: LICENSE" in information
