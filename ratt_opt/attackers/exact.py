@@ -53,8 +53,8 @@ def worst_case_attack(
     - Up to 12 robots, and up to 20 where the next two lines do not apply, on any graph and for any
       objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
       threshold). The result relies on nothing.
-    - Larger teams with two-dimensional targets on a complete graph without protected links: branch
-      and bound (``by_size``; a node is a branch or a partial set). Relies on a non-decreasing
+    - Larger teams with two-dimensional targets on a complete graph without protected links: families
+      of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set). Relies on a non-decreasing
       objective, which the three criteria are.
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a

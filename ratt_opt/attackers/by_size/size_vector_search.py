@@ -145,7 +145,10 @@ class SizeVectorSearch:
             for sizes in dict.fromkeys([*(family.sizes for family in families), *self.vectors])
             if self._is_listed(sizes[0])
         }
+        self._bound_all(lists, min(sizes[0] for sizes in self.vectors))
         for sizes, search in searches.items():
+            if sizes not in self.bounds:
+                break
             with self._noting(sizes, search):
                 search.bound(self.task.budget)
         for family in families:
@@ -163,6 +166,16 @@ class SizeVectorSearch:
                 for groups in search.run(self.task.budget):
                     self._accept(groups)
                     search.threshold = min(search.threshold, self.bracket.goal)
+
+    def _bound_all(self, lists: LowLists, smallest: int) -> None:
+        """Every family has a group that holds a set of the smallest size that a largest group may have."""
+        low = lists.of(smallest, self.bracket.goal, self.task.budget) if self._is_listed(smallest) else None
+        if low is not None:
+            weakest = float(low.values.min(initial=self.bracket.goal))
+            self.bounds = {sizes: max(bound, weakest) for sizes, bound in self.bounds.items()}
+            self._raise_lower()
+            if weakest >= self.bracket.goal:
+                self.bounds.clear()
 
     @contextmanager
     def _noting(self, sizes: Sizes, search: VectorSearch) -> Iterator[VectorSearch]:

@@ -58,7 +58,7 @@ def solve_maxmin(
     Parameters
     ----------
     gap : stop when ``upper - lower <= gap * |upper|``
-    time_limit : seconds; the bracket is valid whenever the search stops
+    time_limit : seconds; the bracket is valid whenever the search stops; 0 returns what is known at once
     max_nodes : search nodes; with it (and no time limit) the result is reproducible
     progress : called as ``progress(nodes, lower, upper)``
     alpha_cs : sensing attacks that the link attacks are worth, where RATT was asked before
@@ -66,7 +66,7 @@ def solve_maxmin(
 
     Raises
     ------
-    InputError : a limit is not positive, or the set function is not an information criterion and has too many plans.
+    InputError : a limit is negative, or the set function is not an information criterion and has too many plans.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
