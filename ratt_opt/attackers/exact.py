@@ -33,8 +33,8 @@ __all__ = ["attack_survey", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-BOUND_SHARE, PARTITION_SHARE = 0.3, 0.5
-"""Of what is left of the budget, for the weakest group of the forced size and for partitions; prices get the rest."""
+BOUND_SHARE = 0.3
+"""Of what is left of the budget, for the weakest group of the forced size; prices get the rest. Not measured."""
 
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
@@ -60,7 +60,7 @@ def worst_case_attack(
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above leave them open: annealed attacks, and prices
+    - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, and prices
       that no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of budget. Relies
       on a non-decreasing objective, as above; targets of any dimension.
     - Objectives of one's own beyond 20 robots: an honest bracket (``forced_group.py``), with ``stop``
@@ -127,17 +127,18 @@ def _search(task: AttackTask) -> Stop:
 
 
 def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None) -> Stop:
-    """Annealed attacks, the forced size, then partitions where they are few, and prices."""
-    prices = _price_search(task)
-    if prices is not None:
-        prices.anneal()
-    stop = _within(task, BOUND_SHARE, lambda part: forced_group_bound(part, team))
-    if team is not None and groups is not None and stop is not Stop.CLOSED:
+    """The forced size, then partitions where they are few; elsewhere annealed attacks before it and prices after it."""
+    if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
-        share = 1.0 if prices is None else PARTITION_SHARE
-        stop = _within(task, share, lambda part: SplitSearch(part, team, groups).run())
-    return stop if prices is None or stop is Stop.CLOSED else prices.run()
+        stop = forced_group_bound(task, team)
+        return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
+    prices = _price_search(task)
+    if prices is None:
+        return forced_group_bound(task, team)
+    prices.anneal()
+    stop = _within(task, BOUND_SHARE, lambda part: forced_group_bound(part, team))
+    return stop if stop is Stop.CLOSED else prices.run()
 
 
 def _price_search(task: AttackTask) -> PriceSearch | None:
@@ -162,7 +163,7 @@ def _within(task: AttackTask, share: float, search: Callable[[AttackTask], Stop]
     try:
         return search(replace(task, budget=part))
     except OutOfBudget as out:
-        if share == 1.0 or out.stop is Stop.INTERRUPTED:
+        if out.stop is Stop.INTERRUPTED:
             raise
         return out.stop
     finally:
