@@ -60,11 +60,12 @@ def worst_case_attack(
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, and prices
-      that no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of budget. Relies
-      on a non-decreasing objective, as above; targets of any dimension.
-    - Objectives of one's own beyond 20 robots: an honest bracket (``forced_group.py``), with ``stop``
-      ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not checked).
+    - Teams of more than 20 robots on any graph, where the lines above do not apply, with a ``time_limit`` of the call's
+      own: annealed attacks, and prices that no weak group pays (``by_prices``; a node is a branch on one robot),
+      until closed or out of time. Relies on a non-decreasing objective, as above; targets of any dimension. Compiling
+      takes about a minute once per machine.
+    - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
+      non-decreasing objective (not checked).
 
     A keyboard interrupt or a spent budget returns the bracket reached. Interrupted before any attack
     is known, it evaluates the team without an attack and returns that; its lower bound, the value of no
@@ -90,7 +91,8 @@ def worst_case_attack(
         first = bounded_rational_attack(problem, values.plan)
         bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
-        stop = _search(AttackTask(problem, values, bracket, own))
+        patient = time_limit is not None and budget is None
+        stop = _search(AttackTask(problem, values, bracket, own), patient=patient)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -104,7 +106,7 @@ def worst_case_attack(
     )
 
 
-def _search(task: AttackTask) -> Stop:
+def _search(task: AttackTask, *, patient: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(task)
@@ -123,17 +125,17 @@ def _search(task: AttackTask) -> Stop:
         return threshold_search(task)
     if team is not None and problem.communication.is_complete:
         unprotected_bound(task, team)
-    return _any_graph(task, team, groups)
+    return _any_graph(task, team, groups, patient=patient)
 
 
-def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None) -> Stop:
+def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, patient: bool) -> Stop:
     """The forced size, then partitions where they are few; elsewhere annealed attacks before it and prices after it."""
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
         stop = forced_group_bound(task, team)
         return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
-    prices = _price_search(task)
+    prices = _price_search(task) if patient else None
     if prices is None:
         return forced_group_bound(task, team)
     prices.anneal()
