@@ -21,8 +21,6 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike
 
     from ratt_opt.attackers.by_prices.price_search import PriceSearch
@@ -139,14 +137,11 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     if prices is None:
         return forced_group_bound(task, team)
     prices.anneal()
-    stop = _within(task, BOUND_SHARE, lambda part: forced_group_bound(part, team))
-    return stop if stop is Stop.CLOSED else prices.run()
+    return Stop.CLOSED if _forced_group_in_share(task, team) is Stop.CLOSED else prices.run()
 
 
 def _price_search(task: AttackTask) -> PriceSearch | None:
-    """The search by prices, for teams beyond a table of thresholds and criteria with compiled code."""
-    if task.problem.n_robots <= LARGEST_COMPILED:
-        return None
+    """The search by prices, for criteria with compiled code."""
     from ratt_opt.attackers.by_prices.team import Team
 
     team = Team.of(task.problem.objective, task.values.plan)
@@ -157,13 +152,13 @@ def _price_search(task: AttackTask) -> PriceSearch | None:
     return PriceSearch(task, team)
 
 
-def _within(task: AttackTask, share: float, search: Callable[[AttackTask], Stop]) -> Stop:
-    """A search within a share of what is left of the seconds and nodes; the bracket keeps what it proves."""
+def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None) -> Stop:
+    """The bound of the forced size within its share of the seconds and nodes left; the bracket keeps what it proves."""
     budget = task.budget
-    nodes = None if budget.max_nodes is None else int(share * budget.nodes_left(budget.max_nodes))
-    part = budget.part(share, max_nodes=nodes)
+    nodes = None if budget.max_nodes is None else int(BOUND_SHARE * budget.nodes_left(budget.max_nodes))
+    part = budget.part(BOUND_SHARE, max_nodes=nodes)
     try:
-        return search(replace(task, budget=part))
+        return forced_group_bound(replace(task, budget=part), team)
     except OutOfBudget as out:
         if out.stop is Stop.INTERRUPTED:
             raise

@@ -7,10 +7,10 @@ from typing import Any
 import numba
 import numpy as np
 
-from ratt_opt.curvatures.planar.inequalities import MARGIN
+__all__ = ["MARGIN", "ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
 
-__all__ = ["ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
-
+MARGIN = 1e-12
+"""Safety margin for rounding of a ceiling, relative to the sum of the absolute terms."""
 # Levels are finite (checked on entry), so comparisons may assume it; no operation is reordered.
 _FINITE = {"nnan", "ninf", "nsz"}
 _IMPROVED = 1e-12

@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ceilings", "least_enough", "least_marginal", "most_enough", "most_marginal"]
 
-MARGIN = 1e-12
-"""Safety margin for rounding, relative to the sum of the absolute terms."""
-
 
 def least_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, highest: float) -> FloatArray:
     """Smallest ``1/P - 1/Q`` with ``P <= highest``, ``Q >= P + added`` and ``P - slope Q <= ceiling``, elementwise.
@@ -96,7 +93,7 @@ def ceilings(  # noqa: PLR0917
 
     ``own`` is at least the form of ``target`` (S,) along ``direction`` (S, 3).
     """
-    from ratt_opt.curvatures.planar.compiled import raise_ceilings
+    from ratt_opt.curvatures.planar.compiled import MARGIN, raise_ceilings
 
     parts, owners = options.parts[allowed], options.owners[allowed]
     cuts, slope = np.stack([one.average for one in known]), np.array([one.slope for one in known])
