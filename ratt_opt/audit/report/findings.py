@@ -60,7 +60,7 @@ def _theorems(records: list[EntryRecord]) -> Finding:
     if _all_proved([r for r in rows if r["label"] in (PATTERN_FREE_ND.label, PATTERN_FREE_SUB.label)]):
         sentences.append(
             "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
-            "every curvature strictly between 0 and 1; the survivor bounds are at least as large, and where attacks can "
+            "every curvature strictly between 0 and 1; the survivor bounds are at least as large; where attacks can "
             "keep every group to one seeing robot RATT is optimal. The machine decides teams up to the size shown; "
             "written proofs for any number of robots are in the documentation of pattern_free_bound, group_size_bound "
             "and survivor_bound. What Theorem 1 needs is RATT's choices, one robot at a time: no pattern, no "
