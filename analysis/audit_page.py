@@ -16,7 +16,7 @@ from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
 from ratt_opt.audit.report.findings import Finding, findings, title
 from ratt_opt.audit.report.pages import finding_lines
-from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
+from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -8,7 +8,8 @@ end is then used. The curvature must be taken over a domain that holds every set
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol, Self, runtime_checkable
+from fractions import Fraction
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
@@ -68,6 +69,8 @@ class Guarantee(float):
 
 
 Curvatures = float | HasUpper | None
+Share = TypeVar("Share", float, Fraction)
+"""A formula's number, in floating point or exact."""
 
 
 def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, all_bait: bool = False) -> Guarantee:
