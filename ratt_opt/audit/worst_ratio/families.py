@@ -19,7 +19,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-__all__ = ["is_attained", "link_only_instance", "pair_instance", "sensing_instance"]
+__all__ = ["is_attained", "link_only_instance", "pair_instance", "sensing_instance", "shared_plan_instance"]
 
 
 def pair_instance(curvature: Fraction) -> RatioWitness:
@@ -34,6 +34,26 @@ def pair_instance(curvature: Fraction) -> RatioWitness:
     own = (1 - t * k, t, t**2, 1, 1, t)
     shared: dict[tuple[int, ...], Fraction] = {(0, 2): t * k, (1, 5): k}
     return _coverage(RatioQuestion(n_robots=3, alpha_s=1, alpha_c=0, curvature=k, family="submodular"), own, shared)
+
+
+def shared_plan_instance(size: int, curvature: Fraction) -> RatioWitness:
+    """Return an instance with ``N = 2g``, ``alpha_s = g = size`` on which three planners keep ``(1 + (g-1) t) / g``.
+
+    RATT, the myopic planner and Greedy return one plan, so the best of them is no better: over all teams it keeps no
+    share above ``t = 1 - curvature`` either. A weighted coverage function: each bait element covers t alone and all
+    of them ``k`` together, each greedy element t alone and ``k`` with the other element of one bait robot, which covers
+    t alone, and the other elements of greedy robots 1. All are worth 1 alone. Greedy takes one bait element, then the
+    greedy robots' (1 each), then the other bait elements, which add t as their rivals do by then. Blinding the greedy
+    robots leaves ``g t + k``; the other plan shares nothing and keeps g.
+    """
+    g, k, t = size, curvature, 1 - curvature
+    own = [t] * (3 * g) + [Fraction(1)] * g
+    shared: dict[tuple[int, ...], Fraction] = {tuple(range(g)): k} if g > 1 else {}
+    shared |= {(g + i, 2 * g + i): k for i in range(g)}
+    if g == 1:
+        own[0] = Fraction(1)
+    question = RatioQuestion(n_robots=2 * g, alpha_s=g, alpha_c=0, curvature=k, family="submodular")
+    return _coverage(question, own, shared)
 
 
 def link_only_instance(curvature: Fraction) -> RatioWitness:

@@ -21,7 +21,7 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from ratt_opt.audit.worst_ratio.class_rows import ClassRows
 
-__all__ = ["WorstCaseRatio", "worst_case_ratio"]
+__all__ = ["WorstCaseRatio", "class_rows", "worst_case_ratio"]
 
 LARGEST_TEAM = 7
 """Most robots: a witness has ``4**N`` values."""
@@ -108,7 +108,7 @@ def worst_case_ratio(
     budget = Budget(time_limit)
     parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
     floor = proved_ratio(question) if use_theorem else Fraction(0)
-    search = RatioSearch(parts, _class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
+    search = RatioSearch(parts, class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
     stop = Stop.EXHAUSTED
     try:
         search.run(budget)
@@ -139,7 +139,8 @@ def _check_sensing(alpha_s: int, n_robots: int) -> int:
         raise InputError("alpha_s", rule, alpha_s) from None
 
 
-def _class_rows(parts: Skeleton, question: RatioQuestion) -> ClassRows:
+def class_rows(parts: Skeleton, question: RatioQuestion) -> ClassRows:
+    """Columns and rows of the class that a question is about."""
     if question.family == "submodular":
         return Submodular(parts.n_robots, question.curvature, question.domain)
     compared = [mask for pair in parts.comparisons for mask in pair]
