@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
 
-SOURCE = "group-size bound (proof in its docstring)"
+SOURCE = "group-size bound (this library)"
+IN_COQ = {"k": "group_size_submodular", "c": "group_size_total_curvature"}
+"""For complete graphs without protected parts."""
 
 
 def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, baits_survive: bool = True) -> Guarantee:
@@ -64,7 +66,8 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
     needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
-    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE)
+    proof = f"group_size_bound; in Coq {IN_COQ[kind] if g > 1 else 'ratt_optimal'}"
+    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
 
 
 def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:

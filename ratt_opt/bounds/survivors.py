@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["largest_survivor_group", "survivor_bound", "survivor_share"]
 
-SOURCE = "survivor bound (proof in its docstring)"
+SOURCE = "survivor bound (this library)"
 
 
 def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -65,7 +65,7 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
         f"no group of more than {size} seeing robots",
         "RATT's plan",
     )
-    return Guarantee(bound, needs, SOURCE)
+    return Guarantee(bound, needs, SOURCE, "survivor_bound")
 
 
 def survivor_share(size: int, kept: Share, *, submodular: bool) -> Share:
