@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import _thread
 import signal
 import sys
 import threading
@@ -52,11 +51,19 @@ class Interrupts:
         if issubclass(what.exc_type, KeyboardInterrupt):
             self.happened = True
             # Raised from here it would be dropped again.
-            self._again = threading.Timer(AGAIN_AFTER, _thread.interrupt_main)
+            self._again = threading.Timer(AGAIN_AFTER, _interrupt_main)
             self._again.daemon = True
             self._again.start()
         elif not self.happened:
             self._hook(what)
+
+
+def _interrupt_main() -> None:
+    """Send the main thread an interrupt that also ends its waiting, unless the process would end by it."""
+    main = threading.main_thread().ident
+    if callable(signal.getsignal(signal.SIGINT)) and main is not None:
+        send = getattr(signal, "pthread_kill", lambda _, number: signal.raise_signal(number))
+        send(main, signal.SIGINT)
 
 
 def ignore_interrupts() -> None:
