@@ -29,6 +29,7 @@ from .bounds.guarantees import (
     theorem1_bound as theorem1_bound,
 )
 from .bounds.instance import instance_bound as instance_bound
+from .bounds.survivors import survivor_bound as survivor_bound
 from .bounds.relaxation import (
     RelaxationBound as RelaxationBound,
     relaxation_bound as relaxation_bound,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "attack_tables",
     "audit_table",
+    "guarantee_text",
     "report_tables",
     "share_text",
     "verdict_text",
@@ -164,8 +165,18 @@ def _guarantees(report: BoundReport) -> Table:
         table.add_row(f"{name} *" if strongest else name, down(float(guarantee), 6), "; ".join(guarantee.hypotheses))
     for name, why in report.inapplicable.items():
         table.add_row(name, "none", f"does not apply: {why}")
-    table.caption = "* strongest that applies" if best > 0 else "curvature 1: no guarantee says anything here"
+    table.caption = "; ".join(
+        filter(None, ["* strongest that applies" if report.guaranteed_share else "", guarantee_text(report)])
+    )
     return table
+
+
+def guarantee_text(report: BoundReport) -> str:
+    """What the strongest guarantee says where that is all or nothing, else nothing."""
+    best = report.guaranteed_share
+    if best == 1:
+        return "RATT's plan is optimal, and was sure to be before planning"
+    return "" if best > 0 else "curvature 1: no guarantee says anything here"
 
 
 def _robots(attack: Attack) -> str:

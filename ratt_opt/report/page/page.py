@@ -13,7 +13,7 @@ from ratt_opt.report.page.map_drawing import legend_html, map_svg
 from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
-from ratt_opt.report.tables import share_text, verdict_text
+from ratt_opt.report.tables import guarantee_text, share_text, verdict_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -129,6 +129,8 @@ def _trust_section(report: BoundReport) -> Iterator[str]:
     yield f"</p><p>Best possible: {optimum}; the search for it stopped because: {report.optimum.stop.value}.</p>"
     rows = [(name, down(float(g), 6), "; ".join(g.hypotheses)) for name, g in report.guarantees.items()]
     rows += [(name, "none", f"does not apply: {why}") for name, why in report.inapplicable.items()]
+    if said := guarantee_text(report):
+        yield f"<p>Guarantees: {escape(said)}.</p>"
     yield f'<div class="wide">{html_table("Guaranteed before planning", ("guarantee", "share", "needs"), rows)}</div>'
     yield "</section>"
 
