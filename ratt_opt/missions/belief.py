@@ -38,11 +38,15 @@ class Belief(ByValue, Shown):
         means, covariances = check_finite("mean", mean, ndim=2), check_finite("covariance", covariance, ndim=3)
         expected = (*means.shape, means.shape[1])
         if covariances.shape != expected:
-            raise InputError("covariance", f"must have shape {expected} to match the mean", f"shape {covariances.shape}")
+            raise InputError(
+                "covariance", f"must have shape {expected} to match the mean", f"shape {covariances.shape}"
+            )
         covariances = (covariances + np.swapaxes(covariances, -1, -2)) / 2
         for j, values in enumerate(np.linalg.eigvalsh(covariances)):
             if not values[0] > np.finfo(np.float64).eps * abs(values[-1]):
-                raise InputError(f"covariance[{j}]", "must be positive definite", f"smallest eigenvalue {values[0]:.6g}")
+                raise InputError(
+                    f"covariance[{j}]", "must be positive definite", f"smallest eigenvalue {values[0]:.6g}"
+                )
         return cls(readonly(means), readonly(covariances))
 
     @property

@@ -1,9 +1,9 @@
 """Several steps ahead: control sequences as elements, the joint state of all steps, and the part one cares about.
 
 For ``H`` steps the state of a target is ``(x_1, ..., x_H)``, Gaussian before any measurement with covariance blocks
-``P_a`` and ``P_a F_{a+1}' ... F_b'`` for ``a < b``. What step ``h`` measures is information about ``x_h`` alone, so the
-information of a sequence is block diagonal and that of a team adds up. The posterior block of the last step is the Kalman
-filter's covariance after all steps; earlier blocks are the smoother's. One criterion of all that is
+``P_a`` and ``P_a F_{a+1}' ... F_b'`` for ``a < b``. What step ``h`` measures is information about ``x_h`` alone, so
+the information of a sequence is block diagonal and that of a team adds up. The posterior block of the last step is the
+Kalman filter's covariance after all steps; earlier blocks are the smoother's. One criterion of all that is
 ``tr(C L^-1 C')`` with an output matrix ``C``: the position at the last step, or the mean over the steps.
 """
 

@@ -9,7 +9,6 @@ import hashlib
 import json
 import os
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from ratt_opt.scenario.model import Scenario
 
@@ -49,7 +49,11 @@ class Journal:
             return cls(None)
         file = output_file(path)
         text = json.dumps([scenario.model_dump(mode="json"), dict(settings)], sort_keys=True)
-        head = {"format": "ratt-opt mission journal", "version": 1, "mission": hashlib.sha256(text.encode()).hexdigest()}
+        head = {
+            "format": "ratt-opt mission journal",
+            "version": 1,
+            "mission": hashlib.sha256(text.encode()).hexdigest(),
+        }
         journal = cls(file)
         whole = _whole_lines(file)
         if not whole:

@@ -1,7 +1,7 @@
 """Who knows which measurements, and what follows from them: beliefs of groups that split and meet again.
 
-A measurement becomes information about the state at its step (``H'R^-1 H`` and ``H'R^-1 z``), which adds up. Every robot
-keeps the pieces that it made or was told since the last step of which all robots know everything. A group's
+A measurement becomes information about the state at its step (``H'R^-1 H`` and ``H'R^-1 z``), which adds up. Every
+robot keeps the pieces that it made or was told since the last step of which all robots know everything. A group's
 belief is that of a filter run over the union of its pieces: whatever splits and meetings there were, nothing is
 counted twice, and where nothing is lost the belief is that of one central filter. Adding beliefs themselves would
 count their common past, and the motion noise they share, twice.
@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import BoolArray, FloatArray, readonly
-from ratt_opt.missions.belief import Belief
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.models.targets import TargetMotion
 
 __all__ = ["Memory", "Pieces"]
@@ -97,7 +97,9 @@ class Memory:
         count = len(self.steps) if alike.all() else int(np.argmin(alike))
         if count == 0:
             return self
-        base = self if count == len(self.steps) else replace(self, steps=self.steps[:count], holds=self.holds[:, :count])
+        base = (
+            self if count == len(self.steps) else replace(self, steps=self.steps[:count], holds=self.holds[:, :count])
+        )
         time = self.base_time + count * self.period
         return Memory(self.motion, self.period, base.belief(0), time, self.steps[count:], self.holds[:, count:])
 

@@ -10,7 +10,6 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.missions.horizon import Sequences
 from ratt_opt.problem import Attack, Problem
-from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.memory import Memory
     from ratt_opt.missions.world import Threatened, World
+    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["Part", "TeamPlan", "plan_team"]
 

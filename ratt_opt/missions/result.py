@@ -35,14 +35,15 @@ class GroupTrack(ByValue):
 class MissionStep(ByValue):
     """One step: ``poses`` (N, 3) after it, ``controls`` (N, 2) that led there, the ``attack`` in force, ``truth`` (M, d).
 
-    ``groups`` : by the lowest robot; ``best`` : which of them is the team's, the one with the smallest trace of position
-    covariances (sharing the best group's belief only: the group that the criterion values most). ``value`` :
-    the criterion that the attack left in the plan's problem. ``seconds`` : planning time, not compared.
+    ``links`` : those that were not cut. ``groups`` : by the lowest robot; ``best`` : which of them is the team's, the one
+    with the smallest trace of position covariances (sharing the best group's belief only: the group that the
+    criterion values most). ``value`` : the criterion of the team's seeing robots.
     """
 
     poses: FloatArray
     controls: FloatArray
     attack: Attack
+    links: frozenset[tuple[int, int]]
     truth: FloatArray
     groups: tuple[GroupTrack, ...]
     best: int
@@ -127,7 +128,7 @@ class Mission(ByValue):
         return readonly(np.array([s / n if n else np.nan for s, n in pairs]))
 
     def nees_band(self, level: float = 0.95) -> tuple[float, float]:
-        """What :attr:`nees` of one step lies in with probability ``level`` when the filter is consistent (chi-square)."""
+        """What :attr:`nees` of a step lies in with probability ``level`` for a consistent filter (chi-square)."""
         from scipy.stats import chi2
 
         freedom = self.dimension * self.scenario.n_targets

@@ -69,10 +69,10 @@ def run_mission(
         that returns an :class:`Attack`
     attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or an
         :class:`AttackModel`
-    sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's), or each group keeps its own and
-        they are merged without double counting when links return (``"all surviving"``). Then groups that standing
-        failures keep apart plan for themselves, each against what of the budgets can hit it; and the attacker sees the
-        belief of the group that knows most.
+    sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's), or each group keeps its
+        own and they are merged without double counting when links return (``"all surviving"``). Then groups that
+        standing failures keep apart plan for themselves, each against what of the budgets can hit it; and the attacker
+        sees the belief of the group that knows most.
     horizon : steps H that a plan looks ahead; its first controls are executed
     seed : of everything random
     model : motions, sensors and filter; the paper's and the textbook EKF by default
@@ -201,6 +201,7 @@ class _Flight:
             poses=self.poses,
             controls=controls,
             attack=self.attack,
+            links=team.problem.communication.links - self.attack.links,
             truth=self.truth,
             groups=tracks,
             best=best,

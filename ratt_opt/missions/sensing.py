@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.missions.belief import Belief
+    from ratt_opt.missions.models.sensors import SensorModel
     from ratt_opt.missions.world import World
 
 __all__ = ["Innovation", "Reading", "group_pieces", "simulated_readings"]
@@ -67,8 +68,9 @@ def group_pieces(
     for _ in range(rounds):
         squared, count = 0.0, 0
         for i in members:
-            surprise_squared, numbers = _linearise(world, i, poses[i], readings[i], (predicted, point, spread), pieces)
-            squared, count = squared + surprise_squared, count + numbers
+            piece = _linearise(world.sensors[i], poses[i], readings[i], (predicted, point, spread))
+            pieces.information[i, :, :2, :2], pieces.vector[i, :, :2] = piece.information, piece.vector
+            squared, count = squared + piece.squared, count + piece.count
         chosen = np.isin(np.arange(world.scenario.n_robots), members)
         information, vector = pieces.of(chosen)
         updated = predicted.updated(information, vector)
@@ -79,24 +81,28 @@ def group_pieces(
     return pieces, Innovation(squared=max(squared - explained, 0.0), count=count)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Piece:
+    """One robot's ``information`` (M, 2, 2) and ``vector`` (M, 2), and ``nu' R^-1 nu`` of the numbers measured."""
+
+    information: FloatArray
+    vector: FloatArray
+    squared: float = 0.0
+    count: int = 0
+
+
 def _linearise(
-    world: World,
-    robot: int,
-    pose: FloatArray,
-    reading: Reading,
-    about: tuple[Belief, Belief, FloatArray | None],
-    pieces: Pieces,
-) -> tuple[float, int]:
-    """Write one robot's piece, linearised at a point; return ``nu' R^-1 nu`` and the numbers measured."""
+    sensor: SensorModel, pose: FloatArray, reading: Reading, about: tuple[Belief, Belief, FloatArray | None]
+) -> _Piece:
+    """One robot's piece, linearised at the second belief of ``about``; the first is the prediction."""
     predicted, point, spread = about
-    sensor, places = world.sensors[robot], point.positions
+    places = point.positions
+    piece = _Piece(np.zeros((*places.shape, 2)), np.zeros(places.shape))
     usable = reading.seen & sensor.sees(pose, predicted.positions)
     usable &= np.linalg.norm(places - pose[:2], axis=-1) > ON_TOP
     j = np.flatnonzero(usable)
-    pieces.information[robot] = 0.0
-    pieces.vector[robot] = 0.0
     if not len(j):
-        return 0.0, 0
+        return piece
     slope = sensor.jacobian(pose, places[j])
     weights = np.linalg.inv(sensor.noise_covariance(pose, places[j], None if spread is None else spread[j]))
     surprise = sensor.surprise(reading.values[j], sensor.measure(pose, places[j]))
@@ -104,7 +110,8 @@ def _linearise(
     linear = surprise + (slope @ places[j][..., None])[..., 0]
     weighted = np.swapaxes(slope, -1, -2) @ weights
     information = weighted @ slope
-    pieces.information[robot, j, :2, :2] = (information + np.swapaxes(information, -1, -2)) / 2
-    pieces.vector[robot, j, :2] = (weighted @ linear[..., None])[..., 0]
+    piece.information[j] = (information + np.swapaxes(information, -1, -2)) / 2
+    piece.vector[j] = (weighted @ linear[..., None])[..., 0]
     off = linear - (slope @ predicted.positions[j][..., None])[..., 0]
-    return float(np.einsum("mi,mij,mj->", off, weights, off)), len(j) * sensor.size
+    squared = float(np.einsum("mi,mij,mj->", off, weights, off))
+    return replace(piece, squared=squared, count=len(j) * sensor.size)

@@ -100,7 +100,9 @@ class World:
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
         if self.model.objective != "trace" and (self.horizon > 1 or self.motion.dimension > 2):
-            raise InputError("objective", "must be trace for a part of a state (horizon > 1, velocities)", self.model.objective)
+            raise InputError(
+                "objective", "must be trace for a part of a state (horizon > 1, velocities)", self.model.objective
+            )
 
     @property
     def period(self) -> float:

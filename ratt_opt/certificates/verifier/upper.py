@@ -12,7 +12,18 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
-from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, rows_of, walk
+from ratt_opt.certificates.verifier.reading import (
+    array,
+    exact,
+    fields,
+    index,
+    indices,
+    links,
+    need,
+    packed,
+    rows_of,
+    walk,
+)
 from ratt_opt.certificates.verifier.statement import PRECISIONS
 from ratt_opt.certificates.verifier.work import hold, tick
 from ratt_opt.errors import ProofError

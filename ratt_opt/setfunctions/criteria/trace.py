@@ -12,8 +12,8 @@ into its parts of each sign.
 
 An inexact ``P0``, ``Y`` or ``w`` costs strength, never validity.
 
-**With an output matrix** ``C`` (``W = C'C``) the criterion is ``tr(C L^{-1} C') = tr(W L^{-1})``. The parallel sum is concave
-as a matrix, so ``m`` stays convex in ``P``, with ``G = W - (1 + X P0)^{-1} W (1 + P0 X)^{-1}``; and
+**With an output matrix** ``C`` (``W = C'C``) the criterion is ``tr(C L^{-1} C') = tr(W L^{-1})``. The parallel sum is
+concave as a matrix, so ``m`` stays convex in ``P``, with ``G = W - (1 + X P0)^{-1} W (1 + P0 X)^{-1}``; and
 ``(L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0`` gives ``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for any ``Y`` (d, q).
 
 **Its largest marginals.** ``m`` is convex in ``P``, hence largest at an extreme point ``P0^{1/2} V V' P0^{1/2}`` of
@@ -57,7 +57,7 @@ class TraceObjective(InformationObjective):
     """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2].
 
     ``output`` : the part of the state that counts, (q, d) or (M, q, d) of full row rank, or ``None`` for all of it:
-    ``sum_j w_j [tr(C_j prior_j C_j') - tr(C_j Lambda_j(S)^{-1} C_j')]``. Errors are those of any criterion of information matrices.
+    ``sum_j w_j [tr(C_j prior_j C_j') - tr(C_j Lambda_j(S)^{-1} C_j')]``.
     """
 
     __slots__ = ()
