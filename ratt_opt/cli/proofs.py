@@ -16,6 +16,9 @@ __all__ = ["audit", "verify"]
 UPPER_ONLY = 3
 """Exit code of ``verify`` where the lower end is stated, not proved."""
 
+SUMMARY = ("complete", "quick", "counts", "seconds")
+"""What ``audit --json`` repeats of ``audit.json``."""
+
 
 def verify(
     file: Annotated[Path, typer.Argument(help="Certificate file.", show_default=False)],
@@ -50,7 +53,8 @@ def verify(
     found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
     second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     if as_json:
-        print_json(asdict(found) | ({} if second is None else {"verified": asdict(second)}))
+        checked = {} if second is None else {"verified": asdict(second)}
+        print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **checked})
     else:
         print_lines(
             [*found.lines(), *([] if second is None else [f"ratt-check, whose proof is checked: {second.text}"])]
@@ -72,12 +76,14 @@ def audit(
 
     with progress() as tell:
         ledger = run_audit(out, quick=quick, progress=lambda done, total, name: tell(f"{done + 1}/{total} {name}"))
+    files = [str(out / name) for name in ("audit.json", "audit.html", "audit.md")]
     if as_json:
-        print_json({**ledger.document(), "entries": len(ledger.records)})
+        kept = {name: value for name, value in ledger.document().items() if name in SUMMARY}
+        head = {"format": "ratt-opt audit summary", "version": 1}
+        print_json({**head, **kept, "entries": len(ledger.records), "files": files})
     else:
         print_tables([audit_table(ledger.per_chain())])
         found = (f"{part.heading} {' '.join(part.sentences)}" for part in ledger.findings() if part.sentences)
-        names = ", ".join(printable(str(out / name)) for name in ("audit.json", "audit.html", "audit.md"))
-        print_lines([*found, f"written: {names}"])
+        print_lines([*found, "written: " + ", ".join(map(printable, files))])
     if not ledger.complete:
         raise WorkInterrupted(f"interrupted after {len(ledger.records)} entries, which were written")
