@@ -9,6 +9,8 @@ import numpy as np
 from ratt_opt.budget import Budget
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
@@ -20,11 +22,13 @@ LARGEST_CUT = 200
 of them may be asked for, and where links are many the cheapest cut is a robot's anyway."""
 
 
-def heuristic_cut(threat: Threat, budget: Budget | None = None) -> frozenset[Link]:
+def heuristic_cut(threat: Threat, budget: Budget | None = None, *, ignoring: Collection[int] = ()) -> frozenset[Link]:
     """Split the largest group by its cheapest cut while the links, and the seconds, last.
 
     Once the time is up groups of up to ``LARGEST_CUT`` still lose robots. Of cuts that cost the same the robot with
     the fewest links is cut off, the lowest among equals.
+
+    ``ignoring`` : robots that do not count for a group's size; a group with one that counts is not split
     """
     own, locked = budget or Budget(), float(len(threat.graph.links) + 1)
     weights = np.zeros((threat.graph.n_robots, threat.graph.n_robots))
@@ -32,9 +36,9 @@ def heuristic_cut(threat: Threat, budget: Budget | None = None) -> frozenset[Lin
         weights[i, j] = weights[j, i] = locked if (i, j) in threat.protected_links else 1.0
     groups, left, cut = threat.graph.groups(), threat.alpha_c, set[tuple[int, int]]()
     while True:
-        largest = min(groups, key=lambda group: (-len(group), min(group)))
+        largest = min(groups, key=lambda group: (-len(group.difference(ignoring)), min(group)))
         part = np.array(sorted(largest))
-        if len(part) == 1 or (len(part) > LARGEST_CUT and own.is_over):
+        if len(part) == 1 or len(largest.difference(ignoring)) <= 1 or (len(part) > LARGEST_CUT and own.is_over):
             return frozenset(cut)
         inside = weights[np.ix_(part, part)]
         side = np.zeros(len(part), dtype=np.bool_)
