@@ -55,6 +55,29 @@ from .graph.outcomes import (
 from .graph.survivor_sizes import CaaResult as CaaResult, caa as caa
 from .main_job.bound import bound as bound
 from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
+from .missions.attack_models import (
+    AttackModel as AttackModel,
+    PermanentFailures as PermanentFailures,
+    PersistentAttacks as PersistentAttacks,
+)
+from .missions.belief import Belief as Belief
+from .missions.models.sensors import (
+    BearingOnly as BearingOnly,
+    PositionSensor as PositionSensor,
+    RangeBearing as RangeBearing,
+    RangeOnly as RangeOnly,
+    SensorModel as SensorModel,
+)
+from .missions.models.targets import (
+    ConstantVelocity as ConstantVelocity,
+    CoordinatedTurn as CoordinatedTurn,
+    KnownVelocity as KnownVelocity,
+    TargetMotion as TargetMotion,
+)
+from .missions.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
+from .missions.result import Mission as Mission, MissionStep as MissionStep
+from .missions.run import run_mission as run_mission
+from .missions.world import MissionModel as MissionModel
 from .problem import Attack as Attack, Plan as Plan, Problem as Problem
 from .scenario.files import (
     load_input as load_input,

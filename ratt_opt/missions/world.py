@@ -203,5 +203,5 @@ class World:
             own = sequences.owner == i
             with np.errstate(divide="ignore", invalid="ignore"):  # on top of a target there is no bearing
                 information[own] = sensor.information(sequences.poses[own, h], points, spread)
-        usable = np.isfinite(information).all(axis=(-1, -2))
+        usable = np.asarray(np.isfinite(information).all(axis=(-1, -2)))
         return readonly(np.where(usable[..., None, None], information, 0.0))

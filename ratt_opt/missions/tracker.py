@@ -1,0 +1,299 @@
+"""The loop inside a real system: measurements in, the next plan out, within a time limit; the state is plain data.
+
+The plan after a step is for the next one. Everything that the next step needs is in :class:`TrackerState`, which
+pickles and becomes JSON and back without losing a bit: a robot may die, and another go on from its state.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import TimeoutError as LateError
+from dataclasses import dataclass, field, replace
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, check_finite, check_integer, check_number, readonly
+from ratt_opt._values import ByValue, Shown
+from ratt_opt.errors import InputError
+from ratt_opt.missions.belief import Belief
+from ratt_opt.missions.planners import elements_of, planner_called
+from ratt_opt.missions.sensing import Reading, group_pieces
+from ratt_opt.missions.world import MissionModel, Threatened, World
+from ratt_opt.problem import Attack, Plan
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.missions.horizon import Sequences
+    from ratt_opt.missions.planners import Planner
+    from ratt_opt.problem import Problem
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["Measurement", "Tracker", "TrackerState"]
+
+ON_TIME = 1e-6
+"""Clocks whose steps differ by less than this share of the period count as one period."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """What ``robot`` measured of ``target``: range [m] and bearing [rad], or what its own sensor gives."""
+
+    robot: int
+    target: int
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TrackerState(ByValue, Shown):
+    """All that a tracker knows: ``time`` [s] since it began and the caller's clock ``now`` [s] (``None`` before the first).
+
+    ``poses`` : (N, 3) expected at the next measurements; ``belief`` : of the targets at ``time``; ``controls`` : (N, H, 2)
+    the plan under way, from the next control on; ``steps``, ``missed`` : how many, and how many of their plans were late.
+    """
+
+    time: float
+    now: float | None
+    poses: FloatArray
+    belief: Belief
+    controls: FloatArray
+    steps: int = 0
+    missed: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for strict JSON; floats at full precision."""
+        return {
+            "format": "ratt-opt tracker",
+            "version": 1,
+            "time": self.time,
+            "now": self.now,
+            "poses": self.poses.tolist(),
+            "mean": self.belief.mean.tolist(),
+            "covariance": self.belief.covariance.tolist(),
+            "controls": self.controls.tolist(),
+            "steps": self.steps,
+            "missed": self.missed,
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> TrackerState:
+        """The state that :meth:`to_dict` wrote.
+
+        Raises
+        ------
+        InputError : a field is missing or breaks its rule, as a covariance that is singular.
+        """
+        for name, known in (("format", "ratt-opt tracker"), ("version", 1)):
+            if document.get(name) != known:
+                raise InputError(name, f"must be {known}", document.get(name))
+        missing = sorted({"time", "now", "poses", "mean", "covariance", "controls", "steps", "missed"} - set(document))
+        if missing:
+            raise InputError(missing[0], "is missing", "nothing")
+        return cls(
+            time=check_number("time", document["time"], low=0.0),
+            now=None if document["now"] is None else check_number("now", document["now"]),
+            poses=check_finite("poses", document["poses"], ndim=2),
+            belief=Belief.of(document["mean"], document["covariance"]),
+            controls=check_finite("controls", document["controls"], ndim=3),
+            steps=check_integer("steps", document["steps"], low=0),
+            missed=check_integer("missed", document["missed"], low=0),
+        )
+
+
+@dataclass(slots=True)
+class _Worker:
+    """One thread that plans; a plan that came too late is waited for before the next begins, and thrown away."""
+
+    pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="planner"))
+    running: Future[IntArray] | None = None
+
+
+class Tracker:
+    """Estimates targets from measurements and plans the robots' next controls.
+
+    Parameters
+    ----------
+    scenario : the team as it starts, what is believed of the targets, and the adversary's budgets
+    planner : as in :func:`run_mission`; a callable's work goes on in a thread when it is late, and is thrown away
+    horizon : steps that a plan looks ahead
+    time_limit : seconds for a step; ``None`` waits for the planner. A late plan counts in ``missed``, and the rest of the
+        last plan is executed instead (its last control again where nothing is left).
+    model : motions, sensors and filter, as in :func:`run_mission`
+    state : where to go on; the scenario's start by default
+
+    Raises
+    ------
+    InputError : an argument breaks its rule, or the state is of another team.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        *,
+        planner: str | Planner = "ratt",
+        horizon: int = 1,
+        time_limit: float | None = None,
+        model: MissionModel | None = None,
+        state: TrackerState | None = None,
+    ) -> None:
+        if time_limit is not None and not check_number("time_limit", time_limit, low=0.0) > 0:
+            raise InputError("time_limit", "must be positive", time_limit)
+        self.scenario, self.time_limit = scenario, time_limit
+        self.world = World(scenario, model or MissionModel(), horizon)
+        self._plan, self._worker = planner_called(planner), _Worker()
+        self.state = self._start() if state is None else self._checked(state)
+
+    @property
+    def beliefs(self) -> Belief:
+        """What is believed of the targets now."""
+        return self.state.belief
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_worker": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, _worker=_Worker())
+
+    def step(
+        self,
+        measurements: Iterable[Measurement] = (),
+        now: float | None = None,
+        *,
+        poses: ArrayLike | None = None,
+    ) -> Plan:
+        """Take in what was measured after the last plan's control, and plan the next one.
+
+        The first call, before any control, plans from the start; measurements may be given to it too.
+
+        Parameters
+        ----------
+        measurements : those that arrived; which groups' they are is the caller's matter
+        now : the caller's clock [s]; it must not run backwards, and the belief is predicted by what has passed. ``None``
+            is one sampling period after the last step.
+        poses : (N, 3) where the robots know to be; where the last plan led them by default
+
+        Returns
+        -------
+        Plan : ``elements`` index the robots' control sequences in file order; :attr:`controls` has them as numbers
+
+        Raises
+        ------
+        InputError : a measurement names no robot or target or has another length, a number is not finite, or time runs
+            backwards. The state is then as it was.
+        """
+        began = monotonic()
+        state = self._measured(list(measurements), now, poses)
+        offered = self.world.sequences(state.poses)
+        elements = self._elements(self._problem(state, offered), began)
+        late = elements is None
+        if elements is None:
+            elements = _nearest(offered, state.controls)
+        chosen = offered.only(elements)
+        rest = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
+        self.state = replace(
+            state,
+            poses=readonly(chosen.poses[:, 0]),
+            controls=readonly(rest),
+            steps=state.steps + 1,
+            missed=state.missed + late,
+        )
+        self.controls: FloatArray = readonly(chosen.controls[:, 0])
+        return Plan(elements=readonly(elements), evaluations=0)
+
+    def _start(self) -> TrackerState:
+        belief = self.world.motion.initial(self.scenario)
+        first = np.array([robot.controls[0] for robot in self.scenario.robots])
+        controls = np.repeat(first[:, None], self.world.horizon, axis=1)
+        return TrackerState(time=0.0, now=None, poses=self.scenario.poses, belief=belief, controls=readonly(controls))
+
+    def _checked(self, state: TrackerState) -> TrackerState:
+        n, m, d = self.scenario.n_robots, self.scenario.n_targets, self.world.motion.dimension
+        expected = {"poses": (n, 3), "mean": (m, d), "controls": (n, self.world.horizon, 2)}
+        found = {"poses": state.poses.shape, "mean": state.belief.mean.shape, "controls": state.controls.shape}
+        for name, shape in expected.items():
+            if found[name] != shape:
+                raise InputError(f"state {name}", f"must have shape {shape} for this team", f"shape {found[name]}")
+        return state
+
+    def _measured(self, measurements: list[Measurement], now: float | None, poses: ArrayLike | None) -> TrackerState:
+        """The state after time has passed and the measurements are taken in."""
+        state, period = self.state, self.world.period
+        passed = self._passed(now)
+        belief, time = state.belief, state.time
+        for step in _parts(passed, period):
+            belief = belief.predicted(self.world.motion, step, time)
+            time += step
+        places = state.poses if poses is None else check_finite("poses", poses, ndim=2)
+        if places.shape != state.poses.shape:
+            raise InputError("poses", f"must have shape {state.poses.shape}", f"shape {places.shape}")
+        readings = self._readings(measurements)
+        if readings:
+            pieces, _ = group_pieces(self.world, belief, places, readings, readings)
+            belief = belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
+        clock = now if now is not None else None if state.now is None else state.now + passed
+        return replace(state, time=time, now=clock, poses=places, belief=belief)
+
+    def _passed(self, now: float | None) -> float:
+        """Seconds since the last step; none before the first."""
+        if now is not None:
+            now = check_number("now", now)
+        if self.state.steps == 0:
+            return 0.0
+        if now is None or self.state.now is None:
+            return self.world.period
+        if now < self.state.now:
+            raise InputError("now", f"must not be before the last step's {self.state.now:.6g} s", now)
+        return now - self.state.now
+
+    def _readings(self, measurements: list[Measurement]) -> dict[int, Reading]:
+        readings: dict[int, Reading] = {}
+        n, m = self.scenario.n_robots, self.scenario.n_targets
+        for k, measurement in enumerate(measurements):
+            i = check_integer(f"measurements[{k}].robot", measurement.robot, low=0, high=n - 1)
+            j = check_integer(f"measurements[{k}].target", measurement.target, low=0, high=m - 1)
+            size = self.world.sensors[i].size
+            values = check_finite(f"measurements[{k}].values", measurement.values, ndim=1)
+            if len(values) != size:
+                raise InputError(f"measurements[{k}].values", f"must have {size} numbers", len(values))
+            if i not in readings:
+                readings[i] = Reading(np.zeros((m, size)), np.zeros(m, dtype=np.bool_))
+            if readings[i].seen[j]:
+                raise InputError(f"measurements[{k}]", f"must not repeat robot {i} and target {j}", f"({i}, {j})")
+            readings[i].values[j], readings[i].seen[j] = values, True
+        return readings
+
+    def _problem(self, state: TrackerState, offered: Sequences) -> Problem:
+        """Of all sequences: none is dropped, so that elements mean the same to the caller in every step."""
+        objective = self.world.criterion(state.belief, offered, state.time)
+        budgets = Threatened(Attack(), self.scenario.alpha_s, self.scenario.alpha_c)
+        return self.world.problem(objective, offered.owner, state.poses, budgets)
+
+    def _elements(self, problem: Problem, began: float) -> IntArray | None:
+        """The planner's elements, or ``None`` where they come too late."""
+        if self.time_limit is None:
+            return elements_of(self._plan(problem), problem)
+        worker = self._worker
+        if worker.running is not None and not worker.running.done():
+            return None  # the thread is still busy with a plan that nobody waits for
+        worker.running = worker.pool.submit(lambda: elements_of(self._plan(problem), problem))
+        try:
+            return worker.running.result(timeout=max(self.time_limit - (monotonic() - began), 0.0))
+        except LateError:
+            return None
+
+
+def _parts(passed: float, period: float) -> list[float]:
+    """Whole periods, and what is left: the motion noise is that of periods."""
+    whole = int(passed / period * (1 + ON_TIME))
+    rest = passed - whole * period
+    return [period] * whole + ([rest] if rest > ON_TIME * period else [])
+
+
+def _nearest(offered: Sequences, wanted: FloatArray) -> IntArray:
+    """(N,) elements whose controls are those wanted (N, H, 2), or nearest to them where they are not offered."""
+    apart = np.abs(offered.controls - wanted[offered.owner]).sum(axis=(1, 2))
+    return np.array([(own := np.flatnonzero(offered.owner == i))[np.argmin(apart[own])] for i in range(len(wanted))])
