@@ -6,9 +6,10 @@ pickles and becomes JSON and back without losing a bit: a robot may die, and ano
 
 from __future__ import annotations
 
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from concurrent.futures import TimeoutError as LateError
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -18,13 +19,13 @@ from ratt_opt._validation import FloatArray, IntArray, check_finite, check_integ
 from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
-from ratt_opt.missions.planners import elements_of, planner_called
+from ratt_opt.missions.planners import MaxMinPlanner, elements_of, planner_called
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Plan
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from numpy.typing import ArrayLike
 
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Measurement", "Tracker", "TrackerState"]
 
+SEARCH_SHARE = 0.7
+"""Of a step's time left, for the max-min search: it looks at the clock between nodes, which take a while themselves."""
 ON_TIME = 1e-6
 """Clocks whose steps differ by less than this share of the period count as one period."""
 
@@ -50,10 +53,10 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TrackerState(ByValue, Shown):
-    """All that a tracker knows: ``time`` [s] since it began and the caller's clock ``now`` [s] (``None`` before the first).
+    """All that a tracker knows: ``time`` [s] since it began, and the caller's clock ``now`` [s] if there was one.
 
-    ``poses`` : (N, 3) expected at the next measurements; ``belief`` : of the targets at ``time``; ``controls`` : (N, H, 2)
-    the plan under way, from the next control on; ``steps``, ``missed`` : how many, and how many of their plans were late.
+    ``poses`` : (N, 3) expected at the next measurements; ``belief`` : of the targets at ``time``; ``controls`` :
+    (N, H, 2) what is left of the last plan; ``steps``, ``missed`` : how many there were, and whose plans were late.
     """
 
     time: float
@@ -104,14 +107,6 @@ class TrackerState(ByValue, Shown):
         )
 
 
-@dataclass(slots=True)
-class _Worker:
-    """One thread that plans; a plan that came too late is waited for before the next begins, and thrown away."""
-
-    pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="planner"))
-    running: Future[IntArray] | None = None
-
-
 class Tracker:
     """Estimates targets from measurements and plans the robots' next controls.
 
@@ -120,8 +115,8 @@ class Tracker:
     scenario : the team as it starts, what is believed of the targets, and the adversary's budgets
     planner : as in :func:`run_mission`; a callable's work goes on in a thread when it is late, and is thrown away
     horizon : steps that a plan looks ahead
-    time_limit : seconds for a step; ``None`` waits for the planner. A late plan counts in ``missed``, and the rest of the
-        last plan is executed instead (its last control again where nothing is left).
+    time_limit : seconds for a step; ``None`` waits for the planner. A late plan counts in ``missed``, and the rest of
+        the last plan is executed instead (its last control again where nothing is left).
     model : motions, sensors and filter, as in :func:`run_mission`
     state : where to go on; the scenario's start by default
 
@@ -144,7 +139,8 @@ class Tracker:
             raise InputError("time_limit", "must be positive", time_limit)
         self.scenario, self.time_limit = scenario, time_limit
         self.world = World(scenario, model or MissionModel(), horizon)
-        self._plan, self._worker = planner_called(planner), _Worker()
+        self._plan = planner_called(planner)
+        self._running: Future[IntArray] | None = None
         self.state = self._start() if state is None else self._checked(state)
 
     @property
@@ -153,10 +149,7 @@ class Tracker:
         return self.state.belief
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_worker": None}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _worker=_Worker())
+        return {**self.__dict__, "_running": None}
 
     def step(
         self,
@@ -182,8 +175,8 @@ class Tracker:
 
         Raises
         ------
-        InputError : a measurement names no robot or target or has another length, a number is not finite, or time runs
-            backwards. The state is then as it was.
+        InputError : a measurement names no robot or target or has another length, a number is not finite, or time
+            runs backwards. The state is then as it was.
         """
         began = monotonic()
         state = self._measured(list(measurements), now, poses)
@@ -276,14 +269,31 @@ class Tracker:
         """The planner's elements, or ``None`` where they come too late."""
         if self.time_limit is None:
             return elements_of(self._plan(problem), problem)
-        worker = self._worker
-        if worker.running is not None and not worker.running.done():
-            return None  # the thread is still busy with a plan that nobody waits for
-        worker.running = worker.pool.submit(lambda: elements_of(self._plan(problem), problem))
+        if self._running is not None and not self._running.done():
+            return None  # a thread is still busy with a plan that nobody waits for
+        left = max(self.time_limit - (monotonic() - began), 0.0)
+        plan = self._plan
+        if isinstance(plan, MaxMinPlanner):
+            plan = replace(plan, time_limit=SEARCH_SHARE * left, max_nodes=None)
+        self._running = _in_thread(lambda: elements_of(plan(problem), problem))
         try:
-            return worker.running.result(timeout=max(self.time_limit - (monotonic() - began), 0.0))
+            return self._running.result(timeout=left)
         except LateError:
             return None
+
+
+def _in_thread(work: Callable[[], IntArray]) -> Future[IntArray]:
+    """The result to come of work in a thread that does not keep the program from ending."""
+    future: Future[IntArray] = Future()
+
+    def run() -> None:
+        try:
+            future.set_result(work())
+        except BaseException as error:  # noqa: BLE001  (it is raised where the result is asked for)
+            future.set_exception(error)
+
+    Thread(target=run, name="planner", daemon=True).start()
+    return future
 
 
 def _parts(passed: float, period: float) -> list[float]:
