@@ -165,8 +165,8 @@ class Tracker:
         Parameters
         ----------
         measurements : those that arrived; which groups' they are is the caller's matter
-        now : the caller's clock [s]; it must not run backwards, and the belief is predicted by what has passed. ``None``
-            is one sampling period after the last step.
+        now : the caller's clock [s]; it must not run backwards, and the belief is predicted by what has passed.
+            ``None`` is one sampling period after the last step.
         poses : (N, 3) where the robots know to be; where the last plan led them by default
 
         Returns

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, Shown, plain, shown
 
 if TYPE_CHECKING:
@@ -44,5 +45,5 @@ class MaxMinResult(ByValue, Shown):
         return {name: plain(getattr(self, name)) for name in names}
 
     def __repr__(self) -> str:
-        bracket = f"{self.lower:.9g} <= Phi* <= {self.upper:.9g}"
+        bracket = f"{down(self.lower, 9)} <= Phi* <= {up(self.upper, 9)}"
         return f"MaxMinResult({bracket}, {self.stop.name}, {self.nodes} nodes, elements={shown(self.elements)})"

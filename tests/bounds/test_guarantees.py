@@ -65,7 +65,7 @@ def test_ratt_keeps_every_guarantee_and_any_plan_its_own(submodular_only):
     assert useful > 120
 
 
-def test_the_instance_bound_is_the_best_order_by_definition():
+def test_the_instance_bound_is_the_best_order_or_the_group_size_by_definition():
     from itertools import permutations
 
     rng = np.random.default_rng(8)
@@ -84,7 +84,10 @@ def test_the_instance_bound_is_the_best_order_by_definition():
         for order in permutations(range(3)):
             ratios = [least(i, order[:k]) / largest[i] for k, i in enumerate(order) if largest[i] > 0]
             orders.append(min(ratios, default=1.0))
-        assert ro.instance_bound(problem, plan, c=c) == pytest.approx(min(max(orders), 1.0), abs=1e-12)
+        # By group size: nobody is attacked, so the best element sees, and all three robots are one group.
+        excess = max(m - max(map(f, choice[:, None])) for m, choice in zip(largest, problem.choices, strict=True))
+        groups = max(map(f, plan[:, None])) / (sum(largest) - excess) if sum(largest) > 0 else 1.0
+        assert ro.instance_bound(problem, plan, c=c) == pytest.approx(min(max(*orders, groups), 1.0), abs=1e-12)
 
 
 def test_a_plan_of_many_robots_is_bracketed():

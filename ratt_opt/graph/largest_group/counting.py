@@ -11,7 +11,7 @@ from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.survivor_sizes import caa, links_within
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     import networkx as nx
 
@@ -99,8 +99,11 @@ def counting_bound(threat: Threat) -> int:
     return max(counted, *(len(group) for group in held.groups()))
 
 
-def heuristic_cut(threat: Threat) -> frozenset[Link]:
-    """Split the largest group by its cheapest cut, or cut its cheapest robot off, while the budget lasts."""
+def heuristic_cut(threat: Threat, *, ignoring: Collection[int] = ()) -> frozenset[Link]:
+    """Split the largest group by its cheapest cut, or cut its cheapest robot off, while the budget lasts.
+
+    ``ignoring`` : robots that do not count for a group's size; a group with one that counts is not split
+    """
     import networkx as nx
 
     locked = len(threat.graph.links) + 1
@@ -110,9 +113,9 @@ def heuristic_cut(threat: Threat) -> frozenset[Link]:
         rest.add_edge(i, j, weight=locked if (i, j) in threat.protected_links else 1)
     cut: set[Link] = set()
     while True:
-        largest = min(nx.connected_components(rest), key=lambda group: (-len(group), min(group)))
+        largest = min(nx.connected_components(rest), key=lambda group: (-len(group.difference(ignoring)), min(group)))
         part = rest.subgraph(sorted(largest))
-        if len(largest) == 1:
+        if len(largest) == 1 or len(largest.difference(ignoring)) <= 1:
             return frozenset(cut)
         cost, (side, _) = nx.stoer_wagner(part)
         if len(cut) + cost > threat.alpha_c:

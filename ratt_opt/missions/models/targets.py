@@ -59,8 +59,8 @@ class KnownVelocity(ByValue, TargetMotion):
     """The paper's targets: the position is the state, speed and turning are known.
 
     ``motions`` : (M, 3) speed [m/s], turn rate [rad/s], heading at time 0 [rad]; ``process_std`` : (M,) standard
-    deviation per axis of the noise of one ``sampling_period`` [m], [s]. The heading advances with the turn rate, so that a target circles;
-    the first period is the one of :attr:`Scenario.predicted_targets`.
+    deviation per axis of the noise of one ``sampling_period`` [m], [s]. The heading advances with the turn rate, so
+    that a target circles; the first period is the one of :attr:`Scenario.predicted_targets`.
     """
 
     motions: FloatArray
@@ -97,7 +97,7 @@ class KnownVelocity(ByValue, TargetMotion):
 class ConstantVelocity(ByValue, TargetMotion):
     """States x, y [m], velocity [m/s]; white acceleration.
 
-    ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in one ``sampling_period`` [m].
+    ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in a ``sampling_period`` [m].
     ``velocity_std`` : of what is believed of the velocity at first [m/s].
 
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.2.
