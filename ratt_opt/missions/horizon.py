@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.models.targets import TargetMotion
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["OUTPUTS", "Sequences", "control_sequences", "joint_covariance", "output_matrix", "undominated"]
+__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covariance", "output_matrix", "undominated"]
 
 OUTPUTS = ("mean", "last")
 NOISE_FLOOR = 1e-6
@@ -68,6 +68,17 @@ def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motio
     for h in range(horizon):
         path.append(motion(path[-1], sequences[:, h], scenario.sampling_period))
     return Sequences(readonly(owners), readonly(sequences), readonly(np.stack(path[1:], axis=1)))
+
+
+def extended(scenario: Scenario, sequences: Sequences, motion: RobotMotion) -> Sequences:
+    """Every sequence followed by every control of its robot, the new control fastest."""
+    counts = np.array([len(robot.controls) for robot in scenario.robots])[sequences.owner]
+    again = np.repeat(np.arange(len(sequences.owner)), counts)
+    added = np.concatenate([np.array(scenario.robots[i].controls) for i in sequences.owner])
+    last = motion(sequences.poses[again, -1], added, scenario.sampling_period)
+    controls = np.concatenate([sequences.controls[again], added[:, None]], axis=1)
+    poses = np.concatenate([sequences.poses[again], last[:, None]], axis=1)
+    return Sequences(readonly(sequences.owner[again]), readonly(controls), readonly(poses))
 
 
 def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:

@@ -20,6 +20,7 @@ from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
 from ratt_opt.missions.planners import MaxMinPlanner, elements_of, planner_called
+from ratt_opt.missions.planning import offered_sequences
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Plan
@@ -171,7 +172,8 @@ class Tracker:
 
         Returns
         -------
-        Plan : ``elements`` index the robots' control sequences in file order; :attr:`controls` has them as numbers
+        Plan : ``elements`` index the control sequences that were offered, all in file order unless the model has an
+            area or a beam; :attr:`controls` (N, 2) has the first of each as numbers
 
         Raises
         ------
@@ -180,7 +182,7 @@ class Tracker:
         """
         began = monotonic()
         state = self._measured(list(measurements), now, poses)
-        offered = self.world.sequences(state.poses)
+        offered = offered_sequences(self.world, state.belief, state.poses, state.time)
         elements = self._elements(self._problem(state, offered), began)
         late = elements is None
         if elements is None:
