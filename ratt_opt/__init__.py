@@ -9,6 +9,9 @@ def __getattr__(name: str) -> object:
     # The stub is read on first use too, so that an interrupt just after the start of a command finds its guards.
     import lazy_loader
 
+    from ratt_opt._cache import provide_cache
+
+    provide_cache()
     load, names, every = lazy_loader.attach_stub(__name__, __file__)
     globals().update(__getattr__=load, __dir__=names, __all__=every)
     return every if name == "__all__" else load(name)
