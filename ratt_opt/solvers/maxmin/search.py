@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
@@ -140,11 +141,12 @@ class BranchAndBound:
 
     def _eliminate(self, node: TreeNode, leaf: Leaf, bound: float, combined: FloatArray) -> TreeNode:
         """Split off elements whose choice would close the node by the same multipliers; return what remains."""
-        slack = self.rule.missing(bound)
-        for i in range(self.task.problem.n_robots):
+        slack, everything = self.rule.missing(bound), node.choices
+        largest, lowest = largest_of_each(combined, everything), -largest_of_each(-combined, everything)
+        for i in np.flatnonzero(lowest - largest < slack).tolist():
             choice = node.choices[i]
-            gone = combined[choice] - combined[choice].max() < slack
-            if not gone.any() or gone.all():
+            gone = combined[choice] - largest[i] < slack
+            if gone.all():
                 continue
             closed = node.child(with_choice(node.choices, i, choice[gone]))
             closed.leaf, closed.bound = leaf, self.cuts.leaf_bound(leaf, closed.choices)[0]
