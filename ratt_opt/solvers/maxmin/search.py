@@ -64,6 +64,13 @@ class BranchAndBound:
         """Proved upper bound on the optimum: the largest bound of a node, or of a group closed for all plans."""
         return max(self.frontier.bound, self.winners.finished, self.incumbent.proved.lower)
 
+    def use(self, cuts: list[int]) -> None:
+        """Let the first programs hold these cuts, those that are usable everywhere."""
+        winners = [self.winners.of(self._root, int(outcome)) for outcome in self.cuts.outcomes[cuts]]
+        for k, winner in zip(cuts, winners, strict=True):
+            if winner == self.cuts.groups[k]:
+                self.rounds.use(k)
+
     def proof(self) -> UpperProof:
         """The proof of :attr:`upper`: winners decided for all plans, then the tree."""
         used = {k for node in nodes_below(self._root) if node.split is None for k in node.leaf.cuts}

@@ -21,11 +21,15 @@ from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
 from ratt_opt.solvers.maxmin.task import Task
+from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
@@ -47,6 +51,7 @@ def solve_maxmin(
     progress: Progress = None,
     alpha_cs: int | None = None,
     budget: Budget | None = None,
+    start: ArrayLike | Plan | MaxMinResult | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
@@ -63,15 +68,18 @@ def solve_maxmin(
     progress : called as ``progress(nodes, lower, upper)``
     alpha_cs : sensing attacks that the link attacks are worth, where RATT was asked before
     budget : an outer search's budget: its seconds and interrupts count too
+    start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
+        problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
 
     Raises
     ------
-    InputError : a limit is negative, or the set function is not an information criterion and has too many plans.
+    InputError : a limit is negative, ``start`` is a plan but not one element per robot, or the set function is not an
+        information criterion and has too many plans.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    budget = Budget.inside(budget, time_limit, max_nodes)
+    budget, warm = Budget.inside(budget, time_limit, max_nodes), WarmStart.of(problem, start)
     if not isinstance(problem.objective, InformationObjective):
         return exhaustive_optimum(problem, budget=budget)
     first = ratt(problem, alpha_cs=alpha_cs).elements
@@ -79,19 +87,29 @@ def solve_maxmin(
     incumbent = Incumbent(problem, pool, first, budget)
     search: BranchAndBound | None = None
     try:
-        _list_outcomes(problem, pool)
+        outcomes = warm.add_outcomes(pool)
+        if not outcomes:
+            _list_outcomes(problem, pool)
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
-        plans = [first, *(planner(problem).elements for planner in (greedy, myopic))]
-        incumbent.start(plans if pairs is None else [*plans, pairs.values.strongest_plan()])
+        incumbent.start(_first_plans(problem, first, warm, pairs))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
+        search.use(warm.add_cuts(search.cuts, outcomes))
         stop = _search_and_prove(search, Turns(budget, incumbent), progress)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
         stop = budget.interrupt()
     return _result(problem, incumbent, search, stop, gap)
+
+
+def _first_plans(problem: Problem, first: IntArray, warm: WarmStart, pairs: PairOutcomes | None) -> list[IntArray]:
+    """RATT's plan, and one that was best a step before; the plans of other planners where there is none."""
+    if warm.plan is not None:
+        return [first, warm.plan]
+    plans = [first, *(planner(problem).elements for planner in (greedy, myopic))]
+    return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
 
 
 def _search_and_prove(search: BranchAndBound, turns: Turns, progress: Progress) -> Stop:
