@@ -17,7 +17,7 @@ from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
-from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, UpperProof, nodes_below, preorder
+from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, nodes_below, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
 from ratt_opt.stopping import Stop
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
     from ratt_opt.solvers.maxmin.task import Task
 
@@ -75,7 +76,7 @@ class BranchAndBound:
         """The proof of :attr:`upper`: winners decided for all plans, then the tree."""
         used = {k for node in nodes_below(self._root) if node.split is None for k in node.leaf.cuts}
         root = self.winners.above(self._root, {int(self.cuts.outcomes[k]) for k in used})
-        return UpperProof(attacks=tuple(self.pool.attacks), cuts=self.cuts.record(), tree=preorder(root))
+        return upper_proof(root, self.pool.attack, self.cuts.record)
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
@@ -169,7 +170,7 @@ class BranchAndBound:
         """The root, bounded by one tangent cut of the best plan's worst attack where its winner is decided."""
         node = TreeNode(choices=self.task.choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
         points = self.pool.group_points(self.task.objective.information[self.incumbent.candidates.best])
-        for outcome in range(len(self.pool.attacks)):
+        for outcome in range(len(self.pool)):
             winner = self.winners.of(node, outcome)
             if winner is None:
                 continue

@@ -12,8 +12,8 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack, Plan
+from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.problem import Plan
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
@@ -87,9 +87,8 @@ def solve_maxmin(
     incumbent = Incumbent(problem, pool, first, budget)
     search: BranchAndBound | None = None
     try:
+        _list_outcomes(problem, pool)
         outcomes = warm.add_outcomes(pool)
-        if not outcomes:
-            _list_outcomes(problem, pool)
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
         incumbent.start(_first_plans(problem, first, warm, pairs))
@@ -157,7 +156,7 @@ def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
     outcomes = list(islice(non_dominated_outcomes(problem.threat), LISTED_OUTCOMES + 1))
     if len(outcomes) <= LISTED_OUTCOMES:
         for outcome in outcomes:
-            pool.add(Attack(*realise(problem.threat, outcome)))
+            pool.add_outcome(outcome)
         pool.complete = True
 
 
