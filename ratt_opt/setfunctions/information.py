@@ -27,7 +27,7 @@ SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
 LARGEST = 1e100
 """Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
-WIDEST = 1e13
+WIDEST = 2e14
 """Largest eigenvalue of an element's information times that of the prior. Sums of both hold sixteen digits, of which
 searches that exchange elements lose a few: beyond this nothing would be left of the prior."""
 DEEPEST = 0.01

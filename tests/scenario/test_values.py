@@ -116,11 +116,11 @@ def test_extremes_are_handled_or_refused_by_name(seed: int, tmp_path: Path) -> N
 
 
 def test_a_scenario_names_the_sensor_and_the_covariance_that_do_not_fit() -> None:
-    sharp = SCENARIO.sensor.replace(range_noise=1e-9, range_noise_slope=0.0)
-    far = SCENARIO.targets[1].replace(covariance=((1e9, 0.0), (0.0, 1e9)))
+    sharp = SCENARIO.sensor.replace(range_noise=1e-5, range_noise_slope=0.0)
+    far = SCENARIO.targets[1].replace(covariance=((1e10, 0.0), (0.0, 1e10)))
     assert SCENARIO.replace(sensor=sharp).problem()
-    with pytest.raises(InputError, match=r"sensor of robots\[0\] for targets\[1\].covariance must be at most 1e\+13"):
+    with pytest.raises(InputError, match=r"sensor of robots\[0\] for targets\[1\].covariance must be at most 2e\+14"):
         SCENARIO.replace(sensor=sharp, targets=(SCENARIO.targets[0], far))
     thin = SCENARIO.targets[0].replace(covariance=((1e9, 0.0), (0.0, 1e-9)), process_std=0.0)
-    with pytest.raises(InputError, match=r"targets\[0\].covariance must be positive definite"):
+    with pytest.raises(InputError, match=r"targets\[0\].covariance: prior\[0\] must be positive definite"):
         SCENARIO.replace(targets=(thin,))
