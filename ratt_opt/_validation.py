@@ -76,11 +76,13 @@ def check_distinct(argument: str, items: Iterable[T]) -> frozenset[T]:
 
 
 def check_number(argument: str, value: object, *, low: float = -np.inf) -> float:
-    """Return ``value`` as a finite ``float`` that is at least ``low``."""
+    """Return ``value`` as a finite ``float`` that is at least ``low``; booleans and text are refused."""
     rule = "must be a finite number" if low == -np.inf else f"must be a finite number >= {low:g}"
+    if isinstance(value, (bool, np.bool_, str, bytes)):
+        raise InputError(argument, rule, value)
     try:
         number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(argument, rule, value) from None
     if not low <= number < np.inf:
         raise InputError(argument, rule, value)
