@@ -55,10 +55,10 @@ def check_integer(argument: str, value: object, *, low: int, high: int | None = 
     return number
 
 
-def check_link(argument: str, link: object) -> tuple[int, int]:
+def check_link(argument: str, link: Any) -> tuple[int, int]:
     """Return a pair of robots as ``int``; a negative number, boolean, fraction or anything but a pair is refused."""
     try:
-        i, j = link  # type: ignore[misc]
+        i, j = link
     except (TypeError, ValueError):
         raise InputError(argument, "must be a pair of robots", link) from None
     if type(i) is int and type(j) is int and i >= 0 and j >= 0:  # as nearly always, and there may be thousands

@@ -190,13 +190,13 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
         rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
         raise InputError("information", rule, f"shape {information.shape}")
     information = _check_symmetric("information", information)
-    eigenvalues = np.linalg.eigvalsh(information)
+    eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
     bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
     if len(bad):
         e, j = bad[0].tolist()
         shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
         raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
-    _check_spread(eigenvalues, np.linalg.eigvalsh(prior)[:, -1])
+    _check_spread(eigenvalues, np.asarray(np.linalg.eigvalsh(prior)[:, -1]))
     return information
 
 
