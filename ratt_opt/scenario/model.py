@@ -196,7 +196,7 @@ class Scenario(ProblemRecord):
         except InputError as error:
             about = [int(number) for number in re.findall(r"\d+", error.argument)]
             if error.argument.startswith("prior["):
-                raise InputError(f"targets[{about[0]}].covariance", error.rule, error.value) from None
+                raise InputError(f"targets[{about[0]}].covariance: {error.argument}", error.rule, error.value) from None
             if error.argument.startswith("information["):
                 where = f"sensor of robots[{self.robot[about[0]]}] for targets[{about[1]}].covariance"
                 raise InputError(where, error.rule, error.value) from None

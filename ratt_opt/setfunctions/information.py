@@ -27,7 +27,7 @@ SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
 LARGEST = 1e100
 """Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
-WIDEST = 1e13
+WIDEST = 2e14
 """Largest eigenvalue of an element's information times that of the prior. Sums of both hold sixteen digits, of which
 searches that exchange elements lose a few: beyond this nothing would be left of the prior."""
 DEEPEST = 0.01
@@ -190,13 +190,13 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
         rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
         raise InputError("information", rule, f"shape {information.shape}")
     information = _check_symmetric("information", information)
-    eigenvalues = np.linalg.eigvalsh(information)
+    eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
     bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
     if len(bad):
         e, j = bad[0].tolist()
         shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
         raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
-    _check_spread(eigenvalues, np.linalg.eigvalsh(prior)[:, -1])
+    _check_spread(eigenvalues, np.asarray(np.linalg.eigvalsh(prior)[:, -1]))
     return information
 
 

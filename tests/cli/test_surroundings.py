@@ -105,8 +105,8 @@ def test_closed_streams(closed: str, code: int, folder: Path, tmp_path: Path) ->
 
 
 def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
-    environment = {name: value for name, value in os.environ.items() if name != _cache.VARIABLE}
-    environment |= {"HOME": "/dev/null", "XDG_CACHE_HOME": ""}
+    known = {_cache.VARIABLE, "XDG_CACHE_HOME"}
+    environment = {name: value for name, value in os.environ.items() if name not in known} | {"HOME": "/dev/null"}
     done = subprocess.run(
         [sys.executable, "-c", NOTHING_CAN_BE_WRITTEN], env=environment, capture_output=True, text=True, check=False
     )

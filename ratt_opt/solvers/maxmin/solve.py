@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import islice
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -171,12 +172,16 @@ def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = N
 
     Raises ``InputError`` : the gap is negative or not a number, or a limit is not positive.
     """
-    if not (math.isfinite(gap) and gap >= 0):
+    if not (_is_number(gap) and math.isfinite(gap) and gap >= 0):
         raise InputError("gap", "must be a number >= 0", gap)
-    if time_limit is not None and not time_limit >= 0:
+    if time_limit is not None and not (_is_number(time_limit) and time_limit >= 0):
         raise InputError("time_limit", "must be a number of seconds >= 0", time_limit)
     if max_nodes is not None and max_nodes < 1:
         raise InputError("max_nodes", "must be at least 1", max_nodes)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 FEW_PLANS, ENUMERATION_SHARE = 300_000, 0.5
