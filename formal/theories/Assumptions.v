@@ -1,5 +1,5 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete Families Approached Quadratic Criteria Certificate Examples.
+From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete Families Approached Quadratic Criteria Logdet Certificate Examples.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -26,9 +26,14 @@ Print Assumptions trace_value0.
 Print Assumptions trace_value_mono.
 Print Assumptions maxeig_value0.
 Print Assumptions maxeig_value_mono.
+Print Assumptions logdet_fenchel.
+Print Assumptions logdet_fenchel_tight.
+Print Assumptions logdet_value0.
+Print Assumptions logdet_value_mono.
 Print Assumptions certificate_upper.
 Print Assumptions certificate_sound.
 Print Assumptions trace_certificate_sound.
+Print Assumptions logdet_certificate_sound.
 Print Assumptions certificate_bracket.
 Print Assumptions relay_exact.
 Print Assumptions relay_groups.

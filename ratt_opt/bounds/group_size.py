@@ -9,7 +9,7 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
-from ratt_opt.graph.largest_group.counting import heuristic_cut
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest

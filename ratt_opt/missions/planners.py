@@ -72,4 +72,4 @@ def planner_called(planner: str | Planner) -> Planner:
 
 def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:
     """A planner's elements, checked. InputError : they are no plan of the problem."""
-    return problem.check_plan(getattr(plan, "elements", plan))
+    return problem.check_plan(plan if isinstance(plan, (np.ndarray, list, tuple)) else plan.elements)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from ratt_opt.missions.attackers import Attacker
+    from ratt_opt.missions.attackers import Attacker, OwnAttacker
     from ratt_opt.missions.planners import Planner
     from ratt_opt.missions.planning import TeamPlan
     from ratt_opt.missions.sensing import Innovation, Reading
@@ -48,7 +48,7 @@ def run_mission(
     *,
     steps: int,
     planner: str | Planner = "ratt",
-    attacker: str | Callable[..., object] = "worst",
+    attacker: str | OwnAttacker = "worst",
     attacks: str | AttackModel = "renewed",
     sharing: str = "best group",
     horizon: int = 1,
@@ -63,12 +63,12 @@ def run_mission(
     ----------
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
     steps : T >= 1
-    planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)`` that
-        returns a plan or its elements, such as :class:`MaxMinPlanner`
+    planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)``
+        that returns a plan or its elements, such as :class:`MaxMinPlanner`
     attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
         that returns an :class:`Attack`
-    attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or an
-        :class:`AttackModel`
+    attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or
+        an :class:`AttackModel`
     sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's), or each group keeps its
         own and they are merged without double counting when links return (``"all surviving"``). Then groups that
         standing failures keep apart plan for themselves, each against what of the budgets can hit it; and the attacker
