@@ -227,7 +227,7 @@ class Tracker:
             raise InputError("poses", f"must have shape {state.poses.shape}", f"shape {places.shape}")
         readings = self._readings(measurements)
         if readings:
-            pieces, _ = group_pieces(self.world, belief, places, readings, readings)
+            pieces, _ = group_pieces(self.world, belief, dict(enumerate(places)), readings, readings)
             belief = belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
         clock = now if now is not None else None if state.now is None else state.now + passed
         return replace(state, time=time, now=clock, poses=places, belief=belief)
