@@ -74,7 +74,8 @@ from .missions.replay.replay import (
 )
 from .missions.result import Mission as Mission, MissionStep as MissionStep
 from .missions.run import run_mission as run_mission
-from .missions.tracker import Measurement as Measurement, Tracker as Tracker, TrackerState as TrackerState
+from .missions.tracker import Tracker as Tracker
+from .missions.tracker_state import Measurement as Measurement, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
 
 # == Guarantees and bounds

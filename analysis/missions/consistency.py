@@ -18,7 +18,7 @@ from analysis.studies.study import Study
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.missions.attack_models import RenewedAttacks
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
-from ratt_opt.missions.world import MissionModel, World
+from ratt_opt.missions.world import Linearisation, MissionModel, World
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.ratt import ratt
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from analysis.studies.study import Case, Cell, Seeds
+    from ratt_opt._validation import FloatArray
 
-LINEARISATIONS = ("first order", "second order", "iterated")
+LINEARISATIONS: tuple[Linearisation, ...] = ("first order", "second order", "iterated")
 DRAWS = 40
 """True states and measurements drawn in each trial."""
 
@@ -55,7 +56,7 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:  # noqa:
     return row
 
 
-def _updates(world: World, poses: np.ndarray, group: frozenset[int], seed: int) -> dict[str, float]:
+def _updates(world: World, poses: FloatArray, group: frozenset[int], seed: int) -> dict[str, float]:
     predicted = world.motion.initial(world.scenario).predicted(world.motion, world.period, 0.0)
     rng = np.random.default_rng(seed)
     root = np.linalg.cholesky(predicted.covariance)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from analysis.studies.study import Cell, Seeds
+    from ratt_opt.missions.planners import Planner
 
 STEPS = 50
 SIZES = ((5, 8), (10, 15), (20, 20))
@@ -64,14 +65,14 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     scenario = random_scenario(
         case.n_robots, case.n_targets, alpha_s=case.alpha_s, alpha_c=case.alpha_c, seed=seeds.scenario
     )
-    players = {"maxmin": MAXMIN, "random": RandomPlanner(seeds.planner)}
+    players: dict[str, Planner] = {"maxmin": MAXMIN, "random": RandomPlanner(seeds.planner)}
     row: dict[str, Cell] = {}
     for planner in study.planner_names:
         for attacker in study.attacker_names:
             mission = run_mission(
                 scenario,
                 steps=STEPS,
-                planner=players.get(planner, planner),
+                planner=players.get(planner) or planner,
                 attacker=attacker,
                 attacks=str(options["attacks"]),
                 sharing=str(options["sharing"]),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-
-import pytest
+from typing import TYPE_CHECKING
 
 from analysis.missions import consistency, exact_flights, flights
 from analysis.studies.study import Seeds
+
+if TYPE_CHECKING:
+    import pytest
 
 
 def test_every_planner_and_attacker_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
