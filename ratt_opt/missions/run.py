@@ -214,7 +214,7 @@ class _Flight:
     ) -> tuple[Pieces, Innovation]:
         """A group's new pieces, linearised at what its ``robot`` predicts."""
         predicted = self.memory.belief(robot).predicted(self.world.motion, self.world.period, step * self.world.period)
-        return group_pieces(self.world, predicted, self.poses, readings, see)
+        return group_pieces(self.world, predicted, dict(enumerate(self.poses)), readings, see)
 
     def _rng(self, step: int, stream: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(step, stream)))
