@@ -32,3 +32,11 @@ def test_import_loads_nothing_heavy() -> None:
 def test_every_public_callable_is_documented() -> None:
     missing = [n for n in ratt_opt.__all__ if callable(v := getattr(ratt_opt, n)) and not v.__doc__]
     assert missing == []
+
+
+def test_every_name_has_one_topic() -> None:
+    listed = [name for names in ratt_opt.TOPICS.values() for name in names]
+    assert len(listed) == len(set(listed))
+    assert ["__version__", *listed] == ratt_opt.__all__
+    assert sorted(ratt_opt.__all__) == dir(ratt_opt)
+    assert all(names for names in ratt_opt.TOPICS.values())

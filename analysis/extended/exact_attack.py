@@ -37,8 +37,8 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         cases = [case for case in STUDY.cases if case.n_robots == n]
         kept = [select(rows, case=case.name) for case in cases]
         groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]
-        traces = {p: [column(k, f"{p}/exact/trace") for k in kept] for p in STUDY.planners}
-        bars(axes[0, across], groups, {p: [estimate(values) for values in traces[p]] for p in STUDY.planners})
+        traces = {p: [column(k, f"{p}/exact/trace") for k in kept] for p in STUDY.planner_names}
+        bars(axes[0, across], groups, {p: [estimate(values) for values in traces[p]] for p in STUDY.planner_names})
         bounds = [column(k, "optimum/trace_bound") for k in kept]
         excess = {
             p: [estimate(100 * (t / bound - 1)) for t, bound in zip(traces[p], bounds, strict=True)]

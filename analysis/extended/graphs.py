@@ -37,7 +37,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         f"$\\alpha_s$={s}, $\\alpha_c$={c}": {k.graph: k for k in STUDY.cases if (k.alpha_s, k.alpha_c) == (s, c)}
         for s, c in dict.fromkeys((case.alpha_s, case.alpha_c) for case in STUDY.cases)
     }
-    draw_ratios(rows, folder, name=STUDY.name, panels=panels, planners=STUDY.planners)
+    draw_ratios(rows, folder, name=STUDY.name, panels=panels, planners=STUDY.planner_names)
 
 
 ENTRY = Entry(STUDY, draw)

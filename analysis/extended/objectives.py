@@ -38,7 +38,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         label: {f"$\\alpha_s$={c.alpha_s}\n$\\alpha_c$={c.alpha_c}": c for c in STUDY.cases if c.objective == objective}
         for objective, label in OBJECTIVES.items()
     }
-    draw_ratios(rows, folder, name=STUDY.name, panels=panels, planners=STUDY.planners, one_scale=False)
+    draw_ratios(rows, folder, name=STUDY.name, panels=panels, planners=STUDY.planner_names, one_scale=False)
 
 
 ENTRY = Entry(STUDY, draw)

@@ -42,7 +42,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One panel per team size with its three budget pairs; trace above, mean squared error below."""
     panels = [[case for case in STUDY.cases if case.n_robots == n] for n, _ in SIZES]
     draw_comparison(
-        rows, folder, name="large_scale", panels=panels, planners=STUDY.planners, attacker="bounded_rational"
+        rows, folder, name="large_scale", panels=panels, planners=STUDY.planner_names, attacker="bounded_rational"
     )
 
 

@@ -43,9 +43,9 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     """Return the metrics, and everything that is drawn, as JSON in one cell per picture."""
     instance = Instance.of(case, seeds)
     row: dict[str, Cell] = {"scenario": instance.digest}
-    for planner in study.planners:
+    for planner in study.planner_names:
         plan = PLANNERS[planner](instance)
-        for attacker in study.attackers:
+        for attacker in study.attacker_names:
             result = ATTACKERS[attacker](instance, plan)
             attack = Attack() if result is None else result.attack
             name = f"{planner}/{attacker}"
@@ -76,7 +76,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     for case, name in zip(STUDY.cases, FIGURES, strict=True):
         kept = select(rows, case=case.name)
         shown = next((row for row in kept if row["ratt/exact/value"] != row["nonrobust_optimum/exact/value"]), kept[0])
-        cells = [(planner, attacker) for attacker in STUDY.attackers for planner in STUDY.planners]
+        cells = [(planner, attacker) for attacker in STUDY.attacker_names for planner in STUDY.planner_names]
         pictures = [json.loads(shown[f"{planner}/{attacker}/picture"]) for planner, attacker in cells]
         window = common_limits(pictures)
         (left, right), (bottom, top) = window["xlim"], window["ylim"]

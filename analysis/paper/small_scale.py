@@ -30,7 +30,7 @@ STUDY = Study(
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One panel per budget pair; trace above, mean squared error below, as in the paper."""
     panels = [[case] for case in STUDY.cases]
-    draw_comparison(rows, folder, name="small_scale", panels=panels, planners=STUDY.planners, attacker="exact")
+    draw_comparison(rows, folder, name="small_scale", panels=panels, planners=STUDY.planner_names, attacker="exact")
 
 
 ENTRY = Entry(STUDY, draw)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
 from analysis.studies.quantities import QUANTITIES
+from analysis.studies.study import name_of
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -25,13 +28,16 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     Metrics: ``value`` of the team [unit of the objective], ``proved`` (lower bound of the worst case), ``trace``
     of the posterior covariance and ``mse`` of the estimates, both per target and of the best surviving group [m^2].
     """
-    instance = Instance.of(case, seeds)
+    problem = None if study.problem is None else study.problem(case, seeds)
+    instance = Instance.of(case, seeds, problem=problem)
     row: dict[str, Cell] = {"scenario": instance.digest}
     for planner in study.planners:
-        plan = PLANNERS[planner](instance)
+        plan = np.asarray((PLANNERS[planner] if isinstance(planner, str) else planner)(instance))
         for attacker in study.attackers:
-            found = _outcome(instance, plan, ATTACKERS[attacker](instance, plan), study.metrics)
-            row |= {f"{planner}/{attacker}/{metric}": found[metric] for metric in study.metrics}
+            strike = ATTACKERS[attacker] if isinstance(attacker, str) else attacker
+            found = _outcome(instance, plan, strike(instance, plan), study.metrics)
+            where = f"{name_of(planner)}/{name_of(attacker)}"
+            row |= {f"{where}/{metric}": found[metric] for metric in study.metrics}
     for quantity in study.quantities:
         row |= QUANTITIES[quantity](instance)
     return row

@@ -12,6 +12,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.sensor import Sensor
@@ -46,18 +47,22 @@ EFFORT: dict[str, Any] = {"gap": 5e-4, "max_nodes": 30}
 
 @dataclass(slots=True)
 class Instance:
-    """A scenario, its problem and seeds. The optimum is computed when first asked for, and each plan attacked once."""
+    """A problem, its seeds, and the scenario it comes from, if any.
 
-    scenario: Scenario
-    objective: InformationObjective
+    The optimum is computed when first asked for, and each plan attacked once.
+    """
+
     problem: Problem
     seeds: Seeds
+    drawn: Scenario | None = None
     _optimum: MaxMinResult | None = None
     _attacked: dict[bytes, AttackResult] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, case: Case, seeds: Seeds) -> Instance:
-        """Draw the scenario of one trial."""
+    def of(cls, case: Case, seeds: Seeds, *, problem: Problem | None = None) -> Instance:
+        """Draw the scenario of one trial, or take the problem that a study makes itself."""
+        if problem is not None:
+            return cls(problem, seeds)
         options: dict[str, Any] = {name: value for name, value in case.options if not name.startswith(SENSOR)}
         noise: dict[str, Any] = {name.removeprefix(SENSOR): v for name, v in case.options if name.startswith(SENSOR)}
         scenario = random_scenario(
@@ -70,10 +75,24 @@ class Instance:
             **options,
         )
         objective = scenario.problem(case.objective).objective
-        assert isinstance(objective, InformationObjective)
         graph = None if case.graph == "complete" else GRAPHS[case.graph](case.n_robots)
-        problem = Problem(objective, scenario.robot, graph, case.alpha_s, case.alpha_c)
-        return cls(scenario, objective, problem, seeds)
+        return cls(Problem(objective, scenario.robot, graph, case.alpha_s, case.alpha_c), seeds, scenario)
+
+    @property
+    def objective(self) -> InformationObjective:
+        """The criterion; what needs one is refused for other set functions."""
+        if not isinstance(self.problem.objective, InformationObjective):
+            raise InputError(
+                "metrics", "must not need a criterion of information", type(self.problem.objective).__name__
+            )
+        return self.problem.objective
+
+    @property
+    def scenario(self) -> Scenario:
+        """The random scenario; what needs one is refused for problems that a study makes itself."""
+        if self.drawn is None:
+            raise InputError("metrics", "must not need a scenario where the study makes its problems itself", "mse")
+        return self.drawn
 
     @property
     def optimum(self) -> MaxMinResult:
@@ -94,10 +113,15 @@ class Instance:
 
     @property
     def digest(self) -> str:
-        """Hash of everything the planners see: equal for equal scenarios, budgets and objectives."""
-        problem = self.problem
-        parts = [array.tobytes() for array in (problem.robot, self.objective.prior, self.objective.information)]
-        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {self.objective.name}"
+        """Hash of everything the planners see: equal for equal scenarios, budgets and objectives.
+
+        Of a set function that is no criterion, the values of single elements stand for the whole.
+        """
+        problem, f = self.problem, self.problem.objective
+        arrays = (f.prior, f.information) if isinstance(f, InformationObjective) else (f.singletons(),)
+        parts = [array.tobytes() for array in (problem.robot, *arrays)]
+        kind = f.name if isinstance(f, InformationObjective) else type(f).__name__
+        threat = f"{problem.alpha_s} {problem.alpha_c} {sorted(problem.communication.links)} {kind}"
         return hashlib.sha256(b"".join([*parts, threat.encode()])).hexdigest()[:16]
 
     def trace(self, plan: IntArray, attack: Attack) -> float:

@@ -18,7 +18,7 @@ from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
 
-from analysis.studies.versions import VERSIONS, hash_of_module
+from analysis.studies.versions import VERSIONS, hash_of_modules
 from ratt_opt._files import output_directory, output_file, write_atomically, write_json
 from ratt_opt.errors import InputError
 
@@ -140,7 +140,7 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
         "version": study.version,
         "fingerprint": study.fingerprint(),
         "made_with": VERSIONS,
-        "measured_by": hash_of_module(study.measure),
+        "measured_by": hash_of_modules(study.modules()),
         "definition": study.definition(),
     }
     path = folder / MANIFEST
@@ -151,6 +151,7 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
         write_json(path, manifest)
         return
     code = {name: manifest[name] for name in ("made_with", "measured_by")}
+    measured = ", ".join(study.modules())
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         old = {name: found[name] for name in code}
@@ -171,7 +172,7 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
             ),
             (
                 accept_old_rows or old == code,
-                f"results measured by the same code of {study.measure} (or --accept-old-rows keeps the others, marked)",
+                f"results measured by the same code of {measured} (or --accept-old-rows keeps the others, marked)",
                 "other code",
             ),
         ]

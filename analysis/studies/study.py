@@ -10,10 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from ratt_opt.errors import InputError
 
-__all__ = ["Case", "Cell", "Seeds", "Study", "run_trial"]
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from ratt_opt.problem import Problem
+
+__all__ = ["Case", "Cell", "Seeds", "Study", "name_of", "path_of", "run_trial"]
 
 Cell = str | int | float
 """One entry of a row. Floats are written so that they read back exactly."""
@@ -72,28 +76,68 @@ class Study:
     name : folder of its results
     version : raised when the meaning of a row changes; older results are then refused
     cases : combinations of factors; every trial visits each of them
-    planners, attackers : names in :mod:`analysis.studies.comparison`
+    planners, attackers : names in :mod:`analysis.studies.instance`, or functions like those there, which columns of
+        the table call by their own names
     metrics : what is measured for every planner and attacker
     quantities : what is measured once for every case and trial
-    measure : ``module:function`` that measures one trial; by default the comparison of planners under attackers
+    problem : function ``(case, seeds) -> Problem`` that makes the problem of a trial; by default that of a random
+        scenario. Metrics of physical scenarios (``trace``, ``mse``) need the default
+    measure : function ``(study, case, seeds) -> row`` that measures one trial, or its ``module:function``; by default
+        the comparison of planners under attackers
     seed : root of all seeds
     fixed_trials : number of trials where nothing is random; otherwise the command line decides
+
+    Functions stand at the top of their module, so that worker processes find them.
+
+    Raises
+    ------
+    InputError : a function is a lambda or stands inside another, or two planners or attackers have one name.
     """
 
     name: str
     version: int = 1
     cases: tuple[Case, ...]
-    planners: tuple[str, ...] = ()
-    attackers: tuple[str, ...] = ()
+    planners: tuple[str | Callable[..., Any], ...] = ()
+    attackers: tuple[str | Callable[..., Any], ...] = ()
     metrics: tuple[str, ...] = ()
     quantities: tuple[str, ...] = ()
-    measure: str = "analysis.studies.comparison:measure"
+    problem: Callable[[Case, Seeds], Problem] | None = None
+    measure: str | Callable[[Study, Case, Seeds], dict[str, Cell]] = "analysis.studies.comparison:measure"
     seed: int = 2022
     fixed_trials: int | None = None
 
+    def __post_init__(self) -> None:
+        for kind in ("planners", "attackers"):
+            names = list(map(name_of, getattr(self, kind)))
+            if len(set(names)) < len(names):
+                raise InputError(kind, "must have different names", ", ".join(names))
+        for function in self._own():
+            path_of(function)
+
+    @property
+    def planner_names(self) -> tuple[str, ...]:
+        """What columns call the planners."""
+        return tuple(map(name_of, self.planners))
+
+    @property
+    def attacker_names(self) -> tuple[str, ...]:
+        """What columns call the attackers."""
+        return tuple(map(name_of, self.attackers))
+
+    def _own(self) -> Iterator[Callable[..., Any]]:
+        """The functions that are given as such."""
+        every = (self.measure, self.problem, *self.planners, *self.attackers)
+        yield from (member for member in every if callable(member))
+
+    def modules(self) -> tuple[str, ...]:
+        """Return the names of the modules, besides the engine's own, whose code decides the rows."""
+        paths = [self.measure if isinstance(self.measure, str) else path_of(self.measure), *map(path_of, self._own())]
+        return tuple(sorted({path.partition(":")[0] for path in paths}))
+
     def definition(self) -> dict[str, Any]:
-        """Return everything that decides the rows, as JSON types."""
-        document: dict[str, Any] = json.loads(json.dumps(asdict(self)))
+        """Return everything that decides the rows, as JSON types; functions as ``module:function``."""
+        plain = {name: value for name, value in asdict(self).items() if name != "problem" or value is not None}
+        document: dict[str, Any] = json.loads(json.dumps(plain, default=path_of))
         return document
 
     def fingerprint(self) -> str:
@@ -101,12 +145,31 @@ class Study:
         return hashlib.sha256(json.dumps(self.definition(), sort_keys=True).encode()).hexdigest()[:16]
 
 
+def name_of(member: str | Callable[..., Any]) -> str:
+    """Return what columns call a planner or attacker."""
+    return member if isinstance(member, str) else str(getattr(member, "__name__", member))
+
+
+def path_of(function: Callable[..., Any]) -> str:
+    """Return the ``module:function`` by which other processes find a function.
+
+    Raises
+    ------
+    InputError : it has none.
+    """
+    module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", "<")
+    if module is None or "<" in name:
+        raise InputError("study", "must be given functions that stand at the top of a module", repr(function))
+    return f"{module}:{name}"
+
+
 def run_trial(study: Study, case: int, trial: int) -> dict[str, Cell]:
     """Measure one trial of one case: the unit of work, a pure function of its arguments."""
     from analysis.studies.versions import VERSIONS
 
     chosen, seeds = study.cases[case], Seeds.of(study.seed, trial)
-    measure: Callable[[Study, Case, Seeds], dict[str, Cell]] = resolve_name(study.measure)
+    given = study.measure
+    measure: Callable[[Study, Case, Seeds], dict[str, Cell]] = resolve_name(given) if isinstance(given, str) else given
     factors: dict[str, Cell] = {
         "n_robots": chosen.n_robots,
         "n_targets": chosen.n_targets,

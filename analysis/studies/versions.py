@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import platform
-import sys
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import ratt_opt
 
-__all__ = ["VERSIONS", "hash_of_module"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["VERSIONS", "hash_of_modules"]
 
 
 def _hash_of_code() -> str:
@@ -25,11 +28,10 @@ def _hash_of_code() -> str:
     return digest.hexdigest()[:12]
 
 
-def hash_of_module(function: str) -> str:
-    """A hash of the source of the module in ``module:function``."""
-    module = import_module(function.partition(":")[0])
-    file = getattr(sys.modules[module.__name__], "__file__", None)
-    return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12] if file else "none"
+def hash_of_modules(names: Iterable[str]) -> str:
+    """A hash of the source of each module, in the order of the names."""
+    files = (getattr(import_module(name), "__file__", None) for name in names)
+    return " ".join(hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12] if file else "none" for file in files)
 
 
 VERSIONS = (

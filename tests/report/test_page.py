@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import os
 import re
 import shutil
 from html.parser import HTMLParser
@@ -14,8 +15,8 @@ import ratt_opt as ro
 
 LARGEST_PAGE = 3_000_000
 FLAGS = (
-    "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--window-size=1100,2200",
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--disable-sync",
+    "--disable-background-networking", "--disable-component-update", "--window-size=1100,2200",
 )  # fmt: skip
 
 
@@ -32,7 +33,8 @@ def saved(tmp_path_factory):
 def browser(saved, tmp_path_factory):
     program, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if program is None or driver is None or importlib.util.find_spec("selenium") is None:
-        pytest.skip("no chromium with its driver, or no selenium, to open the page in")
+        missing = "no chromium with its driver, or no selenium, to open the page in"
+        (pytest.fail if os.environ.get("REQUIRE_BROWSER") else pytest.skip)(missing)
     from selenium import webdriver
 
     options = webdriver.ChromeOptions()

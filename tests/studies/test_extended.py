@@ -79,7 +79,7 @@ def test_large_optima_are_reproducible_and_no_trace_is_below_their_bound() -> No
     assert row == run_trial(EXACT, 3, 0)
     bound = float(row["optimum/trace_bound"])
     assert bound < float(row["optimum/exact/trace"]) < 1.02 * bound
-    for planner in EXACT.planners:
+    for planner in EXACT.planner_names:
         trace, value = (float(row[f"{planner}/exact/{name}"]) for name in ("trace", "value"))
         assert trace >= bound * (1 - 1e-12)
         # Trace and value are two readings of one number.

@@ -123,9 +123,9 @@ class SizeVectorSearch:
             if families and part.stop() is not None:
                 break
             family = GroupExchanges(self.team, sizes, must)
-            family.weakest()
+            family.weakest(self.task.budget)
             for largest in self._weak_largest(sizes):
-                family.around(largest)
+                family.around(largest, self.task.budget)
             families.append(family)
         families.sort(key=lambda family: family.value)
         for family in families[:SHAKEN]:

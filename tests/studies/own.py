@@ -1,0 +1,62 @@
+"""A study with functions of its own, for tests of the engine; worker processes import it by name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import ratt_opt as ro
+from analysis.studies.study import Case, Seeds, Study
+
+if TYPE_CHECKING:
+    from analysis.studies.instance import Instance
+
+__all__ = ["STUDY", "boldest", "cover", "first_robot"]
+
+
+class Cells(ro.SetFunction):
+    """How many cells are seen by a set of elements, each of which sees some."""
+
+    def __init__(self, sees: np.ndarray) -> None:
+        self.sees = sees
+
+    @property
+    def n(self) -> int:
+        return len(self.sees)
+
+    def evaluate(self, membership):
+        return (membership @ self.sees.astype(int) > 0).sum(axis=-1).astype(float)
+
+
+def cover(case: Case, seeds: Seeds) -> ro.Problem:
+    """Two views a robot, each of three random cells of a dozen."""
+    rng = np.random.default_rng(seeds.scenario)
+    sees = np.array([np.isin(np.arange(12), rng.choice(12, 3, replace=False)) for _ in range(2 * case.n_robots)])
+    return ro.Problem(Cells(sees), np.repeat(np.arange(case.n_robots), 2), None, case.alpha_s, case.alpha_c)
+
+
+def boldest(instance: Instance):
+    """Every robot's element of the largest value alone."""
+    values = instance.problem.objective.singletons()
+    return [int(own[np.argmax(values[own])]) for own in instance.problem.choices]
+
+
+def first_robot(instance: Instance, plan):
+    """Blind robot 0."""
+    from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
+    from ratt_opt.attackers.task import PlanValues
+
+    attack = ro.Attack(frozenset({0}), frozenset())
+    return heuristic_result(instance.problem, PlanValues(instance.problem, plan), attack)
+
+
+STUDY = Study(
+    name="own",
+    cases=(Case(n_robots=4, n_targets=1, alpha_s=1, alpha_c=0),),
+    planners=("ratt", boldest),
+    attackers=("exact", first_robot),
+    metrics=("value", "proved"),
+    quantities=("optimum",),
+    problem=cover,
+)

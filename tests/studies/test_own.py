@@ -1,0 +1,68 @@
+"""Studies by others: planners, attackers, problems and measures given as functions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from analysis.studies.engine import run
+from analysis.studies.executors import local_processes
+from analysis.studies.progress import Progress
+from analysis.studies.store import read_table
+from analysis.studies.study import Case, Study, run_trial
+from ratt_opt import InputError
+from tests.studies import toy
+from tests.studies.own import STUDY, boldest
+
+
+def test_own_functions_are_columns_by_their_names_also_in_other_processes(tmp_path):
+    with local_processes(1) as executor:
+        run(STUDY, tmp_path, executor, trials=3, progress=Progress())
+    for trial, row in enumerate(read_table(tmp_path)):
+        assert row == {name: str(value) for name, value in run_trial(STUDY, 0, trial).items()}
+        for planner in ("ratt", "boldest"):
+            assert float(row[f"{planner}/exact/value"]) <= float(row[f"{planner}/first_robot/value"])
+            assert float(row[f"{planner}/exact/value"]) <= float(row["optimum/upper"])
+
+
+def test_a_measure_is_a_function_or_its_path():
+    by_path, by_itself = toy.STUDY, replace(toy.STUDY, measure=toy.measure)
+    assert run_trial(by_path, 1, 2) == run_trial(by_itself, 1, 2)
+    assert by_path.definition() == by_itself.definition()
+    assert by_path.modules() == by_itself.modules() == ("tests.studies.toy",)
+
+
+def test_the_definition_names_every_function():
+    definition = STUDY.definition()
+    assert definition["planners"] == ["ratt", "tests.studies.own:boldest"]
+    assert definition["problem"] == "tests.studies.own:cover"
+    assert set(STUDY.modules()) == {"analysis.studies.comparison", "tests.studies.own"}
+    assert STUDY.fingerprint() != replace(STUDY, planners=("ratt",)).fingerprint()
+    assert "problem" not in toy.STUDY.definition()  # older results stay those of their study
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"planners": (lambda instance: instance,)}, "functions that stand at the top of a module"),
+        ({"planners": (boldest, "boldest")}, "planners must have different names"),
+        ({"attackers": ("exact", "exact")}, "attackers must have different names"),
+    ],
+)
+def test_what_workers_could_not_find_is_refused(change, text):
+    with pytest.raises(InputError, match=text):
+        replace(STUDY, **change)
+
+
+@pytest.mark.parametrize("metric", ["trace", "mse"])
+def test_metrics_of_scenarios_are_refused_for_other_problems(metric):
+    with pytest.raises(InputError, match="metrics must not need"):
+        run_trial(replace(STUDY, metrics=(metric,)), 0, 0)
+
+
+def test_a_study_of_random_scenarios_takes_own_planners():
+    case = Case(n_robots=3, n_targets=2, alpha_s=1, alpha_c=1)
+    study = Study(name="s", cases=(case,), planners=(boldest, "myopic"), attackers=("exact",), metrics=("mse", "trace"))
+    row = run_trial(study, 0, 0)
+    assert row["boldest/exact/trace"] == row["myopic/exact/trace"]
