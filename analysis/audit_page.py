@@ -54,6 +54,7 @@ exactly; no verdict below is a float, and none is typed in by hand.
 
 This page is written by commands:
 
+<!-- slow -->
 ```bash
 ratt-opt audit --out ledger
 python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/

@@ -51,7 +51,7 @@ def run(arguments: list[str]) -> int:
     encode_anything()
     with Interrupts() as interrupts:
         try:
-            code = app(arguments, standalone_mode=False)
+            code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
             flush()
             if code == INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
                 raise KeyboardInterrupt
