@@ -1,4 +1,4 @@
-"""The documentation site: made without a warning, with every public name, every link leads somewhere, nothing is fetched."""
+"""The documentation site: made without a warning, with every public name; links lead somewhere, nothing is fetched."""
 
 from __future__ import annotations
 

@@ -43,7 +43,8 @@ def _entry(name: str) -> str:
         return f"```{{eval-rst}}\n.. autoclass:: ratt_opt.{name}\n   :members:\n```\n"
     if callable(found):
         return f"```{{eval-rst}}\n.. autofunction:: ratt_opt.{name}\n```\n"
-    return f"```{{eval-rst}}\n.. autodata:: ratt_opt.{name}\n   :no-value:\n```\n"
+    keys = ", ".join(map(repr, found))
+    return f"```{{eval-rst}}\n.. data:: ratt_opt.{name}\n\n   A mapping with the keys {keys}.\n```\n"
 
 
 def copy_notebooks(folder: Path) -> None:
