@@ -26,10 +26,10 @@ best = [ro.solve_maxmin(replace(problem, alpha_s=k), time_limit=10).upper for k 
 # robustness.
 figure = Figure(figsize=(7, 3.8), layout="constrained")
 axes = figure.subplots()
-for name, elements in plans.items():
+for dodge, (name, elements) in zip((-0.08, 0.0, 0.08), plans.items(), strict=True):  # so that no curve hides another
     missing = [100 * (1 - ro.worst_case_attack(replace(problem, alpha_s=k), elements).upper / best[k]) for k in levels]
     look = look_of(name)
-    axes.plot(levels, missing, color=look.colour, marker=look.marker, label=name, alpha=0.9)
+    axes.plot([k + dodge for k in levels], missing, color=look.colour, marker=look.marker, label=name, alpha=0.9)
 axes.axvline(2, color="#222222", linestyle=":", label="planned for")
 axes.set_xticks(levels)
 axes.set_xlabel("robots blinded")

@@ -8,8 +8,9 @@ import typer
 
 from ratt_opt.certificates.verifier.work import SECONDS
 from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, progress
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import printable
+from ratt_opt.progress import Step
 
 __all__ = ["audit", "verify"]
 
@@ -39,7 +40,8 @@ def verify(
         from ratt_opt.scenario.files import load_input
 
         expected = same_problem(load_input(problem), objective)
-    verified = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
+    with Step("checking the certificate"):
+        verified = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
     if as_json:
         print_json(asdict(verified))
     else:
@@ -59,8 +61,7 @@ def audit(
     from ratt_opt.audit.ledger import run_audit
     from ratt_opt.report.tables import audit_table
 
-    with progress() as tell:
-        ledger = run_audit(out, quick=quick, progress=lambda done, total, name: tell(f"{done + 1}/{total} {name}"))
+    ledger = run_audit(out, quick=quick)
     if as_json:
         print_json({**ledger.document(), "entries": len(ledger.records)})
     else:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_number
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
 
@@ -49,6 +50,7 @@ def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> V
     return Violation(rule="normalised", a=(), b=(), slack=-abs(value), tolerance=tolerance)
 
 
+@Step("looking for a negative value")
 def find_negativity(
     f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
 ) -> Violation | NotFound | None:
@@ -60,6 +62,7 @@ def find_negativity(
     return _witness(f, "non-negative", (int(values.argmin()), 0), values, tolerance)
 
 
+@Step("looking for a falling value")
 def find_monotonicity_violation(
     f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
 ) -> Violation | NotFound | None:
@@ -89,6 +92,7 @@ def find_monotonicity_violation(
     return _witness(f, rule, (base, 1 << x), values, tolerance)
 
 
+@Step("looking for a violation of submodularity")
 def find_submodularity_violation(
     f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
 ) -> Violation | NotFound | None:
@@ -103,6 +107,7 @@ def find_submodularity_violation(
     return _second_order(f, "submodular", tolerance, trials, seed)
 
 
+@Step("looking for a violation of modularity")
 def find_modularity_violation(
     f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
 ) -> Violation | NotFound | None:
@@ -113,6 +118,7 @@ def find_modularity_violation(
     return _second_order(f, "modular", tolerance, trials, seed)
 
 
+@Step("looking for a violation of subadditivity")
 def find_subadditivity_violation(
     f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
 ) -> Violation | NotFound | None:

@@ -10,6 +10,7 @@ from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.progress import Step
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -24,6 +25,7 @@ LARGEST_SEARCH = 5_000_000
 """Most plans that are enumerated (12**6 is about 3 million)."""
 
 
+@Step("all plans")
 def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> MaxMinResult:
     """Return the best plan by evaluating every plan against every non-dominated outcome.
 

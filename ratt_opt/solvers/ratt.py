@@ -10,6 +10,7 @@ from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "greedy", "myopic", "random_plan", "ratt"]
@@ -59,6 +60,7 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None) -> Plan:
     return replace(bait_and_greedy(problem, problem.alpha_s + known), alpha_cs=known)
 
 
+@Step("planning")
 def bait_and_greedy(problem: Problem, alpha: int) -> Plan:
     """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18)."""
     single = problem.objective.singletons()

@@ -14,6 +14,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
 from ratt_opt.problem import Attack, Plan
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
@@ -38,6 +39,7 @@ ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
 
+@Step("the best plan")
 def solve_maxmin(
     problem: Problem,
     *,
