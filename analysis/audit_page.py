@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
+from ratt_opt.audit.report.chains import chain_lines
 from ratt_opt.audit.report.findings import Finding, findings, title
 from ratt_opt.audit.report.pages import finding_lines
 from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
@@ -69,6 +70,9 @@ def page(document: LedgerDocument, ratios: Finding, figure: str = "") -> str:
     lines = [OPENING, f"The ledger has {len(document['entries'])} entries: {counts}.", ""]
     for finding in (*findings(document), realistic_table(document), ratios):
         lines += finding_lines(finding)
+    lines += ["## The lines themselves", ""]
+    for chain in chain_lines(document):
+        lines += finding_lines(chain, level=3)
     if figure:
         lines += [f"![Exact worst ratios against curvature, beside the bounds]({figure})", ""]
     return "\n".join(lines)
