@@ -1,18 +1,23 @@
 """Plan robot teams that keep tracking targets under attack, and prove how good each plan is.
 
-Every public name stands in ``__init__.pyi`` and is loaded on first use: importing ``ratt_opt`` stays
-light, and the certificate verifier shares no import with the solvers whose claims it checks.
+Every public name stands in ``__init__.pyi``, by topic (``ratt_opt.TOPICS``), and is loaded on first use: importing
+``ratt_opt`` stays light, and the certificate verifier shares no import with the solvers whose claims it checks.
 """
 
-from pathlib import Path
 
-import lazy_loader
+def __getattr__(name: str) -> object:
+    # The stub is read on first use too, so that an interrupt just after the start of a command finds its guards.
+    from pathlib import Path
 
-from ratt_opt._topics import as_text, names_of, read_topics
+    import lazy_loader
 
-__getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
-TOPICS = read_topics(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-__all__ = names_of(TOPICS)  # noqa: PLE0605  (the call returns a list)
-__doc__ = (
-    f"{__doc__}\nThe names by topic, as ``ratt_opt.TOPICS`` and ``ratt_opt.__all__`` have them:\n\n{as_text(TOPICS)}"
-)
+    from ratt_opt._topics import names_of, read_topics
+
+    load, names, _ = lazy_loader.attach_stub(__name__, __file__)
+    topics = read_topics(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    globals().update(__getattr__=load, __dir__=names, TOPICS=topics, __all__=names_of(topics))
+    return globals()[name] if name in ("TOPICS", "__all__") else load(name)
+
+
+def __dir__() -> list[str]:
+    return list(__getattr__("__all__"))  # type: ignore[call-overload, no-any-return]

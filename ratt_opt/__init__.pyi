@@ -45,6 +45,32 @@ from .attackers.criticality import (
     BreakingBudget as BreakingBudget,
 )
 
+# == Missions
+from .missions.attack_models import (
+    AttackModel as AttackModel,
+    PermanentFailures as PermanentFailures,
+    PersistentAttacks as PersistentAttacks,
+)
+from .missions.belief import Belief as Belief
+from .missions.models.sensors import (
+    BearingOnly as BearingOnly,
+    PositionSensor as PositionSensor,
+    RangeBearing as RangeBearing,
+    RangeOnly as RangeOnly,
+    SensorModel as SensorModel,
+)
+from .missions.models.targets import (
+    ConstantVelocity as ConstantVelocity,
+    CoordinatedTurn as CoordinatedTurn,
+    KnownVelocity as KnownVelocity,
+    TargetMotion as TargetMotion,
+)
+from .missions.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
+from .missions.result import Mission as Mission, MissionStep as MissionStep
+from .missions.run import run_mission as run_mission
+from .missions.tracker import Measurement as Measurement, Tracker as Tracker, TrackerState as TrackerState
+from .missions.world import MissionModel as MissionModel
+
 # == Guarantees and bounds
 from .bounds.guarantees import (
     Guarantee as Guarantee,
@@ -55,6 +81,7 @@ from .bounds.guarantees import (
     all_bait_group_bound as all_bait_group_bound,
 )
 from .bounds.group_size import group_size_bound as group_size_bound
+from .bounds.survivors import survivor_bound as survivor_bound
 from .bounds.instance import instance_bound as instance_bound
 from .bounds.applicable import (
     all_guarantees as all_guarantees,

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from textwrap import fill
 
-__all__ = ["as_text", "names_of", "read_topics"]
+__all__ = ["names_of", "read_topics"]
 
 _MARK = re.compile(r"^# == (?P<topic>.+)$|(?P<name>\w+) as (?P=name)", re.MULTILINE)
 
@@ -24,9 +23,3 @@ def read_topics(stub: str) -> dict[str, tuple[str, ...]]:
 def names_of(topics: dict[str, tuple[str, ...]]) -> list[str]:
     """Return all names, topic by topic, after that of the version, which has none."""
     return ["__version__", *(name for names in topics.values() for name in names)]
-
-
-def as_text(topics: dict[str, tuple[str, ...]]) -> str:
-    """Return one paragraph a topic."""
-    lines = (fill(f"{topic}: {', '.join(names)}", 100, subsequent_indent="    ") for topic, names in topics.items())
-    return "\n".join(lines) + "\n"

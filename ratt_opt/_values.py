@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ratt_opt._rounding import down, up
+
 __all__ = ["ByValue", "Shown", "plain", "shown"]
 
 MOST_SHOWN = 12
@@ -75,7 +77,7 @@ class Shown:
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><th style='text-align:left'>{escape(name.replace('_', ' '))}</th>"
-            f"<td style='text-align:left'>{escape(_brief(value))}</td></tr>"
+            f"<td style='text-align:left'>{escape(_brief(value, name))}</td></tr>"
             for name, value in self.to_dict().items()
         )
         return f"<table><caption>{escape(type(self).__name__)}</caption>{rows}</table>"
@@ -96,11 +98,15 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _brief(value: Any) -> str:
-    """Plain data as text for people: numbers to ten digits, long lists cut."""
+def _brief(value: Any, name: str) -> str:
+    """Plain data as text for people: numbers to ten digits, ends of brackets outward by their names, long lists cut."""
     if isinstance(value, dict):
-        return "; ".join(f"{name}: {_brief(item)}" for name, item in value.items())
+        return "; ".join(f"{key}: {_brief(item, key)}" for key, item in value.items())
     if isinstance(value, list):
         more = f", ... {len(value) - MOST_SHOWN} more" if len(value) > MOST_SHOWN else ""
         return (", ".join("-".join(map(str, x)) if isinstance(x, list) else str(x) for x in value[:MOST_SHOWN])) + more
-    return f"{value:.10g}" if isinstance(value, float) else "none" if value is None else str(value)
+    if not isinstance(value, float):
+        return "none" if value is None else str(value)
+    if name.endswith("lower"):
+        return down(value, 10)
+    return up(value, 10) if name.endswith(("upper", "gap")) else f"{value:.10g}"

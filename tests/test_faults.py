@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from analysis.faults import __main__ as command_line
 from analysis.faults import campaign as faults
-from analysis.faults import kinds
+from analysis.faults import inside
 from analysis.faults.kinds import KINDS
+from analysis.faults.processes import PROCESSES
+from analysis.faults.results import check_results, earlier_results
+from ratt_opt._files import MIXED
 
-SAMPLED = (
-    "certificate",
-    "input",
-    "flags",
-    "journal",
-    "full disk",
-    "closed stream",
-    pytest.param("interrupt", marks=pytest.mark.slow),  # real signals at random moments: not the same in every run
-)
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+
+SAMPLED = {"full disk in bound": 2, "interrupt of bound": 2} | dict.fromkeys(PROCESSES, 2)
+"""How many cases of the kinds that take long; 20 of the others."""
 
 
 def _only(kind: str) -> dict[str, tuple[float, faults.Kind]]:
@@ -33,13 +36,15 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> faults.Campaign:
     return made
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # what interrupts leave to be collected
-@pytest.mark.parametrize("kind", SAMPLED)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.slow) if kind == "disturbed sweep" else kind for kind in KINDS]
+)
 def test_a_sample_of_the_campaign_finds_nothing(kind: str, campaign: faults.Campaign) -> None:
-    for number in range(20):
+    cases = SAMPLED.get(kind, 20)
+    for number in range(cases):
         campaign.run_case(number, _only(kind))
     assert campaign.faults == {}
-    assert sum(count for name, count in campaign.counts.items() if name.startswith(f"{kind}: ")) == 20
+    assert sum(count for name, count in campaign.counts.items() if name.startswith(f"{kind}: ")) == cases
 
 
 @pytest.mark.parametrize(
@@ -67,13 +72,54 @@ def test_the_campaign_sees_a_faulty_program(
 
 def test_the_campaign_sees_a_false_certificate(campaign: faults.Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
     """A verifier that believes twice what was proved."""
-    real: Any = kinds.truth
+    real: Any = inside.truth
 
     def twice(document: Any, elements: list[int]) -> tuple[float, float]:
         lower, upper = real(document, elements)
         return lower, 2 * upper
 
-    monkeypatch.setattr(kinds, "truth", twice)
-    monkeypatch.setattr(kinds, "damaged", lambda data, _: data)
+    monkeypatch.setattr(inside, "truth", twice)
+    monkeypatch.setattr(inside, "damaged", lambda data, _: data)
     campaign.run_case(0, _only("certificate"))
     assert "false upper end" in campaign.faults.pop(0)
+
+
+def test_the_campaign_sees_files_of_two_runs(campaign: faults.Campaign, tmp_path: Path) -> None:
+    folder = earlier_results(campaign, tmp_path)
+    check_results(campaign, folder)
+    (folder / "plan.csv").write_bytes(b"another run's")
+    with pytest.raises(AssertionError, match="files of two runs without a mark"):
+        check_results(campaign, folder)
+    (folder / MIXED).touch()
+    check_results(campaign, folder)
+
+
+def test_a_stopped_campaign_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In two pieces it finds what it finds in one, and a fault is its exit code."""
+
+    def faulty(_: Any, rng: np.random.Generator, __: Any) -> str:
+        if rng.random() < 0.9:
+            return "done"
+        raise AssertionError("seldom")
+
+    monkeypatch.setattr(command_line, "KINDS", {"flags": (1.0, faulty)})
+    monkeypatch.setattr(faults.Campaign, "prepare", lambda _: None)
+
+    def run(folder: str, *options: str) -> tuple[int, Any]:
+        monkeypatch.setattr(sys, "argv", ["faults", "--seed", "3", "--out", str(tmp_path / folder), *options])
+        code = command_line.main()
+        found = json.loads((tmp_path / folder / "faults.json").read_text())
+        return code, {name: found[name] for name in ("cases", "counts", "faults")}
+
+    once = run("a", "--cases", "40")
+    assert run("b", "--cases", "40", "--time-limit", "0")[1]["cases"] == 1
+    assert run("b", "--cases", "40") == once
+    assert once[0] == 1
+    assert sum(once[1]["counts"].values()) == 40
+    capsys.readouterr()
+    first = next(iter(once[1]["faults"]))
+    run("c", "--cases", "1")
+    assert run("c", "--case", first)[0] == 1
+    assert "seldom" in capsys.readouterr().out

@@ -1,8 +1,8 @@
-(** [1 - k] is attained: for every [m >= 2] and [k <= 1 - 1/m] a weighted coverage function of curvature at most [k], a
-    bait-or-greedy plan of [3m] robots with the bait choices RATT makes under its ties, and an attack on [m] of them. *)
+(** [1 - k] is attained: for every [m >= 1] and [0 <= k <= 1 - 1/m] a weighted coverage function of curvature at most
+    [k] on [3m] robots, [m] of them blinded, on which RATT, the function, keeps exactly [1 - k] of the optimum. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees.
+From Ratt Require Import Extrema Teams Guarantees Planner Ties.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -120,7 +120,7 @@ Definition phi := coverage own size_of covers.
 
 Definition family_team : team R E :=
   Team (fun x : E => x.2) [set l : {set R} | #|l| == 2%N] m 0 set0 set0.
-Definition baited : {ffun R -> E} := [ffun i => (true, i)].
+Definition baited : {ffun R -> E} := first_choice R.
 Definition other : {ffun R -> E} := [ffun i => (false, i)].
 Definition removed : seq R := [seq (Some true, j) | j <- enum 'I_m].
 Definition victims : seq R := [seq (Some false, j) | j <- enum 'I_m].
@@ -223,34 +223,6 @@ Proof. by rewrite /greedy_order index_cat mem_removed /= take_cat ltnNge leq_add
 Lemma before_true g i x : x \in before baited g i -> x = (true, x.2) /\ x.2 \in take (index i g) g.
 Proof. by case/imsetP => j; rewrite inE => jt ->; rewrite ffunE. Qed.
 
-Lemma family_bait_or_greedy : bait_or_greedy family_team phi baited greedy_order.
-Proof.
-split; [exact: baited_plan | exact: order_uniq | |].
-  move=> [b j] [c [b' j']]; rewrite /= mem_cat mem_removed mem_victims ffunE => ng [eb ej].
-  by rewrite !single; case: b ng eb => [[]|] // _ ->; case: c.
-move=> [b j] [c i] ig /= ->; rewrite ffunE; set B := before _ _ _.
-case: c => //; rewrite -[X in X <= _](subrK (phi B)) -[X in _ <= X](subrK (phi B)) ler_add2r.
-have nb : (b, j) \notin take (index (b, j) greedy_order) greedy_order := take_index_notin _ _.
-have notin c' : (c', (b, j)) \notin B by apply/negP => /before_true[_ /=]; apply/negP.
-rewrite -!/(marginal phi _ _) !coverage_marginal //.
-move: ig; rewrite mem_cat mem_removed mem_victims => /orP[] /eqP eb; subst b => /=.
-  rewrite fresh_none ?addr0 => [|//]; rewrite -[X in X <= _](subrK k) ler_add2l.
-  apply: (@fresh_one _ _ (false, j)); first by rewrite /= eqxx.
-  apply/exists_inP => -[x xB]; have [-> xt] := before_true xB; rewrite inE /=.
-  have := before_removed xt; case: (x.2) xt => [b' j'] xt; rewrite mem_removed => /eqP eb; subst b' => /= /eqP[e].
-  by move: xt; rewrite -e (negbTE nb).
-rewrite fresh_none ?addr0 => [|q /= /eqP ->]; last first.
-  apply/exists_inP; exists (true, (Some true, j)); last by rewrite inE /= eqxx.
-  apply/imsetP; exists (Some true, j); last by rewrite ffunE.
-  by rewrite inE; apply: before_victim; rewrite mem_removed.
-rewrite -[X in X <= _](subrK (k / m%:R)) ler_add2l.
-apply: (@fresh_one _ _ (true, j)); first by rewrite /= eqxx.
-apply/exists_inP => -[x xB]; have [-> xt] := before_true xB; rewrite inE /=.
-have := mem_take xt; case: (x.2) xt => [b' j'] xt; rewrite mem_cat mem_removed mem_victims.
-case/orP=> /eqP eb; subst b' => //= /eqP[e].
-by move: xt; rewrite -e (negbTE nb).
-Qed.
-
 Lemma sum_pairs (A B : finType) (f : A * B -> F) : \sum_i f i = \sum_a \sum_b f (a, b).
 Proof. by rewrite pair_bigA; apply: eq_bigr => -[]. Qed.
 
@@ -324,19 +296,92 @@ rewrite -(leq_add2l #|blinded a|) cardsC card_robots -[X in (_ <= X)%N]/((1 + 2)
 exact: bl.
 Qed.
 
+(** ** RATT, with its ties, returns that plan *)
+Definition default : E := (true, (None, ord0)).
+Definition baits : seq R := [seq (None, j) | j <- enum 'I_m].
+
+Lemma enum_robots : enum R = baits ++ greedy_order.
+Proof. by rewrite /R enum_pair enum_option enum_bool /= cats0. Qed.
+
+Lemma every_robot_owns i : exists x, owner family_team x = i.
+Proof. by exists (true, i). Qed.
+
+Lemma bait_true j : best family_team phi default (None, j) = (true, (None, j)).
+Proof. by apply: best_first => //; rewrite !single. Qed.
+
+Lemma best_value i : alone phi (best family_team phi default i) = 1.
+Proof.
+have h b : alone phi (b, i) <= 1 by rewrite /alone single; case: b i => [] [[[]|] j]; rewrite ?t_le1.
+apply: le_anti; apply/andP; split.
+  by case: (best _ _ _ i) (owner_best phi default every_robot_owns i) => b r /= ->; apply: h.
+have := best_max family_team phi default (false, i).
+by rewrite [X in X <= _]/alone single; case: i {h} => [[[]|] j].
+Qed.
+
+Lemma baitE : bait family_team phi default m = baits.
+Proof.
+rewrite /bait (by_value_flat (c := 1)) => [|i]; last exact: best_value.
+by rewrite enum_robots take_size_cat // size_map size_enum_ord.
+Qed.
+
+(** What greedy adds to its picks: nothing among the robots left is better, and ties go to the plan's elements. *)
+Lemma marginal_single x (A : {set E}) : x \notin A -> marginal phi x A <= phi [set x].
+Proof.
+move=> xA; rewrite /phi coverage_marginal // coverage_single ler_add2l.
+by apply: fresh_antitone; [exact: size_ge0 | exact: sub0set].
+Qed.
+
+Lemma family_ratt : ratt family_team phi default m = baited.
+Proof.
+apply: (@ratt_first_choice _ _ _ _ _ _ m greedy_order) => // [|[b j]|r z rg zg zt].
+- rewrite enum_robots filter_cat baitE; set s1 := filter _ _; set s2 := filter _ _.
+  have -> : s1 = [::] by rewrite /s1 -(filter_pred0 baits); apply: eq_in_filter => i ->.
+  rewrite cat0s /s2; apply/esym/all_filterP/allP => -[b j].
+  by rewrite mem_cat mem_removed mem_victims => ig; apply/mapP => -[k' _ [eb _]]; rewrite eb in ig.
+- by rewrite baitE => /mapP[k' _ [-> _]]; apply: bait_true.
+rewrite -/baited; set B := before _ _ _.
+have inB x : x \in B -> x = (true, x.2) /\ x.2 \in take (index r greedy_order) greedy_order by apply: before_true.
+have zB : z \notin B by apply: contra zt => /inB[].
+have rB : (true, r) \notin B by apply/negP => /inB[_]; apply/negP; apply: take_index_notin.
+rewrite -(ler_add2r (- phi B)) -!/(marginal phi _ _).
+have own_item : t - k / m%:R + k / m%:R = t by rewrite subrK.
+case: r rg zt @B inB zB rB => b j; rewrite mem_cat mem_removed mem_victims => /orP[] /eqP -> zt B inB zB rB.
+  apply: le_trans (marginal_single zB) _; apply: (@le_trans _ _ 1).
+    by rewrite single; case: (z) => [[] [[[]|] q]]; rewrite ?t_le1.
+  rewrite coverage_marginal //= -[X in X <= _](subrK k) ler_add2l.
+  apply: (@fresh_one _ _ (false, j)); first by rewrite /= eqxx.
+  apply/exists_inP => -[x xB]; have [-> xt] := inB _ xB; rewrite inE /=.
+  have := before_removed xt; case: (x.2) xt => [b' j'] xt; rewrite mem_removed => /eqP eb; subst b' => /= /eqP[e].
+  by move: (take_index_notin greedy_order (Some true, j)); rewrite {1}e xt.
+apply: (@le_trans _ _ t).
+  case: z zg zt zB => c [b' q]; rewrite mem_cat mem_removed mem_victims => /orP[] /eqP /= -> zt zB.
+    by case/negP: zt; apply: before_victim; rewrite mem_removed.
+  case: c zB => zB; first by apply: le_trans (marginal_single zB) _; rewrite single.
+  rewrite coverage_marginal //= fresh_none ?addr0 // => i /= /eqP ->.
+  apply/exists_inP; exists (true, (Some true, q)); last by rewrite inE /= eqxx.
+  apply/imsetP; exists (Some true, q); last by rewrite ffunE.
+  by rewrite inE; apply: before_victim; rewrite mem_removed.
+rewrite coverage_marginal //= -[X in X <= _]own_item ler_add2l.
+apply: (@fresh_one _ _ (true, j)); first by rewrite /= eqxx.
+apply/exists_inP => -[x xB]; have [-> xt] := inB _ xB; rewrite inE /=.
+have := mem_take xt; case: (x.2) xt => [b' j'] xt; rewrite mem_cat mem_removed mem_victims.
+case/orP=> /eqP eb; subst b' => //= /eqP[e].
+by move: (take_index_notin greedy_order (Some false, j)); rewrite {1}e xt.
+Qed.
+
 (** The ratio is [1 - k] exactly, and the optimum is positive. *)
 Theorem one_minus_k_attained :
-  [/\ normalised phi, submodular family_team phi, curvature_at_most family_team phi k,
-      bait_or_greedy family_team phi baited greedy_order
-    & 0 < optimum family_team phi /\ worst_case family_team phi baited = (1 - k) * optimum family_team phi].
+  [/\ normalised phi, submodular family_team phi, curvature_at_most family_team phi k, 0 < optimum family_team phi
+    & worst_case family_team phi (ratt family_team phi default m) = (1 - k) * optimum family_team phi].
 Proof.
+rewrite family_ratt.
 have n0 : normalised phi := coverage0 _ _ _.
 have sub : submodular family_team phi by apply: coverage_submodular; apply: size_ge0.
 have opt : (2 * m)%:R <= optimum family_team phi.
   have [_ best] := optimumP phi baited_plan; exact: le_trans other_worst (best _ other_plan).
-split=> //; [exact: family_curvature | exact: family_bait_or_greedy | split].
-  by apply: lt_le_trans opt; rewrite ltr0n.
-apply: le_anti; rewrite (submodular_guarantee (None, ord0) _ n0 sub family_curvature family_bait_or_greedy) ?andbT.
+split=> //; [exact: family_curvature | by apply: lt_le_trans opt; rewrite ltr0n |].
+apply: le_anti; have curv := family_curvature; rewrite -[X in _ && (_ <= worst_case _ _ X)]family_ratt.
+rewrite (ratt_submodular default every_robot_owns m (None, ord0)) ?andbT //.
   by apply: le_trans baited_worst _; rewrite mulrC; apply: ler_wpmul2l => //; apply: ltW t_gt0.
 by rewrite -subr_ge0 ltW ?t_gt0.
 Qed.

@@ -1,136 +1,88 @@
-(** Guarantees from the group size: on the complete graph, with more baits than blinded robots, RATT keeps [1/g] of the
-    optimum for every submodular function and [t / (g - 1 + t)] for total curvature [1 - t]; with [g = 1] it is optimal. *)
+(** Guarantees from the group size, for any graph and any protected parts: with more baits than blinded robots, RATT
+    keeps [1/g] of the optimum for every submodular function and [t / (g - 1 + t)] for total curvature [1 - t]; with
+    [g = 1] it is optimal. Where no cut splits the team and the baits are as many as the robots that can be blinded,
+    these hold as a minimum with greedy's own. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Planner.
+From Ratt Require Import Extrema Teams Guarantees Planner Greedy.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 Import Order.Theory GRing.Theory Num.Theory.
 Local Open Scope ring_scope.
 
-Section Relabel.
-Variables (R E : finType) (t : team R E).
-(** All links, and nothing protected. *)
-Definition complete_graph : Prop := links t = [set l : {set R} | #|l| == 2%N].
-Definition unprotected : Prop := safe_robots t = set0 /\ safe_links t = set0.
-
-Hypotheses (full : complete_graph) (open : unprotected).
-Variables (a : attack R) (order : seq R).
-Hypotheses (oka : allowed t a) (order_all : perm_eq order (enum R)).
-
-(** Robots renamed so that those blinded come first in the given order. *)
-Let from := enum (blinded a) ++ enum (~: blinded a).
-Definition rename (x : R) : R := nth x order (index x from).
-
-Lemma from_uniq : uniq from.
-Proof.
-rewrite cat_uniq !enum_uniq andbT; apply/hasP => -[x].
-by rewrite mem_enum in_setC => /negP h1 /=; rewrite mem_enum => /h1.
-Qed.
-Lemma mem_from x : x \in from.
-Proof. by rewrite mem_cat !mem_enum inE orbN. Qed.
-Lemma size_from : size from = #|R|.
-Proof. by rewrite size_cat -!cardE cardsC. Qed.
-Lemma size_order : size order = #|R|.
-Proof. by rewrite (perm_size order_all) -cardE. Qed.
-Lemma order_uniq : uniq order.
-Proof. by rewrite (perm_uniq order_all) enum_uniq. Qed.
-
-Lemma rename_inj : injective rename.
-Proof.
-move=> x y; rewrite /rename (set_nth_default x y) ?size_order -?size_from ?index_mem ?mem_from // => /eqP.
-rewrite nth_uniq ?order_uniq ?size_order -?size_from ?index_mem ?mem_from // => /eqP e.
-by rewrite -(nth_index x (mem_from x)) e nth_index ?mem_from.
-Qed.
-
-Lemma rename_blinded x : x \in blinded a -> rename x \in take #|blinded a| order.
-Proof.
-move=> xb; have : (index x from < #|blinded a|)%N by rewrite /from index_cat mem_enum xb cardE index_mem mem_enum.
-move=> lt; rewrite /rename -(nth_take _ lt); apply: mem_nth.
-by rewrite size_takel // size_order max_card.
-Qed.
-
-Definition top : {set R} := [set x | x \in take (alpha_s t) order].
-Definition renamed : attack R := (top, [set rename @: l | l : {set R} in cut a]).
-
-Lemma blinded_top x : x \in blinded a -> rename x \in top.
-Proof.
-move=> /rename_blinded h; rewrite inE; case/and5P: oka => le _ _ _ _.
-by rewrite -(subnKC le) takeD mem_cat h.
-Qed.
-
-Lemma renamed_allowed : (alpha_s t <= #|R|)%N -> allowed t renamed.
-Proof.
-case: open => sr sl le; case/and5P: oka => _ cb sub _ _; apply/and5P; split.
-- rewrite cardE /=; apply: leq_trans (_ : size (take (alpha_s t) order) <= _)%N.
-    by apply: uniq_leq_size; rewrite ?enum_uniq // => x; rewrite mem_enum inE.
-  by rewrite size_take; case: ltnP.
-- exact: leq_trans (leq_imset_card _ _) cb.
-- apply/subsetP => l /imsetP[m mc ->]; have := subsetP sub _ mc; rewrite full !inE card_imset //.
-  exact: rename_inj.
-- by rewrite sr disjoint_subset; apply/subsetP => x _; rewrite !inE.
-by rewrite sl disjoint_subset; apply/subsetP => x _; rewrite !inE.
-Qed.
-
-Lemma rename_surj y : exists x, y = rename x.
-Proof. by have [h _ hK] := injF_bij rename_inj; exists (h y); rewrite hK. Qed.
-
-Lemma renamed_linked i j : linked t renamed (rename i) (rename j) -> linked t a i j.
-Proof.
-rewrite /linked !in_setD (inj_eq rename_inj) => /andP[ne /andP[nc _]]; rewrite ne /=.
-have e : [set rename i; rename j] = rename @: [set i; j] by rewrite imsetU1 imset_set1.
-rewrite full inE cards2 ne andbT; apply: contra nc => c; by rewrite e; apply: imset_f.
-Qed.
-
-Lemma renamed_sees y : exists i, sees t renamed y \subset [set rename j | j in sees t a i].
-Proof.
-have [i ->] := rename_surj y; exists i; apply/subsetP => z; rewrite !inE => /andP[zt con].
-suff : z \in [set rename j | j in group t a i].
-  case/imsetP=> j ji ez; apply/imsetP; exists j => //; rewrite in_setD ji andbT.
-  by apply: contra zt => /blinded_top; rewrite ez inE.
-have cl : closed (linked t renamed) [set rename j | j in group t a i].
-  apply: intro_closed; first exact: connect_linked_sym.
-  move=> x x' l /imsetP[j ji ej]; have [k ek] := rename_surj x'.
-  rewrite ek; apply: imset_f; rewrite inE; move: ji; rewrite inE => ji.
-  by apply: connect_trans ji (connect1 _); apply: renamed_linked; rewrite -ej -ek.
-rewrite -(closed_connect cl con); apply: imset_f; by rewrite inE connect0.
-Qed.
-End Relabel.
-
 Section Bounds.
-Variables (F : realFieldType) (R E : finType) (t : team R E) (phi : {set E} -> F) (default : E) (alpha g : nat) (robot0 : R).
+Variables (F : realFieldType) (R E : finType) (t : team R E) (phi : {set E} -> F) (default : E) (g : nat) (robot0 : R).
 Hypothesis every_robot_owns : forall i, exists x, owner t x = i.
-Hypotheses (full : complete_graph t) (open : unprotected t).
-(** More baits than robots that can be blinded, and a robot is left. *)
-Hypotheses (baits : (alpha_s t < alpha)%N) (robots : (alpha_s t < #|R|)%N).
-(** The adversary can leave no group with more than [g] seeing robots. *)
-Hypothesis reach : exists2 a, allowed t a & forall i, (#|sees t a i| <= g)%N.
+Hypothesis robots : (alpha_s t < #|R|)%N.
 Hypotheses (n0 : normalised phi) (mono : non_decreasing t phi).
-Let u := ratt t phi default alpha.
 Let order := by_value t phi default.
 Let worth i := alone phi (best t phi default i).
 
-Lemma u_plan : is_plan t u.
-Proof. by case: (ratt_bait_or_greedy phi default every_robot_owns alpha). Qed.
+(** The unprotected robots of the [alpha_s] largest individual values. *)
+Definition strongest : seq R := take (alpha_s t) [seq i <- order | i \notin safe_robots t].
+(** An allowed attack blinds them and leaves no group with more than [g] seeing robots. *)
+Hypothesis reach : exists2 a, allowed t a & {subset strongest <= blinded a} /\ forall i, (#|sees t a i| <= g)%N.
 
 Lemma order_perm : perm_eq order (enum R).
 Proof. by rewrite perm_sort. Qed.
-
-(** The [alpha_s + 1]-th largest value of a best element. *)
-Definition bar : F := worth (nth robot0 order (alpha_s t)).
+Lemma order_uniq : uniq order.
+Proof. by rewrite (perm_uniq order_perm) enum_uniq. Qed.
+Lemma order_size : size order = #|R|.
+Proof. by rewrite (perm_size order_perm) -cardE. Qed.
+Lemma mem_order i : i \in order.
+Proof. by rewrite (perm_mem order_perm) mem_enum. Qed.
 
 Lemma order_le i j : (i <= j < #|R|)%N -> worth (nth robot0 order j) <= worth (nth robot0 order i).
 Proof.
-move=> /andP[ij jn]; have sz : size order = #|R| by rewrite size_sort -cardE.
+move=> /andP[ij jn].
 have tr : transitive (fun i j => worth j <= worth i) by move=> x y z /= h1 h2; apply: le_trans h2 h1.
 have so : sorted (fun i j => worth j <= worth i) order.
   by apply: sort_sorted => x y; apply: le_total.
-by apply: (sorted_leq_nth tr _ robot0 so) => //; rewrite ?inE ?sz //; apply: leq_ltn_trans jn.
+by apply: (sorted_leq_nth tr _ robot0 so) => //; rewrite ?inE ?order_size //; apply: leq_ltn_trans jn.
 Qed.
 
-Lemma single_le_best x : phi [set x] <= worth (owner t x).
-Proof. exact: best_max. Qed.
+(** The first robot in RATT's order beside the strongest, and its value, the bar. *)
+Definition place : nat := find (fun i => i \notin strongest) order.
+Definition bar : F := worth (nth robot0 order place).
+
+Lemma size_strongest : (size strongest <= alpha_s t)%N.
+Proof. by rewrite size_take; case: ltnP. Qed.
+
+Lemma place_lt : (place < #|R|)%N.
+Proof.
+rewrite -order_size /place -has_find; apply/negPn; rewrite -all_predC; apply/negP => /allP all_in.
+have : (size order <= size strongest)%N.
+  by apply: uniq_leq_size order_uniq _ => i /all_in /=; rewrite negbK.
+by rewrite order_size leqNgt (leq_ltn_trans size_strongest robots).
+Qed.
+
+Lemma first_left : nth robot0 order place \notin strongest.
+Proof. by apply: (@nth_find _ robot0 (fun i => i \notin strongest)); rewrite has_find order_size place_lt. Qed.
+
+Lemma place_le : (place <= alpha_s t)%N.
+Proof.
+have sz : size (take place order) = place by rewrite size_takel // order_size ltnW // place_lt.
+rewrite -{1}sz; apply: leq_trans size_strongest; apply: uniq_leq_size; first exact: take_uniq order_uniq.
+move=> i /(nthP robot0)[k]; rewrite sz => kp <-; rewrite nth_take //.
+by have /negbFE := @before_find _ robot0 (fun i => i \notin strongest) order k kp.
+Qed.
+
+(** An unprotected robot beside the strongest has all of them before it. *)
+Lemma place_unprotected : nth robot0 order place \notin safe_robots t -> place = alpha_s t.
+Proof.
+set r := nth _ _ _ => rs; apply/eqP; rewrite eqn_leq place_le /= leqNgt.
+have rf : r \in [seq i <- order | i \notin safe_robots t] by rewrite mem_filter rs mem_order.
+apply: contra first_left => lt; rewrite /strongest in_take //; apply: leq_ltn_trans lt.
+have rp : index r order = place by rewrite index_uniq ?order_uniq // order_size place_lt.
+have rt : r \notin take place order by rewrite in_take ?mem_order // rp ltnn.
+rewrite -/r; have -> : [seq i <- order | i \notin safe_robots t] =
+    [seq i <- take place order | i \notin safe_robots t] ++ [seq i <- drop place order | i \notin safe_robots t].
+  by rewrite -filter_cat cat_take_drop.
+rewrite index_cat mem_filter (negbTE rt) andbF.
+rewrite (drop_nth robot0) ?order_size ?place_lt // -/r /= rs /= eqxx addn0 size_filter.
+by apply: leq_trans (count_size _ _) _; rewrite size_take; case: ltnP.
+Qed.
 
 Lemma bar_ge0 : 0 <= bar.
 Proof.
@@ -138,59 +90,35 @@ rewrite /bar /worth /alone -n0; apply: mono; last exact: sub0set.
 by apply/forall_inP => x; rewrite inE => /eqP->; apply/forall_inP => y; rewrite inE => /eqP->; rewrite !eqxx.
 Qed.
 
-Lemma below_bar i : i \notin take (alpha_s t) order -> worth i <= bar.
+Lemma below_bar i : i \notin strongest -> worth i <= bar.
 Proof.
-move=> ni; have io : i \in order by rewrite (perm_mem order_perm) mem_enum.
-rewrite -(nth_index robot0 io); apply: order_le.
-have -> : (index i order < #|R|)%N by rewrite cardE -(perm_size order_perm) index_mem.
-by rewrite andbT leqNgt; apply: contra ni; rewrite in_take.
+move=> ni; rewrite -(nth_index robot0 (mem_order i)); apply: order_le.
+rewrite -{1}order_size index_mem mem_order andbT leqNgt; apply/negP => lt.
+by have := @before_find _ robot0 (fun i => i \notin strongest) order _ lt; rewrite nth_index ?mem_order // ni.
 Qed.
 
-(** RATT keeps at least the bar: one of its [alpha_s + 1] first baits sees. *)
-Lemma ratt_keeps_bar : bar <= worst_case t phi u.
-Proof.
-apply: le_worst_case => a /and5P[bl _ _ _ _].
-have szo : size order = #|R| by rewrite size_sort -cardE.
-pose s := take (alpha_s t).+1 order.
-have us : uniq s by apply: take_uniq; rewrite (perm_uniq order_perm) enum_uniq.
-have szs : size s = (alpha_s t).+1 by rewrite size_takel ?szo.
-have [i is_ ib] : exists2 i, i \in s & i \notin blinded a.
-  apply/hasP; rewrite has_predC; apply/negP => /allP all_b.
-  have : (size s <= #|blinded a|)%N by rewrite cardE; apply: uniq_leq_size => // x /all_b; rewrite mem_enum.
-  by rewrite szs leqNgt ltnS bl.
-apply: le_trans (le_team_value t phi u a i).
-have ui : u i = best t phi default i.
-  rewrite ffunE ifT //; rewrite /bait -(subnKC baits) takeD mem_cat -/s is_ //.
-apply: le_trans (_ : phi [set u i] <= _); last first.
-  apply: mono; first exact: plan_feasible u_plan.
-  by rewrite sub1set; apply: imset_f; apply: mem_sees.
-have io : i \in order by rewrite (perm_mem order_perm) mem_enum.
-rewrite ui -/(alone phi _) -/(worth i) -[X in worth X](nth_index robot0 io); apply: order_le.
-by rewrite robots andbT -ltnS; move: is_; rewrite in_take.
-Qed.
-
-(** The attack on the largest baits leaves groups of at most [g] robots below the bar. *)
+(** The attack on the strongest leaves groups of at most [g] robots below the bar. *)
 Lemma small_groups (x : F) (o : {ffun R -> E}) :
   (forall S : {set R}, (#|S| <= g)%N -> (forall i, i \in S -> worth i <= bar) -> phi (contributed o S) <= x) ->
   worst_case t phi o <= x.
 Proof.
-move=> h; have [a oka small] := reach.
-apply: le_trans (worst_case_le phi o (renamed_allowed full open oka order_perm (ltnW robots))) _.
+move=> h; have [a oka [top small]] := reach; apply: le_trans (worst_case_le phi o oka) _.
 apply: team_value_le => [|y]; first exact: robot0.
-apply: h => [|i]; last by rewrite !inE => /andP[/below_bar].
-have [i sub] := renamed_sees full oka order_perm y.
-by apply: leq_trans (subset_leq_card sub) _; apply: leq_trans (leq_imset_card _ _) _.
+apply: h => // i; rewrite inE => /andP[ib _]; apply: below_bar; apply: contra ib; exact: top.
 Qed.
 
 Lemma single_le_bar o i : is_plan t o -> worth i <= bar -> phi [set o i] <= bar.
-Proof. by move=> oko; apply: le_trans; rewrite -[X in worth X](plan_owner i oko); apply: single_le_best. Qed.
+Proof. by move=> oko; apply: le_trans; rewrite -[X in worth X](plan_owner i oko); apply: best_max. Qed.
+
+Lemma ratt_plan alpha : is_plan t (ratt t phi default alpha).
+Proof. by case: (ratt_bait_or_greedy phi default every_robot_owns alpha). Qed.
 
 Lemma optimum_le (x : F) : (forall o, is_plan t o -> worst_case t phi o <= x) -> optimum t phi <= x.
-Proof. by move=> h; have [[o oko <-] _] := optimumP phi u_plan; apply: h. Qed.
+Proof. by move=> h; have [[o oko <-] _] := optimumP phi (ratt_plan 0); apply: h. Qed.
 
-Theorem group_size_submodular : submodular t phi -> optimum t phi <= g%:R * worst_case t phi u.
+Lemma optimum_bar_submodular : submodular t phi -> optimum t phi <= g%:R * bar.
 Proof.
-move=> sub; apply: le_trans (ler_wpmul2l (ler0n _ _) ratt_keeps_bar); apply: optimum_le => o oko.
+move=> sub; apply: optimum_le => o oko.
 apply: small_groups => S Sg low; apply: le_trans (_ : #|S|%:R * bar <= _); last first.
   by apply: ler_wpmul2r; [exact: bar_ge0 | rewrite ler_nat].
 move: {2}#|S| (erefl #|S|) => n; elim: n S Sg low => [|n IH] S Sg low cS.
@@ -209,12 +137,12 @@ apply: ler_add h _.
 by apply: le_trans m _; apply: single_le_bar => //; apply: low.
 Qed.
 
-Theorem group_size_total_curvature c : c <= 1 -> (0 < g)%N -> total_curvature_at_most t phi c ->
-  (1 - c) * optimum t phi <= (g.-1%:R + (1 - c)) * worst_case t phi u.
+Lemma optimum_bar_total_curvature c : c <= 1 -> (0 < g)%N -> total_curvature_at_most t phi c ->
+  (1 - c) * optimum t phi <= (g.-1%:R + (1 - c)) * bar.
 Proof.
 move=> c1 g0 curv; set s := 1 - c; have s0 : 0 <= s by rewrite subr_ge0.
 have k0 : 0 <= g.-1%:R + s by rewrite addr_ge0 // ler0n.
-apply: le_trans (ler_wpmul2l k0 ratt_keeps_bar); have [[o oko <-] _] := optimumP phi u_plan.
+have [[o oko <-] _] := optimumP phi (ratt_plan 0).
 have [z|sp] := eqVneq s 0; first by rewrite z mul0r mulr_ge0 ?bar_ge0 // addr0 ler0n.
 have {sp} sp : 0 < s by rewrite lt_def sp.
 rewrite -ler_pdivl_mull //; apply: small_groups => S Sg low; rewrite ler_pdivl_mull //.
@@ -245,15 +173,150 @@ apply: le_trans (many n S c0 low) _; apply: ler_wpmul2r; first exact: bar_ge0.
 by rewrite ler_add2r ler_nat -ltnS -c0 prednK.
 Qed.
 
-(** Where the adversary can leave every seeing robot alone, RATT is optimal, for every non-decreasing function. *)
-Theorem ratt_optimal : g = 1%N -> worst_case t phi u = optimum t phi.
+Lemma optimum_bar : g = 1%N -> optimum t phi <= bar.
 Proof.
-move=> g1; apply/eqP; rewrite eq_le; apply/andP; split.
-  by have [_ best] := optimumP phi u_plan; apply: best u_plan.
-apply: le_trans ratt_keeps_bar; apply: optimum_le => o oko; apply: small_groups => S; rewrite g1 => S1 low.
+move=> g1; apply: optimum_le => o oko; apply: small_groups => S; rewrite g1 => S1 low.
 have [->|[i iS]] := set_0Vmem S; first by rewrite /contributed imset0 n0 bar_ge0.
 have eS : S = [set i].
   by apply/eqP; rewrite eq_sym eqEcard sub1set iS cards1.
 by rewrite eS /contributed imset_set1; apply: single_le_bar => //; apply: low.
 Qed.
+
+(** ** A bait that sees *)
+Section Baits.
+Variable alpha : nat.
+Let u := ratt t phi default alpha.
+
+Lemma bait_sees a i : i \in take alpha order -> i \notin blinded a -> worth i <= team_value t phi u a.
+Proof.
+move=> ia ib; have ui : u i = best t phi default i by rewrite ffunE ifT.
+apply: le_trans (le_team_value t phi u a i); apply: le_trans (_ : phi [set u i] <= _); first by rewrite ui.
+apply: mono; first exact: plan_feasible (ratt_plan alpha).
+by rewrite sub1set; apply: imset_f; apply: mem_sees.
+Qed.
+
+Theorem ratt_keeps_bar : (alpha_s t < alpha)%N -> bar <= worst_case t phi u.
+Proof.
+move=> baits; apply: le_worst_case => a /and5P[bl _ _ safe _].
+have in_bait k : (k <= alpha_s t)%N -> (k < #|R|)%N -> nth robot0 order k \in take alpha order.
+  move=> ka kR; rewrite in_take ?mem_nth ?order_size // index_uniq ?order_uniq ?order_size //.
+  exact: leq_ltn_trans ka baits.
+case: (boolP (nth robot0 order place \in safe_robots t)) => [rs|/place_unprotected pE].
+  by apply: bait_sees (in_bait _ place_le place_lt) _; rewrite (disjointFl safe).
+pose s := take (alpha_s t).+1 order.
+have us : uniq s by apply: take_uniq order_uniq.
+have szs : size s = (alpha_s t).+1 by rewrite size_takel ?order_size.
+have [i is_ ib] : exists2 i, i \in s & i \notin blinded a.
+  apply/hasP; rewrite has_predC; apply/negP => /allP all_b.
+  have : (size s <= #|blinded a|)%N by rewrite cardE; apply: uniq_leq_size => // x /all_b; rewrite mem_enum.
+  by rewrite szs leqNgt ltnS bl.
+have ik : (index i order <= alpha_s t)%N by rewrite -ltnS; move: is_; rewrite in_take ?mem_order.
+apply: le_trans (bait_sees _ ib); last first.
+  by rewrite -(nth_index robot0 (mem_order i)); apply: in_bait => //; apply: leq_ltn_trans ik robots.
+by rewrite -[X in worth X](nth_index robot0 (mem_order i)); apply: order_le; rewrite pE ik.
+Qed.
+
+Theorem group_size_submodular_any : (alpha_s t < alpha)%N -> submodular t phi ->
+  optimum t phi <= g%:R * worst_case t phi u.
+Proof.
+move=> baits sub; apply: le_trans (optimum_bar_submodular sub) _.
+by apply: ler_wpmul2l (ratt_keeps_bar baits); apply: ler0n.
+Qed.
+
+Theorem group_size_total_curvature_any c : (alpha_s t < alpha)%N -> c <= 1 -> (0 < g)%N ->
+  total_curvature_at_most t phi c -> (1 - c) * optimum t phi <= (g.-1%:R + (1 - c)) * worst_case t phi u.
+Proof.
+move=> baits c1 g0 curv; apply: le_trans (optimum_bar_total_curvature c1 g0 curv) _.
+by apply: ler_wpmul2l (ratt_keeps_bar baits); rewrite addr_ge0 ?ler0n // subr_ge0.
+Qed.
+
+(** Where the adversary can leave every seeing robot alone, RATT is optimal, for every non-decreasing function. *)
+Theorem ratt_optimal_any : (alpha_s t < alpha)%N -> g = 1%N -> worst_case t phi u = optimum t phi.
+Proof.
+move=> baits g1; apply/eqP; rewrite eq_le; apply/andP; split.
+  by have [_ best] := optimumP phi (ratt_plan 0); apply: best (ratt_plan alpha).
+exact: le_trans (optimum_bar g1) (ratt_keeps_bar baits).
+Qed.
+End Baits.
+
+(** ** No more baits than robots that can be blinded *)
+Section Unsplit.
+(** No allowed attack splits the team; the paper's [alpha_cs] is 0 then. *)
+Hypothesis unsplit : forall a, allowed t a -> forall i j, connect (linked t a) i j.
+Let u := ratt t phi default (alpha_s t).
+Let picked := map (owner t) (ratt_picks t phi default (alpha_s t)).
+
+Lemma greedy_picked i : i \notin bait t phi default (alpha_s t) -> i \in picked.
+Proof.
+move=> ib; have [x ox] := every_robot_owns i; rewrite -ox; apply: greedy_picks_all; first exact: max_card.
+by rewrite mem_filter ox ib mem_enum.
+Qed.
+
+(** Either a bait sees, or exactly the baits are blinded and all greedy robots see each other. *)
+Lemma bait_or_greedy_group a : allowed t a -> bar <= team_value t phi u a \/
+  forall i, sees t a i = [set j in picked].
+Proof.
+move=> oka; have /and5P[bl _ _ safe _] := oka; pose s := take (alpha_s t) order.
+case: (boolP (has (fun i => i \notin blinded a) s)) => [/hasP[i is_ ib]|none]; [left | right].
+  have ik : (index i order < alpha_s t)%N by move: is_; rewrite in_take ?mem_order.
+  case: (boolP (nth robot0 order place \in safe_robots t)) => [rs|/place_unprotected pE]; last first.
+    apply: le_trans (bait_sees is_ ib); rewrite -[X in worth X](nth_index robot0 (mem_order i)).
+    by apply: order_le; rewrite pE (ltnW ik).
+  have [lt|ge] := ltnP place (alpha_s t).
+    apply: (bait_sees _ (_ : nth robot0 order place \notin blinded a)); last by rewrite (disjointFl safe).
+    by rewrite in_take ?mem_order // index_uniq ?order_uniq ?order_size ?place_lt.
+  apply: le_trans (bait_sees is_ ib); rewrite -[X in worth X](nth_index robot0 (mem_order i)).
+  by apply: order_le; rewrite place_lt (leq_trans (ltnW ik) ge).
+move=> i; have all_b x : x \in s -> x \in blinded a by move=> /(hasPn none); rewrite negbK.
+have us : uniq s by apply: take_uniq order_uniq.
+have sz : size s = alpha_s t by rewrite size_takel // order_size ltnW.
+have bE : s =i enum (blinded a).
+  apply: (uniq_min_size us _ _).2 => [x /all_b|]; first by rewrite mem_enum.
+  by rewrite -cardE sz.
+apply/setP => j; rewrite !inE unsplit // andbT -mem_enum -bE; apply/idP/idP => [js|].
+  by apply: greedy_picked.
+case/mapP=> y /greedy_picks_sub; by rewrite mem_filter => /andP[h _] ->.
+Qed.
+
+Lemma greedy_value a : (forall i, sees t a i = [set j in picked]) ->
+  phi (contributed u [set j in picked]) <= team_value t phi u a.
+Proof. by move=> h; have := le_team_value t phi u a robot0; rewrite h. Qed.
+
+Lemma other_value a o : allowed t a -> (forall i, sees t a i = [set j in picked]) ->
+  worst_case t phi o <= phi (contributed o [set j in picked]).
+Proof.
+move=> oka h; apply: le_trans (worst_case_le phi o oka) _.
+by apply: team_value_le => [|i]; [exact: robot0 | rewrite h].
+Qed.
+
+Let u_greedy : bait_or_greedy t phi u picked := ratt_bait_or_greedy phi default every_robot_owns (alpha_s t).
+
+Theorem group_size_submodular_unsplit k : 0 <= k <= 1 -> submodular t phi -> curvature_at_most t phi k ->
+  optimum t phi <= Num.max g%:R (1 + k) * worst_case t phi u.
+Proof.
+move=> /andP[k0 k1] sub curv; have [[o oko <-] _] := optimumP phi (ratt_plan 0).
+have [a oka ->] := worst_case_attained t phi u; have [_ best] := optimumP phi oko.
+have [le|h] := bait_or_greedy_group oka.
+  apply: le_trans (best _ oko) _; apply: le_trans (optimum_bar_submodular sub) _.
+  apply: ler_pmul => //; [exact: ler0n | exact: bar_ge0 | by rewrite le_maxr lexx].
+apply: le_trans (other_value o oka h) _; apply: le_trans (greedy_submodular n0 u_greedy oko k1 sub curv) _.
+have k2 : 0 <= 1 + k by rewrite addr_ge0 ?ler01.
+apply: ler_pmul => //; [|by rewrite le_maxr lexx orbT|exact: greedy_value].
+by rewrite -n0; apply: mono (sub0set _); apply: plan_feasible (ratt_plan _).
+Qed.
+
+Theorem group_size_total_curvature_unsplit c : 0 <= c <= 1 -> (0 < g)%N -> total_curvature_at_most t phi c ->
+  (1 - c) * optimum t phi <= Num.max (g.-1%:R + (1 - c)) 1 * worst_case t phi u.
+Proof.
+move=> /andP[c0 c1] g0 curv; have c2 : 0 <= 1 - c by rewrite subr_ge0.
+have [a oka ->] := worst_case_attained t phi u; have [le|h] := bait_or_greedy_group oka.
+  apply: le_trans (optimum_bar_total_curvature c1 g0 curv) _.
+  apply: ler_pmul => //; [by rewrite addr_ge0 ?ler0n | exact: bar_ge0 | by rewrite le_maxr lexx].
+have [[o oko <-] _] := optimumP phi (ratt_plan 0).
+apply: le_trans (ler_wpmul2l c2 (other_value o oka h)) _.
+apply: le_trans (greedy_total_curvature n0 u_greedy oko c1 curv) _; rewrite -[X in X <= _]mul1r.
+apply: ler_pmul; [exact: ler01 | | by rewrite le_maxr lexx orbT | exact: greedy_value].
+by rewrite -n0; apply: mono (sub0set _); apply: plan_feasible (ratt_plan _).
+Qed.
+End Unsplit.
 End Bounds.

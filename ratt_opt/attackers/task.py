@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt._rounding import down, up
 from ratt_opt._values import Shown, plain
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.base import SetFunction
@@ -81,7 +82,7 @@ class AttackResult(Shown):
     def __repr__(self) -> str:
         attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"
         cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
-        return f"AttackResult([{self.lower:.6g}, {self.upper:.6g}], {attack}, {self.stop.value}, {cost})"
+        return f"AttackResult([{down(self.lower, 6)}, {up(self.upper, 6)}], {attack}, {self.stop.value}, {cost})"
 
 
 CLOSED_WIDTH = 1e-10

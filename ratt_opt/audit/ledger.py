@@ -13,10 +13,12 @@ from ratt_opt._files import output_directory, write_atomically, write_json
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EnumeratedEntry, entries_of
 from ratt_opt.audit.appendix.patterns import pattern1_chains, pattern2_chains, submodular_chains
 from ratt_opt.audit.appendix.readings import dominance_entries, readings_of_sets, readings_of_the_attack
+from ratt_opt.audit.appendix.size_theorems import size_theorems
 from ratt_opt.audit.appendix.team_lines import team_lines
 from ratt_opt.audit.appendix.theorems import closing_lines, lemmas, theorems
 from ratt_opt.audit.engine.decide import CURVATURE_GRID, Verdict, best_factors, decide
 from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries, smallest_team_entries
+from ratt_opt.audit.enumeration.clean_witness import clean_witness_entries
 from ratt_opt.audit.enumeration.running_time import running_time_entries
 from ratt_opt.audit.enumeration.size_claims import size_entries
 from ratt_opt.audit.enumeration.tightness import tightness_entries
@@ -91,8 +93,9 @@ def all_entries() -> Iterator[Entry]:
     yield from readings_of_the_attack()
     for one in (*pattern1_chains(), *pattern2_chains(), *submodular_chains()):
         yield from entries_of(one)
-    yield from chain(readings_of_sets(), team_lines(), closing_lines(), dominance_entries(), theorems(), lemmas())
-    yield from chain(arrangement_entries(), smallest_team_entries(), size_entries())
+    yield from chain(readings_of_sets(), team_lines(), closing_lines(), dominance_entries())
+    yield from chain(theorems(), size_theorems(), lemmas())
+    yield from chain(arrangement_entries(), smallest_team_entries(), size_entries(), clean_witness_entries())
     yield from chain(tightness_entries(), running_time_entries())
 
 

@@ -14,12 +14,14 @@ from ratt_opt.bounds.guarantees import (
     sensing_only_bound,
     theorem1_bound,
 )
+from ratt_opt.bounds.survivors import largest_survivor_group, survivor_bound
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
 __all__ = ["all_guarantees", "inapplicable_guarantees"]
 
+OPTIMAL = "one robot a group"
 SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
@@ -35,13 +37,16 @@ def all_guarantees(
     """
     missing = inapplicable_guarantees(problem, alpha_cs)
     seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
-    group_size = achievable_group_size(problem)
+    group_size, survivors = achievable_group_size(problem), largest_survivor_group(problem)
     found: dict[str, Guarantee] = {}
+    if group_size <= 1:
+        found[OPTIMAL] = group_size_bound(group_size, c=1.0)
     for name, given in (("k", {"k": k}), ("c", {"c": c})):
         if given[name] is None:
             continue
         found[f"pattern-free ({name})"] = pattern_free_bound(**given)
         found[f"group size ({name})"] = group_size_bound(group_size, baits_survive=alpha_cs > 0, **given)
+        found[f"survivors ({name})"] = survivor_bound(survivors, **given)
         found[f"Theorem 1 ({name})"] = theorem1_bound(alpha_cs, all_bait=ALL_BAIT not in missing, **given)
         if SENSING_ONLY not in missing:
             found[f"{SENSING_ONLY} ({name})"] = sensing_only_bound(**given)

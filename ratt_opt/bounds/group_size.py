@@ -7,16 +7,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, one_curvature
-from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
+from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import forced_group_size
+from ratt_opt.graph.threat import Threat
+from ratt_opt.graph.threshold import ThresholdTest
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
-__all__ = ["achievable_group_size", "group_size_bound"]
+__all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
 
-SOURCE = "group-size bound (proof in its docstring)"
+SOURCE = "group-size bound (this library)"
+IN_COQ = {"k": "group_size_submodular", "c": "group_size_total_curvature"}
+"""For complete graphs without protected parts."""
 
 
 def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, baits_survive: bool = True) -> Guarantee:
@@ -39,7 +44,7 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     so that leaves all greedy robots in one group, which keeps ``1 / (1 + k)`` of the optimum (submodular; Fisher,
     Nemhauser, Wolsey 1978; Conforti and Cornuejols 1984), respectively ``1 - c`` (their marginals, chosen greedily,
     are at least ``(1 - c)`` times those of any other choice). Any other attack leaves a bait, as before. The bound is
-    then the minimum of both.
+    then the minimum of both, and 1 where ``g <= 1``: at most one robot is then greedy, and takes its best element.
 
     Parameters
     ----------
@@ -55,32 +60,47 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     g = check_integer("g", g, low=0)
     kind, value = one_curvature(k, c)
     keep = 1 - value
-    if kind == "k":
-        bound, greedy = 1 / max(g, 1), 1 / (1 + value)
-    else:
-        bound, greedy = (keep / (g - 1 + keep) if g > 1 else 1.0), keep
-    uses_curvature = (kind == "c" and g > 1) or not baits_survive
+    bound = group_size_share(g, keep, submodular=kind == "k")
+    greedy = 1.0 if g <= 1 else 1 / (1 + value) if kind == "k" else keep
+    uses_curvature = g > 1 and (kind == "c" or not baits_survive)
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
     needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
-    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE)
+    proof = f"group_size_bound; in Coq {IN_COQ[kind] if g > 1 else 'ratt_optimal'}"
+    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
+
+
+def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:
+    """The formula of :func:`group_size_bound` for ``kept = 1-k`` or ``1-c``: a float, or exactly for a rational."""
+    one = kept**0
+    return one if g <= 1 else one / g if submodular else kept / (g - 1 + kept)
 
 
 def achievable_group_size(problem: Problem) -> int:
     """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
-    Exact on complete graphs without protected parts (integer partitions). Elsewhere the cut that makes the largest
-    group small is taken, which is within the budget but need not be best for those blinded robots: the number
-    returned is achievable, and a larger one only weakens the guarantee.
+    The smallest such number on complete graphs without protected links (integer partitions) and for up to 14 robots
+    on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
+    largest group small and one that makes the most seeing robots few: the number returned is achievable, and a larger
+    one only weakens the guarantee.
     """
     threat = problem.threat
-    if threat.is_symmetric:
+    if threat.links_alike:
         return forced_group_size(problem.n_robots, threat.n_blinded, threat.alpha_c)
+    blinded, graph = strongest_robots(problem), problem.communication
+    cuts_only = Threat(graph, 0, threat.alpha_c, protected_links=threat.protected_links)
+    if problem.n_robots <= LARGEST_LATTICE:
+        seeing = sum(1 << i for i in range(problem.n_robots) if i not in blinded)
+        counts = np.bitwise_count(np.arange(2**problem.n_robots) & seeing).astype(np.float64)
+        test = ThresholdTest(cuts_only, counts)
+        return next(g for g in range(problem.n_robots + 1) if test.split(float(g)) is not None)
+    cuts = (heuristic_cut(cuts_only), heuristic_cut(cuts_only, ignoring=blinded))
+    return min(max(len(group - blinded) for group in graph.groups(cut)) for cut in cuts)
+
+
+def strongest_robots(problem: Problem) -> frozenset[int]:
+    """The unprotected robots of the ``alpha_s`` largest individual values, the lowest first among equals."""
     single = problem.objective.singletons()
     strength = np.array([single[choice].max() for choice in problem.choices])
     free = [int(i) for i in np.argsort(-strength, kind="stable") if i not in problem.protected_robots]
-    blinded = frozenset(free[: problem.alpha_s])
-    cut = smallest_largest_group(
-        problem.communication, problem.alpha_c, method="counting", protected_links=problem.protected_links
-    ).cut
-    return max(len(group - blinded) for group in problem.communication.groups(cut))
+    return frozenset(free[: problem.alpha_s])

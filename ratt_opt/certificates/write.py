@@ -18,7 +18,7 @@ from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.progress import Step
-from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def problem_document(problem: Problem) -> dict[str, Any]:
     return {
         "objective": objective.name,
         "dimension": objective.dimension,
+        **objective.stated,
         "prior": packed(objective.prior),
         "information": packed(objective.information),
         "weights": objective.weights.tolist(),
@@ -110,7 +111,7 @@ def problem_document(problem: Problem) -> dict[str, Any]:
 
 def _is_known(problem: Problem) -> bool:
     """Whether the objective is a registered criterion itself: a subclass may have another formula."""
-    return type(problem.objective) in CRITERIA.values()
+    return type(problem.objective) in CERTIFIED
 
 
 def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path | None) -> Certification:

@@ -1,33 +1,56 @@
 """The command line ``ratt-opt``: parse, call, print.
 
 Open ``program.py`` first: the list of commands, exit codes, errors in one line. A command stands with its kin:
-``planning.py`` (demo, bound), ``scenarios.py`` (new, schema), ``attacking.py`` (attack), ``proofs.py`` (verify, audit).
-``options.py`` has the options that several commands share, ``terminal.py`` where text goes.
+``planning.py`` (demo, bound), ``scenarios.py`` (new, schema), ``attacking.py`` (attack), ``tracking.py`` (track),
+``proofs.py`` (verify, audit). ``options.py`` has the options that several commands share, ``terminal.py`` where text
+goes; ``interrupts.py`` and ``faults.py`` are the last line of defence.
 """
 
 import os
 import sys
 
-__all__ = ["main", "run"]
+__all__ = ["FAULT", "INTERRUPTED", "main", "run"]
+
+FAULT, INTERRUPTED = 70, 130
 
 
 def main() -> None:
     """Run the command line and exit."""
+    code = INTERRUPTED
     try:
+        from ratt_opt.cli.interrupts import ignore_interrupts
+
         code = run(sys.argv[1:])
-    except KeyboardInterrupt:  # while modules were imported: nothing has begun
-        code = 130
-    if code == 130:
+        ignore_interrupts()
+    except KeyboardInterrupt:  # outside of the command's own guards: nothing has begun, or all is done
+        from ratt_opt.cli.interrupts import ignore_interrupts
+
+        ignore_interrupts()
+    if code == INTERRUPTED:
         # What an import left half done may complain on the way out.
-        for stream in (sys.stdout, sys.stderr):
-            if stream is not None:
-                stream.flush()
+        from ratt_opt.cli.terminal import abandon_output
+
+        abandon_output()
         os._exit(code)
     sys.exit(code)
 
 
 def run(arguments: list[str]) -> int:
     """Run one command line and return its exit code; every error is one line on standard error."""
-    from ratt_opt.cli.program import run as run_program
+    from ratt_opt.cli.interrupts import Interrupts
 
-    return run_program(arguments)
+    with Interrupts() as interrupts:
+        try:
+            from ratt_opt.cli.program import run_program
+
+            return run_program(arguments)
+        except BaseException as error:
+            from ratt_opt.cli.faults import keep_traceback
+            from ratt_opt.cli.terminal import fail
+
+            if isinstance(error, (SystemExit, GeneratorExit)):
+                raise
+            # Compiled code and imports turn an interrupt into errors of their own.
+            if isinstance(error, KeyboardInterrupt) or interrupts.happened:
+                return fail("interrupted", INTERRUPTED)
+            return fail(keep_traceback(error, arguments), FAULT)

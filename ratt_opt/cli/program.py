@@ -11,18 +11,27 @@ from typing import Annotated, Any
 
 import typer
 
-from ratt_opt import __version__
+from ratt_opt._version import __version__
+from ratt_opt.cli import INTERRUPTED
 from ratt_opt.cli.attacking import attack
-from ratt_opt.cli.faults import Interrupts, keep_traceback
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
 from ratt_opt.cli.scenarios import new, schema
 from ratt_opt.cli.terminal import OutputError, WorkInterrupted, encode_anything, fail, flush, print_lines
+from ratt_opt.cli.tracking import track
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 
-__all__ = ["app", "run"]
+__all__ = ["app", "run_program"]
 
-REFUTED, BAD_INPUT, UNDECIDED, FAULT, NO_OUTPUT, INTERRUPTED = 1, 2, 4, 70, 74, 130
+REFUTED, BAD_INPUT, UNDECIDED, NO_OUTPUT = 1, 2, 4, 74
+ERRORS = {
+    InputError: BAD_INPUT,
+    UndecidedError: UNDECIDED,
+    ProofError: REFUTED,
+    OutputError: NO_OUTPUT,
+    WorkInterrupted: INTERRUPTED,
+}
+"""Exit codes of the errors that users can act on; the first kind that fits counts."""
 
 app = typer.Typer(
     name="ratt-opt",
@@ -32,7 +41,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for command in (demo, new, bound, attack, verify, audit, schema):
+for command in (demo, new, bound, attack, track, verify, audit, schema):
     app.command()(command)
 
 # Typer's own usage errors (unknown option, missing value, ...) share this base; typer does not export it.
@@ -46,38 +55,24 @@ def _version(version: Annotated[bool, typer.Option("--version", help="Print the 
         raise typer.Exit
 
 
-def run(arguments: list[str]) -> int:
-    """Run one command line and return its exit code; every error is one line on standard error."""
+def run_program(arguments: list[str]) -> int:
+    """Run one command line and return its exit code; errors that users can act on are one line on standard error.
+
+    Everything else is raised.
+    """
     encode_anything()
-    with Interrupts() as interrupts:
-        try:
-            code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
-            flush()
-            if code == INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
-                raise KeyboardInterrupt
-        except (KeyboardInterrupt, typer.Abort):
-            return fail("interrupted", INTERRUPTED)
-        except Exception as error:  # noqa: BLE001  (the last line of defence)
-            return _failed(error, arguments, interrupted=interrupts.happened)
+    try:
+        code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
+        flush()
+    except typer.Abort:
+        raise KeyboardInterrupt from None
+    except (*ERRORS, _UsageError) as error:
+        if isinstance(error, _UsageError):
+            return fail(_usage_text(error, arguments), BAD_INPUT)
+        return fail(str(error), next(code for kind, code in ERRORS.items() if isinstance(error, kind)))
+    if code == INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
+        raise KeyboardInterrupt
     return code if isinstance(code, int) else 0
-
-
-def _failed(error: Exception, arguments: list[str], *, interrupted: bool) -> int:
-    """Say in one line what went wrong, and return the exit code."""
-    if isinstance(error, _UsageError):
-        return fail(_usage_text(error, arguments), BAD_INPUT)
-    codes = (
-        (InputError, BAD_INPUT),
-        (UndecidedError, UNDECIDED),
-        (ProofError, REFUTED),
-        (OutputError, NO_OUTPUT),
-        (WorkInterrupted, INTERRUPTED),
-    )
-    code = next((code for kind, code in codes if isinstance(error, kind)), None)
-    if code is not None:
-        return fail(str(error), code)
-    # Compiled code and imports turn an interrupt into errors of their own.
-    return fail("interrupted", INTERRUPTED) if interrupted else fail(keep_traceback(error, arguments), FAULT)
 
 
 def _usage_text(error: Any, arguments: list[str]) -> str:

@@ -17,6 +17,9 @@ __all__ = ["audit", "verify"]
 UPPER_ONLY = 3
 """Exit code of ``verify`` where the lower end is stated, not proved."""
 
+SUMMARY = ("complete", "quick", "counts", "seconds")
+"""What ``audit --json`` repeats of ``audit.json``."""
+
 
 def verify(
     file: Annotated[Path, typer.Argument(help="Certificate file.", show_default=False)],
@@ -25,15 +28,23 @@ def verify(
     ] = None,
     objective: Annotated[Objective, typer.Option("--objective", help="Criterion, with --problem.")] = "trace",
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds before it counts as undecided.")] = SECONDS,
+    verified: Annotated[
+        bool, typer.Option("--verified", help="Ask ratt-check too, the checker extracted from its Coq proof.")
+    ] = False,
     as_json: JsonFlag = False,
 ) -> int:
     """Check a certificate without trusting what wrote it, and say what it proves.
 
+    With --verified an end counts as proved where ratt-check says so too; that program is looked for on the search path,
+    or where RATT_CHECK says.
+
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
     proved; 4: neither proved nor refuted within the limits. None of these where the output cannot be written (74).
     """
+    from ratt_opt.certificates.extracted import check_extracted, find_checker
     from ratt_opt.certificates.verifier.verify import verify_certificate
 
+    checker = find_checker() if verified else None
     expected = None
     if problem is not None:
         from ratt_opt.certificates.agreement import same_problem
@@ -41,12 +52,16 @@ def verify(
 
         expected = same_problem(load_input(problem), objective)
     with Step("checking the certificate"):
-        verified = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
+        found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
+        second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     if as_json:
-        print_json(asdict(verified))
+        checked = {} if second is None else {"verified": asdict(second)}
+        print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **checked})
     else:
-        print_lines(verified.lines())
-    return 0 if verified.lower_proved else UPPER_ONLY
+        print_lines(
+            [*found.lines(), *([] if second is None else [f"ratt-check, whose proof is checked: {second.text}"])]
+        )
+    return 0 if found.lower_proved and (second is None or second.lower_proved) else UPPER_ONLY
 
 
 def audit(
@@ -62,12 +77,14 @@ def audit(
     from ratt_opt.report.tables import audit_table
 
     ledger = run_audit(out, quick=quick)
+    files = [str(out / name) for name in ("audit.json", "audit.html", "audit.md")]
     if as_json:
-        print_json({**ledger.document(), "entries": len(ledger.records)})
+        kept = {name: value for name, value in ledger.document().items() if name in SUMMARY}
+        head = {"format": "ratt-opt audit summary", "version": 1}
+        print_json({**head, **kept, "entries": len(ledger.records), "files": files})
     else:
         print_tables([audit_table(ledger.per_chain())])
         found = (f"{part.heading} {' '.join(part.sentences)}" for part in ledger.findings() if part.sentences)
-        names = ", ".join(printable(str(out / name)) for name in ("audit.json", "audit.html", "audit.md"))
-        print_lines([*found, f"written: {names}"])
+        print_lines([*found, "written: " + ", ".join(map(printable, files))])
     if not ledger.complete:
         raise WorkInterrupted(f"interrupted after {len(ledger.records)} entries, which were written")

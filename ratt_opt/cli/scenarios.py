@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from ratt_opt.cli.options import JsonFlag
 from ratt_opt.cli.terminal import print_json, print_lines
 from ratt_opt.errors import InputError, printable
+from ratt_opt.report.schemas import OUTPUTS, output_schema
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -14,6 +16,11 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
 
 __all__ = ["new", "schema"]
+
+if TYPE_CHECKING:
+    Kind = str
+else:
+    Kind = Literal[("scenario", "information", *OUTPUTS)]
 
 
 def new(
@@ -33,6 +40,7 @@ def new(
     label_correction: Annotated[
         bool, typer.Option(help="Exchange the labels 11 and 17, as dataset 1 needs and its sightings confirm.")
     ] = True,
+    as_json: JsonFlag = False,
 ) -> None:
     """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time)."""
     from ratt_opt._files import output_file
@@ -50,17 +58,21 @@ def new(
     if communication_range is not None:
         scenario = scenario.replace(communication_range=communication_range)
     save_scenario(scenario, out)
+    if as_json:
+        size = {"n_robots": scenario.n_robots, "n_targets": scenario.n_targets}
+        print_json({"format": "ratt-opt new", "version": 1, "file": str(out), **size, "notes": list(scenario.notes)})
+        return
     head = f"{printable(str(out))}: {scenario.n_robots} robots, {scenario.n_targets} targets"
     print_lines([head, *(f"  {note}" for note in scenario.notes)])
 
 
 def schema(
-    kind: Annotated[Literal["scenario", "information"], typer.Argument(help="Which input file.")] = "scenario",
+    kind: Annotated[Kind, typer.Argument(help="Which input file, or which output.")] = "scenario",
 ) -> None:
-    """Print the JSON Schema of an input file."""
+    """Print the JSON Schema of an input file, or of what a command prints with --json."""
     from ratt_opt.scenario.files import scenario_schema
 
-    print_json(scenario_schema(kind))
+    print_json(output_schema(kind) if kind in OUTPUTS else scenario_schema(kind))
 
 
 def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int]) -> "Scenario":

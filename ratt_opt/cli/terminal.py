@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "OutputError",
     "WorkInterrupted",
+    "abandon_output",
     "encode_anything",
     "fail",
     "flush",
@@ -74,6 +75,14 @@ def flush() -> None:
     if sys.stdout is not None:
         with _delivered():
             pass
+
+
+def abandon_output() -> None:
+    """Send on what was printed where that is still possible; the program ends without another try."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            with suppress(OSError, ValueError):
+                stream.flush()
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
+from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
@@ -63,7 +64,7 @@ class Steps:
         """Tell where a search stands, unless that was told just now."""
         if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
             self._last_line = monotonic()
-            line = f"{nodes} nodes: between {lower:.8g} and {upper:.8g}"
+            line = f"{nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}"
             self.shown.say(line)
             self._say(f"  {line}")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt._rounding import down, up
 from ratt_opt.main_job.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.notebook import plan_view, report_view
@@ -57,7 +58,7 @@ class PlanAssessment:
         return plan_view(self)
 
     def __repr__(self) -> str:
-        return f"PlanAssessment({self.name}, keeps {self.worst_case.lower:.8g} to {self.worst_case.upper:.8g})"
+        return f"PlanAssessment({self.name}, keeps {down(self.worst_case.lower, 8)} to {up(self.worst_case.upper, 8)})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, PlanAssessment):
@@ -180,7 +181,7 @@ class BoundReport:
         return report_view(self)
 
     def __repr__(self) -> str:
-        best = f"the best plan keeps {self.optimum.lower:.8g} to {self.upper:.8g}"
+        best = f"the best plan keeps {down(self.optimum.lower, 8)} to {up(self.upper, 8)}"
         return f"BoundReport({self.objective}, {self.problem.n_robots} robots, {best}, {self.recommended!r})"
 
     def __eq__(self, other: object) -> bool:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt._rounding import bracket_text, up
 from ratt_opt.report.palette import INK, look_of
-from ratt_opt.report.tables import bracket_text, share_text
+from ratt_opt.report.tables import share_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,11 +49,11 @@ def draw_bars(axes: Axes, report: BoundReport) -> None:
         if high - low > least:
             axes.errorbar((low + high) / 2, row, xerr=(high - low) / 2, color=INK, capsize=5, linewidth=1.4)
         kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper, digits=6)
-        text = f"{kept}, {share_text(report.share(plan))}"
+        text = f"{kept}, {share_text(plan.worst_case.lower, report.upper)}"
         at, weight = high + 0.02 * ROOM * longest, "bold" if chosen else "normal"
         axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight)
     axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
-    axes.set_title(f"no plan can keep more than {report.upper:.6g} (dashed)", fontsize=9.5, loc="right")
+    axes.set_title(f"no plan can keep more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
     axes.set_yticks(range(len(plans)), [plan.name for plan in plans])
     axes.invert_yaxis()
     axes.set_xlim(0, ROOM * longest)

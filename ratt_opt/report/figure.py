@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._files import write_atomically
+from ratt_opt._rounding import down
 from ratt_opt.report.bars import draw_bars
 from ratt_opt.report.map import draw_map
 from ratt_opt.report.tables import share_text
@@ -30,12 +31,12 @@ def plan_figure(report: BoundReport, picture: Picture) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=(1.35, 1))
     draw_map(left, picture)
     draw_bars(right, report)
-    share = share_text(report.share(plan))
+    share = share_text(plan.worst_case.lower, report.upper)
     share = share if share.startswith("optimal") else f"{share} of the most any plan can keep"
     figure.suptitle(
         f"{plan.name} plan. Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
         f"{len(attack.links)} of {len(report.problem.communication.links)} links cut.\n"
-        f"It keeps {plan.worst_case.lower:.6g}: {share}.",
+        f"It keeps {down(plan.worst_case.lower, 6)}: {share}.",
         fontsize=11.5,
     )
     return figure

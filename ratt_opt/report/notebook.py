@@ -6,9 +6,10 @@ import io
 from html import escape
 from typing import TYPE_CHECKING
 
+from ratt_opt._rounding import bracket_text
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.picture import picture_of
-from ratt_opt.report.tables import bracket_text, share_text
+from ratt_opt.report.tables import share_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -40,7 +41,11 @@ def plan_view(plan: PlanAssessment) -> str:
 def report_view(report: BoundReport) -> str:
     """Return the planners' table and the figure, which needs no file beside it."""
     rows = [
-        (plan.name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share_text(report.share(plan)))
+        (
+            plan.name,
+            bracket_text(plan.worst_case.lower, plan.worst_case.upper),
+            share_text(plan.worst_case.lower, report.upper),
+        )
         for plan in report.plans
     ]
     table = html_table("what each planner keeps", ("planner", "worst-case value", "of the best possible"), rows)

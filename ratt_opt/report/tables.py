@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import math
+from fractions import Fraction
 from typing import TYPE_CHECKING
+
+from ratt_opt._rounding import bracket_text, down, up
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -14,20 +16,19 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.write import Certification
-    from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job.result import BoundReport
     from ratt_opt.problem import Attack
 
 __all__ = [
     "attack_tables",
     "audit_table",
-    "bracket_text",
+    "guarantee_text",
     "report_tables",
     "share_text",
     "verdict_text",
 ]
 
-PROVED_OPTIMAL = 1e-9
+PROVED_OPTIMAL = Fraction("1e-9")
 """A plan proved to keep all but this share of the best possible is called optimal."""
 LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
@@ -57,7 +58,7 @@ def attack_tables(
     if critical is not None:
         yield _critical(critical)
     if budgets is not None:
-        yield _budgets(budgets, f"{below:.8g}")
+        yield _budgets(budgets, f"{below}")
 
 
 def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
@@ -69,19 +70,12 @@ def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
     return table
 
 
-def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
-    """The bracket as text: one number where both ends agree to ``digits`` digits or up to two less."""
-    for shown in (digits, digits - 1, digits - 2):
-        if f"{lower:.{shown}g}" == f"{upper:.{shown}g}":
-            return f"{upper:.{shown}g}"
-    return f"[{lower:.{digits - 2}g}, {upper:.{digits - 2}g}]"
-
-
-def share_text(share: float) -> str:
-    """A proved share in words; rounded down, so that what is printed is never more than what was proved."""
+def share_text(lower: float, upper: float) -> str:
+    """The proved share ``lower / upper`` in words; rounded down, so that what is printed is no more than was proved."""
+    share = Fraction(float(lower)) / Fraction(float(upper)) if upper > 0 else Fraction(1)
     if share >= 1 - PROVED_OPTIMAL:
         return "optimal to 1e-9"
-    return f"at least {math.floor(share * 1e6) / 1e6:.6f}"
+    return f"at least {down(share, 6)}"
 
 
 def _attacks(results: Mapping[str, AttackResult]) -> Table:
@@ -89,7 +83,7 @@ def _attacks(results: Mapping[str, AttackResult]) -> Table:
     table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
     for name, result in results.items():
         proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
-        table.add_row(name, f"{result.upper:.8g}", proved, _robots(result.attack), _links(result.attack))
+        table.add_row(name, up(result.upper, 8), proved, _robots(result.attack), _links(result.attack))
     return table
 
 
@@ -106,7 +100,7 @@ def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
     """One row a smallest pair of budgets that pushes the plan below a value."""
     table = _table(f"smallest budgets that leave less than {goal}", "blinded", "links cut", "value left", "proved")
     for row in budgets:
-        table.add_row(str(row.alpha_s), str(row.alpha_c), f"{row.value:.8g}", "yes" if row.is_proved else "no")
+        table.add_row(str(row.alpha_s), str(row.alpha_c), up(row.value, 8), "yes" if row.is_proved else "no")
     if not table.row_count:
         table.caption = "no attack on what is not protected leaves less"
     return table
@@ -115,7 +109,7 @@ def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
 def _planners(report: BoundReport) -> Table:
     table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
     for plan in report.plans:
-        share = share_text(report.share(plan))
+        share = share_text(plan.worst_case.lower, report.upper)
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
         table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
     table.caption = "* recommended: the best proved worst case"
@@ -139,16 +133,16 @@ def _bracket(report: BoundReport) -> Table:
     optimum, problem = report.optimum, report.problem
     table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
     if optimum.posterior_gap is not None:
-        table.add_row("gap, of the criterion left after measuring", f"{optimum.posterior_gap:.3g}")
+        table.add_row("gap, of the criterion left after measuring", up(optimum.posterior_gap, 3))
     table.add_row("search stopped because", optimum.stop.value)
     table.add_row("certificate", verdict_text(report.certificate))
-    table.add_row("certified ratio of RATT", share_text(report.certified_ratio))
+    table.add_row("certified ratio of RATT", share_text(report.ratt.worst_case.lower, report.upper))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
     table.add_row("smallest largest group, n_max", str(report.n_max))
     table.add_row("equivalent sensing attacks, alpha_cs", str(report.alpha_cs))
     for name, bracket in (("curvature k", report.curvature), ("total curvature c", report.total_curvature)):
         if bracket is not None:
-            table.add_row(f"{name} over {bracket.domain} sets", _curvature(bracket))
+            table.add_row(f"{name} over {bracket.domain} sets", bracket_text(bracket.lower, bracket.upper))
     return table
 
 
@@ -164,19 +158,26 @@ def verdict_text(given: Certification) -> str:
 
 
 def _guarantees(report: BoundReport) -> Table:
-    table = _table("what was guaranteed before planning", "guarantee", "value", "needs")
+    table = _table("what was guaranteed before planning", "guarantee", "value", "needs", "proved at")
     best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0
-        table.add_row(f"{name} *" if strongest else name, f"{float(guarantee):.6g}", "; ".join(guarantee.hypotheses))
+        needs = "; ".join(guarantee.hypotheses)
+        table.add_row(f"{name} *" if strongest else name, down(float(guarantee), 6), needs, guarantee.proof)
     for name, why in report.inapplicable.items():
-        table.add_row(name, "none", f"does not apply: {why}")
-    table.caption = "* strongest that applies" if best > 0 else "curvature 1: no guarantee says anything here"
+        table.add_row(name, "none", f"does not apply: {why}", "")
+    table.caption = "; ".join(
+        filter(None, ["* strongest that applies" if report.guaranteed_share else "", guarantee_text(report)])
+    )
     return table
 
 
-def _curvature(bracket: Curvature) -> str:
-    return bracket_text(bracket.lower, bracket.upper)
+def guarantee_text(report: BoundReport) -> str:
+    """What the strongest guarantee says where that is all or nothing, else nothing."""
+    best = report.guaranteed_share
+    if best == 1:
+        return "RATT's plan is optimal, and was sure to be before planning"
+    return "" if best > 0 else "curvature 1: no guarantee says anything here"
 
 
 def _robots(attack: Attack) -> str:

@@ -165,9 +165,13 @@ class Scenario(ProblemRecord):
     @property
     def graph(self) -> nx.Graph | None:
         """The communication graph, or ``None`` for the complete one."""
+        return self.graph_at(self.poses)
+
+    def graph_at(self, poses: FloatArray) -> nx.Graph | None:
+        """The communication graph of robots at poses (N, 3), or ``None`` for the complete one."""
         if self.communication_range is None:
             return super().graph
-        apart = np.linalg.norm(self.poses[:, None, :2] - self.poses[None, :, :2], axis=-1)
+        apart = np.linalg.norm(poses[:, None, :2] - poses[None, :, :2], axis=-1)
         close = np.argwhere(np.triu(apart <= self.communication_range, 1))
         return self._graph_of((int(i), int(j)) for i, j in close)
 

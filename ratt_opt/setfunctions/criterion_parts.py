@@ -93,6 +93,11 @@ class ProofParts(SetFunction):
         raise lacking(self, "fenchel_point(point, target)", "tangent as the verifier knows it")
 
     @property
+    def stated(self) -> dict[str, Any]:
+        """What else a certificate's problem record states of the criterion, by field name, as plain data."""
+        return {}
+
+    @property
     def prior_eigenvalue(self) -> float | None:
         """An irrational number of the prior that a certificate states as a narrow range, where it needs one."""
         return None

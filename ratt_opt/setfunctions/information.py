@@ -14,10 +14,11 @@ import numpy as np
 
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import check_table_size
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike
 
 __all__ = ["InformationObjective", "packed", "symmetric_inverse"]
@@ -112,17 +113,12 @@ class InformationObjective(CriterionParts):
         """(C,) values ``f(base + {e})`` for each candidate ``e`` outside ``base``."""
         return self.value(self.posterior_information(base) + self.information[candidates])
 
-    def table(self) -> FloatArray:
-        """(2**n,) values of all subsets, target by target, each by doubling over the elements."""
-        check_table_size(self.n)
+    def table_blocks(self) -> Iterator[FloatArray]:
+        """The table, block by block: sums over the first elements, and those over the others, by doubling."""
         chunk = min(self.n, 16)  # 2**16 matrices at a time stay in cache
-        values = np.empty(2**self.n)
         low = self._lattice(self.prior_information, self.information[:chunk])
-        high = self._lattice(np.zeros_like(self.prior_information), self.information[chunk:])
-        for block, offset in enumerate(high):
-            start = block << chunk
-            values[start : start + len(low)] = self.value(low + offset)
-        return values
+        for offset in self._lattice(np.zeros_like(self.prior_information), self.information[chunk:]):
+            yield self.value(low + offset)
 
     @staticmethod
     def _lattice(start: FloatArray, steps: FloatArray) -> FloatArray:

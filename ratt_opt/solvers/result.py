@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, Shown, plain, shown
+from ratt_opt.problem import Plan
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -13,7 +15,16 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.stopping import Stop
 
-__all__ = ["MaxMinResult"]
+__all__ = ["MaxMinResult", "NonrobustPlan"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class NonrobustPlan(Plan):
+    """A plan for a team that nobody attacks; ``lower <= best value <= upper``, and why the search stopped."""
+
+    lower: float
+    upper: float
+    stop: Stop
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -44,5 +55,5 @@ class MaxMinResult(ByValue, Shown):
         return {name: plain(getattr(self, name)) for name in names}
 
     def __repr__(self) -> str:
-        bracket = f"{self.lower:.9g} <= Phi* <= {self.upper:.9g}"
+        bracket = f"{down(self.lower, 9)} <= Phi* <= {up(self.upper, 9)}"
         return f"MaxMinResult({bracket}, {self.stop.name}, {self.nodes} nodes, elements={shown(self.elements)})"

@@ -13,6 +13,7 @@ import pytest
 
 from ratt_opt.audit import ledger as ledger_module
 from ratt_opt.audit.appendix.entry import ClaimEntry, Entry
+from ratt_opt.audit.appendix.misprints import MISPRINTS
 from ratt_opt.audit.ledger import all_entries, decide_entry, run_audit
 from ratt_opt.audit.report.pages import html_report, markdown_report
 from ratt_opt.errors import InputError
@@ -78,7 +79,23 @@ def test_an_equality_of_the_paper_is_decided_both_ways() -> None:
         ("nd_p1d1v1_8", "cumulative", "A* hurts RATT", "proved"),
         ("nd_p1d2v1_8", "step", "", "refuted"),
         ("nd_p1d2v1_9", "cumulative", "", "proved"),
-        ("nd_p1d1vk_3", "step as equality", "", "refuted"),
+        ("nd_p1d1vk_3", "step as equality", "u*_i is what the optimal plan", "refuted"),
+        ("nd_p1d1vk_3", "step as equality", "u*_W is optimal for W", "proved"),
+        ("nd_p1d2v1_4", "step as equality", "u*_W is optimal for W", "proved"),
+        ("team_subgroup", "step as equality", "A* is the optimum", "proved"),
+        ("worst_case_left_side", "claim", "A* is the plan", "proved"),
+        ("worst_case_left_side", "claim", "A* is the optimum", "refuted"),
+        ("nd_p1_d1", "step", "", "proved"),
+        ("nd_p2d1v1", "step", "A* hurts RATT", "proved"),
+        ("nd_p2d1v1", "claim", "A* hurts RATT", "refuted"),
+        ("nd_p2d2v1", "step", "", "proved"),
+        ("nd_p2d2v1", "claim", "", "refuted"),
+        ("sub_p2d1v1_10", "step", "A* hurts RATT", "refuted"),
+        ("sub_p2d1v1_10_additive", "claim", "", "refuted"),
+        ("group_size_sub", "theorem", "", "proved"),
+        ("group_size_nd", "theorem", "", "proved"),
+        ("survivors_sub", "theorem", "", "proved"),
+        ("survivors_nd", "theorem", "", "proved"),
         ("sub_p2d1v2_9", "cumulative", "", "proved"),
         ("nd_p2d2v2_dominance", "claim", "stated reason only; total", "refuted"),
         ("nd_p2d2v2_dominance", "claim", "stated reason only; submodular", "refuted"),
@@ -92,6 +109,22 @@ def test_an_equality_of_the_paper_is_decided_both_ways() -> None:
 )
 def test_verdicts_that_are_known_by_hand(label: str, kind: str, reading: str, verdict: str) -> None:
     assert decided(label, kind, reading)["verdict"] == verdict
+
+
+def test_what_is_judged_with_its_stated_reason_alone_is_a_claim_beside_the_step() -> None:
+    """Sister lines are judged with the same premises: all of RATT's choices."""
+    for label in ("nd_p2d1v1", "nd_p2d2v1", "nd_p2d3v1", "nd_p2d2v2", "nd_p1d3vk"):
+        step, whole = find(label, "step"), find(label, "cumulative")
+        assert isinstance(step, ClaimEntry)
+        assert isinstance(whole, ClaimEntry)
+        assert [sized.claim for sized in step.claims] == [sized.claim for sized in whole.claims]
+
+
+def test_misprints_name_entries_that_differ() -> None:
+    for one in MISPRINTS:
+        assert one.printed != one.meant
+        if one.label:
+            assert {entry.label for entry in ENTRIES} >= {one.label, one.repaired}
 
 
 def test_what_is_left_of_the_subadditivity_step_has_the_factor_known_by_hand() -> None:

@@ -1,11 +1,18 @@
-"""The group-size guarantee against what RATT really keeps, by brute force."""
+"""The guarantees from how few and how many robots an attack leaves together, against what RATT keeps: brute force."""
 
+from itertools import combinations
+
+import networkx as nx
 import numpy as np
 import pytest
 
 import ratt_opt as ro
 from ratt_opt.bounds.group_size import achievable_group_size, group_size_bound
+from ratt_opt.bounds.survivors import largest_survivor_group, survivor_bound
 from ratt_opt.errors import InputError
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.report.page.page import report_page
+from ratt_opt.report.tables import report_tables
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import monotone_table, random_graph, random_objective
@@ -45,10 +52,50 @@ def check(seeds, *, submodular):
             else {"c": ro.total_curvature(problem.objective, problem.robot)}
         )
         survive = equivalent_sensing_attacks(problem) > 0
-        promised = group_size_bound(achievable_group_size(problem), baits_survive=survive, **given)
-        kept = brute_force_worst_case(problem, ro.ratt(problem).elements)
-        assert kept >= promised * optimum - 1e-9 * max(1.0, optimum), seed
+        plan = ro.ratt(problem).elements
+        promised = {
+            "group size": group_size_bound(achievable_group_size(problem), baits_survive=survive, **given),
+            "survivors": survivor_bound(largest_survivor_group(problem), **given),
+            "this instance": ro.instance_bound(problem, plan, **given),
+        }
+        kept = brute_force_worst_case(problem, plan)
+        for name, share in promised.items():
+            assert kept >= share * optimum - 1e-9 * max(1.0, optimum), (seed, name)
+        if survive:
+            assert promised["this instance"] >= promised["group size"] - 1e-9, seed
     return useful
+
+
+def fewest_together(problem):
+    """Smallest largest group of robots that see, by all cuts, with the strongest unprotected robots blinded."""
+    single = problem.objective.singletons()
+    strength = [single[choice].max() for choice in problem.choices]
+    free = sorted((i for i in range(problem.n_robots) if i not in problem.protected_robots), key=lambda i: -strength[i])
+    blinded, links = set(free[: problem.alpha_s]), sorted(problem.communication.links)
+    cuts = combinations(links, min(problem.alpha_c, len(links)))
+    return min(max(len(group - blinded) for group in problem.communication.groups(cut)) for cut in cuts)
+
+
+def test_the_group_size_is_the_smallest_by_definition():
+    for seed in range(300):
+        problem = random_problem(np.random.default_rng([52, seed]), submodular=True)
+        assert achievable_group_size(problem) == fewest_together(problem), seed
+
+
+def test_the_group_size_of_a_large_graph_is_achieved():
+    objective = ro.random_scenario(16, 3, alpha_s=3, alpha_c=4, seed=0).problem().objective
+    graph = nx.random_regular_graph(3, 16, seed=0)
+    problem = ro.Problem(objective, np.repeat(np.arange(16), objective.n // 16), graph, 3, 4)
+    exact = smallest_largest_group(problem.communication, 4).n_max
+    assert exact - 3 <= achievable_group_size(problem) <= 13
+
+
+def test_no_outcome_leaves_more_survivors_together():
+    for seed in range(100):
+        problem = random_problem(np.random.default_rng([53, seed]), submodular=True)
+        left = max(len(group) for outcome in ro.non_dominated_outcomes(problem.threat) for group in outcome)
+        assert left <= largest_survivor_group(problem)
+        assert left == largest_survivor_group(problem) or not problem.threat.is_symmetric
 
 
 @pytest.mark.parametrize("submodular", [True, False])
@@ -72,8 +119,10 @@ def test_ratt_keeps_the_group_size_bound_on_ten_thousand_problems(submodular):
         ({"g": 3, "c": 0.5}, 0.2),
         ({"g": 3, "c": 1.0}, 0.0),
         ({"g": 2, "k": 1.0, "baits_survive": False}, 0.5),
-        ({"g": 1, "k": 0.25, "baits_survive": False}, 0.8),
-        ({"g": 1, "c": 0.25, "baits_survive": False}, 0.75),
+        ({"g": 1, "k": 0.25, "baits_survive": False}, 1.0),
+        ({"g": 2, "c": 0.25, "baits_survive": False}, 3 / 7),
+        ({"g": 2, "c": 0.75, "baits_survive": False}, 0.2),
+        ({"g": 3, "k": 0.25, "baits_survive": False}, 1 / 3),
     ],
 )
 def test_values(given, bound):
@@ -85,6 +134,36 @@ def test_the_paper_budget_with_one_robot_a_group_makes_ratt_optimal():
     assert achievable_group_size(problem) == 1
     best = ro.solve_maxmin(problem)
     assert ro.worst_case_attack(problem, ro.ratt(problem).elements).upper == pytest.approx(best.upper, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "bound"),
+    [
+        ({"size": 0, "c": 1.0}, 1.0),
+        ({"size": 1, "k": 1.0}, 1.0),
+        ({"size": 2, "k": 0.5}, 0.625),
+        ({"size": 5, "k": 0.5}, 0.5),
+        ({"size": 3, "c": 0.5}, 0.4),
+        ({"size": 2, "c": 1.0}, 0.0),
+    ],
+)
+def test_values_of_the_survivor_bound(given, bound):
+    assert survivor_bound(**given) == pytest.approx(bound)
+
+
+@pytest.mark.parametrize("size", [2, 3, 10, 1000])
+def test_the_survivor_bound_is_above_the_pattern_free_one(size):
+    for share in np.linspace(0.05, 0.95, 7):
+        assert survivor_bound(size, k=share) >= ro.pattern_free_bound(k=share)
+        assert survivor_bound(size, c=share) > ro.pattern_free_bound(c=share)
+
+
+def test_ratt_is_said_to_be_optimal_where_one_robot_sees_in_every_group():
+    report = ro.bound(ro.random_scenario(4, 4, alpha_s=2, alpha_c=4, seed=0), time_limit=20)
+    assert report.guaranteed_share == 1.0
+    assert report.guarantees["one robot a group"].hypotheses[0] == "normalised, non-decreasing"
+    assert "RATT's plan is optimal" in str(list(report_tables(report))[-1].caption)
+    assert "RATT&#x27;s plan is optimal" in report_page(report)
 
 
 @pytest.mark.parametrize(

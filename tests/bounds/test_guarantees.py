@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import re
 from dataclasses import FrozenInstanceError, asdict, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -65,7 +67,7 @@ def test_ratt_keeps_every_guarantee_and_any_plan_its_own(submodular_only):
     assert useful > 120
 
 
-def test_the_instance_bound_is_the_best_order_by_definition():
+def test_the_instance_bound_is_the_best_order_or_the_group_size_by_definition():
     from itertools import permutations
 
     rng = np.random.default_rng(8)
@@ -84,7 +86,10 @@ def test_the_instance_bound_is_the_best_order_by_definition():
         for order in permutations(range(3)):
             ratios = [least(i, order[:k]) / largest[i] for k, i in enumerate(order) if largest[i] > 0]
             orders.append(min(ratios, default=1.0))
-        assert ro.instance_bound(problem, plan, c=c) == pytest.approx(min(max(orders), 1.0), abs=1e-12)
+        # By group size: nobody is attacked, so the best element sees, and all three robots are one group.
+        excess = max(m - max(map(f, choice[:, None])) for m, choice in zip(largest, problem.choices, strict=True))
+        groups = max(map(f, plan[:, None])) / (sum(largest) - excess) if sum(largest) > 0 else 1.0
+        assert ro.instance_bound(problem, plan, c=c) == pytest.approx(min(max(*orders, groups), 1.0), abs=1e-12)
 
 
 def test_a_plan_of_many_robots_is_bracketed():
@@ -113,6 +118,31 @@ def test_extremes_of_the_formulas():
         assert bound(k=1.0) == bound(c=1) == 0
         assert bound(k=0.3).hypotheses
         assert bound(k=0.3).source
+
+
+def test_every_guarantee_points_at_a_proof():
+    """A function whose documentation has one, and the theorem of formal/ where it names one."""
+    theories = Path(__file__).parents[2] / "formal" / "theories"
+    coq = "\n".join(path.read_text(encoding="utf-8") for path in theories.glob("*.v"))
+    problem = ro.random_scenario(4, 3, alpha_s=1, alpha_c=0, seed=0).problem("trace")
+    c = ro.total_curvature(problem.objective, problem.robot)
+    bounds = [ro.instance_bound(problem, ro.ratt(problem).elements, c=c), ro.all_bait_group_bound(2, k=0.5)]
+    for g, given in ((1, {"c": c}), (2, {"c": c}), (2, {"k": 0.5})):
+        bounds += [ro.group_size_bound(g, **given), ro.survivor_bound(g, **given), ro.remark1_bound(**given)]
+        bounds += [*ro.all_guarantees(problem, 0, **given).values(), ro.theorem1_bound(2, **given)]
+    for bound in bounds:
+        function, _, theorem = bound.proof.partition("; in Coq ")
+        assert "Proof" in getattr(ro, function).__doc__
+        assert not theorem or re.search(rf"^(Theorem|Corollary) {theorem}\b", coq, re.MULTILINE)
+        assert bound.proof.startswith("pattern_free_bound") or function in {
+            "instance_bound",
+            "all_bait_group_bound",
+            "group_size_bound",
+            "survivor_bound",
+        }
+        if bound.proof.startswith("pattern_free_bound"):
+            name = "k" if "ratt_submodular" in theorem else "c"
+            assert bound <= ro.pattern_free_bound(**{name: 0.5 if name == "k" else c})
 
 
 def test_a_bracket_gives_its_conservative_end():

@@ -118,7 +118,7 @@ class SizeVectorSearch:
             if families and part.stop() is not None:
                 break
             family = GroupExchanges(self.team, sizes, must)
-            family.weakest()
+            family.weakest(self.task.budget)
             families.append(family)
         families.sort(key=lambda family: family.value)
         for family in families[:SHAKEN]:

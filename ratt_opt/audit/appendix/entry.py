@@ -138,7 +138,9 @@ class Line:
     """One line of a chain: ``previous (relation) expression / denominator``.
 
     ``readings`` : name -> extra premises, where the text admits several.
-    ``cited`` : the only premises the stated reason uses, where they are fewer than all roles.
+    ``as_written`` : the same for a printed ``=``, where its readings differ from those of the step.
+    ``cited`` : the only premises the stated reason uses, where they are fewer than all roles. The step itself is
+    judged with all of RATT's choices, as every line is.
     """
 
     relation: str
@@ -146,6 +148,7 @@ class Line:
     statement: str
     denominator: Polynomial = ONE
     readings: dict[str, tuple[Inequality, ...]] = field(default_factory=dict, kw_only=True)
+    as_written: dict[str, tuple[Inequality, ...]] = field(default_factory=dict, kw_only=True)
     cited: tuple[Inequality, ...] | None = field(default=None, kw_only=True)
 
 
@@ -179,12 +182,18 @@ class Chain:
 
 
 def entries_of(chain: Chain) -> Iterator[ClaimEntry]:
-    """Yield the entries of a chain, line by line: step, step as equality (where written ``=``), cumulative."""
+    """Yield the entries of a chain, line by line: step, step as equality (where written ``=``), cumulative.
+
+    A stated reason that uses less than RATT's choices is an entry of its own, a claim.
+    """
     for number, line in enumerate(chain.lines):
         for reading in line.readings or ("",):
             yield _entry(chain, number, STEP, reading)
+            if line.cited is not None:
+                yield _entry(chain, number, EntryKind.CLAIM, reading)
             if line.relation == "=":
-                yield _entry(chain, number, AS_WRITTEN, reading)
+                for equality in line.as_written or (reading,):
+                    yield _entry(chain, number, AS_WRITTEN, equality)
             yield _entry(chain, number, CUMULATIVE, reading)
 
 
@@ -193,7 +202,7 @@ def _entry(chain: Chain, number: int, kind: EntryKind, reading: str) -> ClaimEnt
     origin = "the start of its chain" if is_whole else "the line before" if number else "the left-hand side"
     submodular = "submodular, curvature <= k" if chain.function_class.is_submodular else "total curvature <= c"
     hypotheses = f"f normalised, non-decreasing, {submodular}; baits and greedy robots as RATT chooses them"
-    if line.cited is not None and not is_whole:
+    if line.cited is not None and kind is EntryKind.CLAIM:
         hypotheses = f"only what the stated reason uses: {'; '.join(premise.reason for premise in line.cited)}"
     return ClaimEntry(
         label=label,
@@ -204,16 +213,16 @@ def _entry(chain: Chain, number: int, kind: EntryKind, reading: str) -> ClaimEnt
         claims=tuple(claim for case in chain.cases for claim in _claims(chain, case, number, kind, reading)),
         reading=reading,
         survives_by=None if is_whole else Reference(chain.label(-1), CUMULATIVE),
-        serves_by=_serves_by(line, label, kind, reading),
+        serves_by=_serves_by(label, kind, reading),
         detours=partial(_detours, chain, number, reading) if kind is STEP and number > 1 else None,
     )
 
 
-def _serves_by(line: Line, label: str, kind: EntryKind, reading: str) -> Reference | None:
-    """A paper's "=" may serve as ">="; a line with too few premises follows from all of RATT's choices."""
+def _serves_by(label: str, kind: EntryKind, reading: str) -> Reference | None:
+    """A paper's "=" may serve as ">="; a reason with too few premises follows from all of RATT's choices."""
     if kind is AS_WRITTEN:
         return Reference(label, STEP)
-    return Reference(label, CUMULATIVE, reading) if kind is STEP and line.cited is not None else None
+    return Reference(label, STEP, reading) if kind is EntryKind.CLAIM else None
 
 
 def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:
@@ -227,7 +236,7 @@ def _claims(chain: Chain, case: Case, number: int, kind: EntryKind, reading: str
     line, before = case.lines[number], Line("", case.start, "")
     if kind is not CUMULATIVE and number:
         before = case.lines[number - 1]
-    both = _both_ways(chain, case, before, line, reading, cited=None if kind is CUMULATIVE else line.cited)
+    both = _both_ways(chain, case, before, line, reading, cited=line.cited if kind is EntryKind.CLAIM else None)
     return both if kind is AS_WRITTEN else both[:1]
 
 
@@ -236,7 +245,8 @@ def _both_ways(
 ) -> tuple[SizedClaim, SizedClaim]:
     """``before >= line`` and the reverse, from all of RATT's choices unless the premises are cited."""
     team, robots = case.team, len(case.team.robots)
-    premises = (team.premises if cited is None else cited) + case.given + line.readings.get(reading, ())
+    named = line.readings | line.as_written
+    premises = (team.premises if cited is None else cited) + case.given + named.get(reading, ())
     left, right = before.expression * line.denominator, line.expression * before.denominator
     there = team.comparison(chain.function_class, left, right, premises)
     back = team.comparison(chain.function_class, right, left, premises)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt.audit.appendix.roles import Robots
+    from ratt_opt.audit.engine.claim import Linear
     from ratt_opt.audit.engine.rationals import Polynomial
 
 __all__ = ["GROUP", "beside_v2", "pattern1_chains", "pattern2_chains", "submodular_chains"]
@@ -81,10 +82,20 @@ def _bait_case(survivors: int, attacked: int, symbol: str, kept: Polynomial, bou
     lines = (
         Line("=", team.chosen(left), "f(bait on the survivors)"),
         Line(">=", team.singles(left) * T, f"(1-{symbol}) sum of f(bait_i)"),
-        Line("=", team.singles(map(optimum, left)) * T, f"(1-{symbol}) sum of f(u*_i)"),
+        _by_own_best(team, left, team.singles(map(optimum, left)) * T, f"(1-{symbol}) sum of f(u*_i)"),
         Line(">=", team.compared(left) * kept, bound),
     )
     return Case(size=team.text(team.bait[survivors:]), team=team, start=team.chosen(left), lines=lines)
+
+
+OPTIMAL_PLAN = "u*_i is what the optimal plan gives robot i"
+OPTIMAL_ALONE = "u*_W is optimal for W, as the Notation paragraph permits, here for W = {i}"
+
+
+def _by_own_best(team: Team, bait: Robots, expression: Linear, statement: str) -> Line:
+    """A printed ``=`` between baits' values and values of ``u*_i``: read with each meaning of the latter."""
+    alone = tuple(Inequality(f"u*_i is optimal for {b} alone", team.compared([b]) - team.f([b])) for b in bait)
+    return Line("=", expression, statement, as_written={OPTIMAL_PLAN: (), OPTIMAL_ALONE: alone})
 
 
 def _other_groups() -> Iterator[Case]:
@@ -108,7 +119,7 @@ def _none_attacked() -> Iterator[Case]:
             Line("=", team.chosen(everyone), "f(u on V1)"),
             Line(">=", team.singles(everyone) * T, "(1-c) sum of f(u_i)"),
             Line("=", (team.singles(b) + team.singles(g)) * T, "(1-c) [sum over baits + sum over greedy robots]"),
-            Line("=", swapped * T, "(1-c) [sum of f(u*_i) over baits + sum over greedy]"),
+            _by_own_best(team, b, swapped * T, "(1-c) [sum of f(u*_i) over baits + sum over greedy]"),
             Line(">=", (team.compared(b) + team.chosen(g)) * T2, "(1-c)^2 [f(u* on V1b) + f(u on V1g)]"),
             Line(">=", team.compared(b) * T2 + team.compared(g) * T3, "(1-c)^2 f(u* on V1b) + (1-c)^3 f(u* on V1g)"),
             Line(">=", both * T3, "(1-c)^3 [f(u* on V1b) + f(u* on V1g)]"),

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
 from ratt_opt.audit.appendix.patterns import GROUP, beside_v2
 from ratt_opt.audit.appendix.roles import ONE_PLUS_K, Side, Team, attacks_on, team_of, worst_for
-from ratt_opt.audit.appendix.team_lines import OPTIMUM, PLAN
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, THEOREM1
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
 from ratt_opt.audit.engine.rationals import T
@@ -34,39 +33,62 @@ if TYPE_CHECKING:
 
     from ratt_opt.audit.appendix.roles import Robots
 
-__all__ = ["SETTINGS", "dominance_entries", "readings_of_sets", "readings_of_the_attack"]
+__all__ = ["LEFT_SIDE", "SETTINGS", "dominance_entries", "readings_of_sets", "readings_of_the_attack"]
 
+PLAN, OPTIMUM = "A* is the plan's worst attack", "A* is the optimum's worst attack"
 ND = FunctionClass.TOTAL_CURVATURE
 STEP, AS_WRITTEN, CUMULATIVE = EntryKind.STEP, EntryKind.AS_WRITTEN, EntryKind.CUMULATIVE
 
 
-def readings_of_the_attack() -> Iterator[ClaimEntry]:
-    """Yield eq:team_subgroup and eq:opt_team_subgroup under both readings of A*, as used and as written.
+LEFT_SIDE = "worst_case_left_side"
+"""Label of ours: from the value under A*, which the appendix bounds, to the worst-case value, of which Theorem 1 is."""
 
-    The proof uses "RATT's worst-case value >= its value under A*" and "the optimum's <= its value under A*".
+
+def readings_of_the_attack() -> Iterator[ClaimEntry]:
+    """Yield eq:team_subgroup and eq:opt_team_subgroup under both readings of A*, and what Theorem 1 needs beside them.
+
+    The first, as printed, says what RATT's value under A* is: an identity. The second says that the optimum's worst
+    case is its value under A*, of which the proof uses "at most". Theorem 1 is about RATT's worst case: that this is no
+    less than RATT's value under A* is used without a line of its own.
     """
-    optimum = "opt_team_subgroup"
-    lines = (
-        ("team_subgroup", Side.RATT, ">=", "RATT's", PATTERN_FREE_ND),
-        (optimum, Side.OPTIMUM, "<=", "the optimum's", Reference(optimum, STEP)),
-    )
+    label = "opt_team_subgroup"
     for worst, reading in ((Side.RATT, PLAN), (Side.OPTIMUM, OPTIMUM)):
-        for label, side, used, who, serves_by in lines:
-            above, below = tuple(_other_attacks(worst, side)), tuple(_below(side))
-            as_used = above if used == ">=" else below
-            forms = ((STEP, used, as_used), (AS_WRITTEN, "=", above + below), (CUMULATIVE, used, as_used))
-            for kind, relation, claims in forms:
-                yield ClaimEntry(
-                    label=label,
-                    kind=kind,
-                    chain="readings",
-                    statement=f"{who} worst-case value {relation} its value under A*",
-                    hypotheses="RATT's choices",
-                    claims=claims,
-                    reading=reading,
-                    survives_by=THEOREM1,
-                    serves_by=serves_by,
-                )
+        identity = partial(_reading, label="team_subgroup", claims=tuple(_left()), reading=reading)
+        for kind in (STEP, AS_WRITTEN, CUMULATIVE):
+            text = "RATT's value under A* = that of the best group A* leaves"
+            yield identity(kind=kind, statement=text, serves_by=PATTERN_FREE_ND)
+        above, below = tuple(_other_attacks(worst, Side.OPTIMUM)), tuple(_below(Side.OPTIMUM))
+        for kind, relation, claims in (
+            (STEP, "<=", below),
+            (AS_WRITTEN, "=", above + below),
+            (CUMULATIVE, "<=", below),
+        ):
+            text = f"the optimum's worst-case value {relation} its value under A*"
+            serves_by = Reference(label, STEP)
+            yield _reading(label=label, kind=kind, statement=text, claims=claims, reading=reading, serves_by=serves_by)
+        text = "RATT's worst-case value, of which Theorem 1 is, >= its value under A*, which the appendix bounds"
+        claims = tuple(_other_attacks(worst, Side.RATT))
+        yield _reading(
+            label=LEFT_SIDE,
+            kind=EntryKind.CLAIM,
+            statement=text,
+            claims=claims,
+            reading=reading,
+            serves_by=PATTERN_FREE_ND,
+        )
+
+
+_reading = partial(ClaimEntry, chain="readings", hypotheses="RATT's choices", survives_by=THEOREM1)
+
+
+def _left() -> Iterator[SizedClaim]:
+    """The value under A* is the best group's, of which one is left here: both ways, by definition."""
+    team, under = team_of(1, 1), Linear.of("value")
+    for attacked in attacks_on(team.robots, 1):
+        best = team.chosen(set(team.robots) - set(attacked))
+        defined = Inequality("the value is the best group's", under - best), Inequality("and no more", best - under)
+        for gap in (under - best, best - under):
+            yield SizedClaim(size=team.text(attacked), robots=2, claim=team.claim(ND, gap, defined), team=team)
 
 
 def _other_attacks(worst: Side, side: Side) -> Iterator[SizedClaim]:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     """Robots by the name of RATT's element for each."""
 
 __all__ = ["CUBED", "KEPT", "KEPT_OVER_ONE_PLUS_K", "ONE_PLUS_K", "SQUARED", "T2", "T3", "Factor", "Side",
-           "Team", "attacks_on", "every_group", "one_group", "optimum", "own_best", "team_of",
-           "whose_worst", "worst_for"]  # fmt: skip
+           "Team", "attacks_on", "every_group", "every_surviving_set", "kept_by", "one_group",
+           "optimum", "own_best", "team_of", "whose_worst", "worst_for"]  # fmt: skip
 
 
 class Side(Enum):
@@ -212,8 +212,8 @@ KEPT, SQUARED, CUBED = Factor(T), Factor(T2), Factor(T3)
 KEPT_OVER_ONE_PLUS_K = Factor(T, ONE_PLUS_K)
 
 
-def every_group(function_class: FunctionClass, factor: Factor, *, largest: int) -> Iterator[SizedClaim]:
-    """For every set S of surviving robots: ``f(u on S) >= factor f(o on S)``, whatever the pattern.
+def every_surviving_set(*, largest: int) -> Iterator[tuple[Team, Robots]]:
+    """Every set S of surviving robots, with those that play a part in what S is worth, up to so many in all.
 
     S has any baits and any of the greedy robots; greedy robots outside S were still chosen before
     some in S. Baits outside S and greedy robots chosen later play no part.
@@ -222,11 +222,20 @@ def every_group(function_class: FunctionClass, factor: Factor, *, largest: int) 
         for n_greedy in range(total + 1):
             bait, greedy = team_of(total - n_greedy, n_greedy).bait, team_of(0, n_greedy).greedy
             for chosen in _subsets_with_last(greedy):
-                team = Team(bait, greedy, without_optimum=frozenset(greedy) - set(chosen))
-                group = bait + chosen
-                conclusion = factor.gap(team.chosen(group), team.compared(group))
-                text = f"S = {{{','.join(group)}}} of {len(bait)} bait, {n_greedy} greedy"
-                yield SizedClaim(size=text, robots=total, claim=team.claim(function_class, conclusion), team=team)
+                yield Team(bait, greedy, without_optimum=frozenset(greedy) - set(chosen)), bait + chosen
+
+
+def kept_by(function_class: FunctionClass, factor: Factor, team: Team, group: Robots) -> SizedClaim:
+    """``f(u on S) >= factor f(o on S)`` for one set of surviving robots."""
+    claim = team.claim(function_class, factor.gap(team.chosen(group), team.compared(group)))
+    text = f"S = {{{','.join(group)}}} of {len(team.bait)} bait, {len(team.greedy)} greedy"
+    return SizedClaim(size=text, robots=len(team.robots), claim=claim, team=team)
+
+
+def every_group(function_class: FunctionClass, factor: Factor, *, largest: int) -> Iterator[SizedClaim]:
+    """For every set S of surviving robots: ``f(u on S) >= factor f(o on S)``, whatever the pattern."""
+    for team, group in every_surviving_set(largest=largest):
+        yield kept_by(function_class, factor, team, group)
 
 
 def _subsets_with_last(greedy: Robots) -> Iterator[Robots]:

@@ -1,8 +1,9 @@
 """The lines that sum up a distribution or a pattern: from groups to the team.
 
-``team`` is RATT's worst-case value and ``opt`` the optimum's. Both are bounds between numbers that are no function
-values, so they enter as auxiliary numbers with the facts that define them. Each claim fixes which group wins for the
-optimum and uses that group's own factor, which is at least the minimum the paper writes (opt >= 0).
+``team`` is RATT's value under A*, the left side that the paper prints (eq:team_subgroup), and ``opt`` the optimum's
+worst-case value, at most its value under A*. They are no function values, so they enter as auxiliary numbers with the
+facts that define them. Each claim fixes which group wins for the optimum and uses that group's own factor, which is at
+least the minimum the paper writes (opt >= 0).
 """
 
 from __future__ import annotations
@@ -20,24 +21,22 @@ if TYPE_CHECKING:
 
     Groups = tuple[tuple[str, ...], ...]
 
-__all__ = ["OPT", "OPTIMUM", "PLAN", "TEAM", "team_lines"]
+__all__ = ["OPT", "TEAM", "team_lines"]
 
 TEAM, OPT = Linear.of("team"), Linear.of("opt")
-PLAN, OPTIMUM = "A* is the plan's worst attack", "A* is the optimum's worst attack"
 STEP, CUMULATIVE = EntryKind.STEP, EntryKind.CUMULATIVE
-HYPOTHESES = "the class, RATT's choices; team >= its value in every group, opt <= the compared plan's best group"
+HYPOTHESES = "the class, RATT's choices; team = RATT's value under A*, opt <= the compared plan's value under A*"
 ALPHA_CS = constant(2)
 """alpha_cs of the groupings of Pattern 2."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Grouping:
-    """Groups left by A* (``left``) and by another attack (``other``), and each of the former's factor; in words."""
+    """Groups left by A* (``left``), and each one's factor; in words (``size``)."""
 
     size: str
     team: Team
     left: Groups
-    other: Groups
     factors: tuple[Factor, ...]
 
     @property
@@ -77,9 +76,9 @@ def _pattern1() -> tuple[_Grouping, ...]:
     small, large, factors = Team(b1 + b2, g1), Team(b1 + b2 + b3, g1), (CUBED, SQUARED)
     third = "V1 = {b1,b2,g1}, V2 = {b3,..}, one blinded in each, A* hits b1"
     return (
-        _Grouping("V1 = {b1,g1}, V2 = {b2}, A* = {g1}", small, (b1, b2), (g1, b2), factors),
-        _Grouping("V1 = {b1,g1}, V2 = {b2,b3}, A* = {b2}", large, (b1 + g1, b3), (g1, b2 + b3), factors),
-        _Grouping(third, large, (b2 + g1, b3), (b1 + b2, b3), factors),
+        _Grouping("V1 = {b1,g1}, V2 = {b2}, A* = {g1}", small, (b1, b2), factors),
+        _Grouping("V1 = {b1,g1}, V2 = {b2,b3}, A* = {b2}", large, (b1 + g1, b3), factors),
+        _Grouping(third, large, (b2 + g1, b3), factors),
     )
 
 
@@ -89,22 +88,18 @@ def _pattern2(many: Factor, few: Factor) -> tuple[_Grouping, ...]:
     team, factors = Team(b1 + b3, x1), (many, few)
     third = "V1 = {b1,..}, V2 = {b3,x1}, one blinded in each, A* hits x1"
     return (
-        _Grouping("V1 = {b1,b2}, V2 = {b3,x1}, A* = {b2}, other attack {x1}", team, (b1, b3 + x1), (b1, b3), factors),
-        _Grouping("V1 = {b1,..}, V2 = {b3,x1}, A* = {b3}, other attack {x1}", team, (b1, x1), (b1, b3), factors),
-        _Grouping(third, team, (b1, b3), (b1, x1), factors),
+        _Grouping("V1 = {b1,b2}, V2 = {b3,x1}, A* = {b2}", team, (b1, b3 + x1), factors),
+        _Grouping("V1 = {b1,..}, V2 = {b3,x1}, A* = {b3}", team, (b1, x1), factors),
+        _Grouping(third, team, (b1, b3), factors),
     )
 
 
 def _distribution(label: str, bound: _Bound, grouping: _Grouping) -> Iterator[ClaimEntry]:
-    for reading in (PLAN, OPTIMUM):
-        given = tuple(_claims(bound.function_class, grouping, reading, is_step=True))
-        text = f"the bounds of its groups: RATT's worst-case value >= {bound.text} of the optimum's"
-        serves_by = Reference(label, STEP, PLAN) if reading == OPTIMUM else None
-        step = _line(label, STEP, text, given)
-        yield replace(step, reading=reading, survives_by=Reference(label, CUMULATIVE), serves_by=serves_by)
-        alone = tuple(_claims(bound.function_class, grouping, reading, is_step=False))
-        text = f"RATT's choices alone: RATT's worst-case value >= {bound.text} of the optimum's"
-        yield replace(_line(label, CUMULATIVE, text, alone), reading=reading)
+    text = f"RATT's value under A* >= {bound.text} of the optimum's worst case"
+    given, alone = (tuple(_claims(bound.function_class, grouping, is_step=is_step)) for is_step in (True, False))
+    step = _line(label, STEP, f"the bounds of its groups: {text}", given)
+    yield replace(step, survives_by=Reference(label, CUMULATIVE))
+    yield _line(label, CUMULATIVE, f"RATT's choices alone: {text}", alone)
 
 
 def _line(label: str, kind: EntryKind, text: str, claims: tuple[SizedClaim, ...]) -> ClaimEntry:
@@ -112,19 +107,15 @@ def _line(label: str, kind: EntryKind, text: str, claims: tuple[SizedClaim, ...]
     return ClaimEntry(label=label, kind=kind, chain=label, statement=text, hypotheses=HYPOTHESES, claims=claims)
 
 
-def _claims(function_class: FunctionClass, grouping: _Grouping, reading: str, *, is_step: bool) -> Iterator[SizedClaim]:
+def _claims(function_class: FunctionClass, grouping: _Grouping, *, is_step: bool) -> Iterator[SizedClaim]:
     team = grouping.team
     given = grouping.bounds if is_step else team.premises
-    attained = grouping.left if reading == PLAN else grouping.other
-    worth = tuple(Inequality("team >= RATT's value in a group", TEAM - team.chosen(group)) for group in attained)
+    worth = tuple(Inequality("team >= RATT's value in a group", TEAM - team.chosen(group)) for group in grouping.left)
     for winner, group in enumerate(grouping.left):
         loses = (Inequality("opt <= the optimum's best group", team.compared(group) - OPT),)
-        for rival in grouping.other if reading == OPTIMUM else ((),):
-            more = (Inequality("opt <= its value under another attack", team.compared(rival) - OPT),) if rival else ()
-            conclusion = grouping.factors[winner].gap(TEAM, OPT)
-            claim = team.claim(function_class, conclusion, given + worth + loses + more)
-            size = f"{grouping.size}; the optimum's best group is V{winner + 1}"
-            yield SizedClaim(size=size, robots=len(team.robots), claim=claim, team=team)
+        claim = team.claim(function_class, grouping.factors[winner].gap(TEAM, OPT), given + worth + loses)
+        size = f"{grouping.size}; the optimum's best group is V{winner + 1}"
+        yield SizedClaim(size=size, robots=len(team.robots), claim=claim, team=team)
 
 
 def _overall(label: str, bound: _Bound, groupings: Sequence[_Grouping]) -> Iterator[ClaimEntry]:
@@ -133,7 +124,7 @@ def _overall(label: str, bound: _Bound, groupings: Sequence[_Grouping]) -> Itera
     part = bound.factor.gap(TEAM, OPT)
     same = team.claim(kind, part, (Inequality("the bound of the part", part),))
     step = (SizedClaim(size="each part", robots=len(team.robots), claim=same),)
-    again = tuple(claim for grouping in groupings for claim in _claims(kind, grouping, PLAN, is_step=False))
-    text = f"worst-case value >= {bound.text} of the optimum's"
+    again = tuple(claim for grouping in groupings for claim in _claims(kind, grouping, is_step=False))
+    text = f"RATT's value under A* >= {bound.text} of the optimum's worst case"
     yield _line(label, STEP, f"Distributions 1 to 3: {text}", step)
     yield _line(label, CUMULATIVE, f"RATT's choices alone: {text}", again)

@@ -6,12 +6,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind, Reference
+from ratt_opt.audit.appendix.misprints import MISPRINTS
+from ratt_opt.audit.appendix.readings import LEFT_SIDE
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt.audit.report.records import EntryHead, EntryRecord, LedgerDocument
 
-__all__ = ["Finding", "findings", "title"]
+__all__ = ["BY_ATTACK", "BY_READING", "FAILS", "HOLDS", "Finding", "findings", "line_outcomes", "title"]
 
 STEP = EntryKind.STEP
 PLAN, OPTIMUM, TEAM = "the plan's", "the optimum's", "the team's only"
@@ -36,7 +40,14 @@ def title(record: EntryHead) -> str:
 def findings(document: LedgerDocument) -> tuple[Finding, ...]:
     """Return the sections in reading order; sections without anything to say are left out."""
     records = document["entries"]
-    sections = (_theorems(records), _lines(records), _readings(records), _repairs(records), _own_claims(records))
+    sections = (
+        _theorems(records),
+        _lines(records),
+        _readings(records),
+        _repairs(records),
+        _misprints(records),
+        _own_claims(records),
+    )
     return tuple(section for section in sections if len(section.table) > 1)
 
 
@@ -50,37 +61,75 @@ def _theorems(records: list[EntryRecord]) -> Finding:
     if _all_proved([r for r in rows if r["label"] in (PATTERN_FREE_ND.label, PATTERN_FREE_SUB.label)]):
         sentences.append(
             "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
-            "every curvature strictly between 0 and 1. "
-            "The machine decides teams up to the size shown; a written proof for any number of robots is in the "
-            "documentation of pattern_free_bound."
+            "every curvature strictly between 0 and 1; the survivor bounds are at least as large; where attacks can "
+            "keep every group to one seeing robot RATT is optimal. The machine decides teams up to the size shown; "
+            "written proofs for any number of robots are in the documentation of pattern_free_bound, group_size_bound "
+            "and survivor_bound. What Theorem 1 needs is RATT's choices, one robot at a time: no pattern, no "
+            "distribution of attacks, no A*."
         )
     table = [("entry", "statement", "verdict", "for which sizes")]
     table += [(r["label"], r["statement"], r["verdict"], r["sizes"]) for r in rows]
     return Finding(heading="Does the theorem survive?", sentences=tuple(sentences), table=tuple(table))
 
 
+HOLDS, BY_ATTACK, BY_READING, FAILS = (
+    "holds in every reading",
+    "depends on whose worst attack A* is",
+    "depends on another reading",
+    "fails in every reading",
+)
+
+
+def line_outcomes(records: Sequence[EntryRecord]) -> dict[str, list[str]]:
+    """Outcome -> labels of the numbered lines, by what becomes of them as steps; all counts are of these lists."""
+    outcome: dict[str, list[str]] = {HOLDS: [], BY_ATTACK: [], BY_READING: [], FAILS: []}
+    for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
+        refuted = sum(r["verdict"] == REFUTED for r in group)
+        mixed = BY_ATTACK if all(_whose(r["reading"]) for r in group) else BY_READING
+        outcome[HOLDS if not refuted else FAILS if refuted == len(group) else mixed].append(label)
+    return outcome
+
+
 def _lines(records: list[EntryRecord]) -> Finding:
     """Numbered lines of the paper by what becomes of them as steps."""
-    steps = _grouped([r for r in records if r["kind"] == STEP])
-    equalities = [r for r in records if r["kind"] == EntryKind.AS_WRITTEN and r["verdict"] == REFUTED]
-    outcome: dict[str, list[str]] = {"holds": [], "depends on the reading": [], "fails": []}
-    for label, group in steps.items():
-        refuted = sum(r["verdict"] == REFUTED for r in group)
-        name = "holds" if not refuted else "fails" if refuted == len(group) else "depends on the reading"
-        outcome[name].append(label)
+    outcome = line_outcomes(records)
     cumulative = _grouped([r for r in records if r["kind"] == EntryKind.CUMULATIVE])
     lost = [label for label, group in cumulative.items() if all(r["verdict"] == REFUTED for r in group)]
     table = [("numbered lines whose step ...", "how many", "which")]
     for name, labels in outcome.items():
-        table.append((name, str(len(labels)), "all others" if name == "holds" else ", ".join(labels) or "none"))
-    names = list(dict.fromkeys(r["label"] for r in equalities))
-    table.append(("is printed as = but holds as >= only", str(len(names)), ", ".join(names) or "none"))
-    text = f"Of {len(steps)} numbered lines, {len(outcome['holds'])} follow from the line before under every reading."
+        table.append((name, str(len(labels)), "all others" if name == HOLDS else ", ".join(labels) or "none"))
+    some, none = _equalities(records)
+    table.append(("is printed with =, which holds in some reading only", str(len(some)), ", ".join(some) or "none"))
+    table.append(("is printed with =, but holds with >= only", str(len(none)), ", ".join(none) or "none"))
+    text = f"Of {sum(map(len, outcome.values()))} numbered lines, {len(outcome[HOLDS])} follow from the line before in"
+    text = f"{text} every reading, {len(outcome[FAILS])} in none."
     end = "A failing step is a gap in the argument, not a false result: from the start of its chain each line is proved"
     end = f"{end} in some reading ({len(cumulative)} lines)."
     if lost:
         end = f"Even from the start of its chain, these lines fail in every reading: {', '.join(lost)}."
     return Finding(heading="Which steps hold?", sentences=(text, end), table=tuple(table))
+
+
+def _equalities(records: Sequence[EntryRecord]) -> tuple[list[str], list[str]]:
+    """Lines printed with = that hold so in some reading but not in all, and in none."""
+    some: list[str] = []
+    none: list[str] = []
+    for label, group in _grouped([r for r in records if r["kind"] == EntryKind.AS_WRITTEN]).items():
+        refuted = sum(r["verdict"] == REFUTED for r in group)
+        if refuted:
+            (none if refuted == len(group) else some).append(label)
+    return some, none
+
+
+def _misprints(records: list[EntryRecord]) -> Finding:
+    """Places that are judged as meant, and what the ledger says of both where they are statements."""
+    verdicts = {r["label"]: r["verdict"] for r in records}
+    table = [("where", "printed", "meant", "as printed", "as meant")]
+    for one in MISPRINTS:
+        found = (verdicts.get(one.label, "-"), verdicts.get(one.repaired, "-"))
+        table.append((one.where, one.printed, one.meant, *found))
+    text = "Misprints are no failures: these places are judged by what they mean, and where that matters in both ways."
+    return Finding(heading="Misprints", sentences=(text,), table=tuple(table))
 
 
 def _readings(records: list[EntryRecord]) -> Finding:
@@ -99,6 +148,11 @@ def _readings(records: list[EntryRecord]) -> Finding:
         sentences.append(f"If A* is {who} worst attack, {steps}.")
     if all(fails.values()):
         sentences.append("So no single reading of A* makes every step hold.")
+    if any(r["label"] == LEFT_SIDE and r["verdict"] == REFUTED and _whose(r["reading"]) == OPTIMUM for r in records):
+        sentences.append(
+            "And with the optimum's worst attack the appendix speaks of RATT's value under that attack, Theorem 1 "
+            f"about RATT's own worst case: going from one to the other ({LEFT_SIDE}) is refuted."
+        )
     return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
 
 
@@ -161,7 +215,7 @@ def _all_proved(records: list[EntryRecord]) -> bool:
     return bool(records) and all(r["verdict"] == PROVED for r in records)
 
 
-def _grouped(records: list[EntryRecord]) -> dict[str, list[EntryRecord]]:
+def _grouped(records: Sequence[EntryRecord]) -> dict[str, list[EntryRecord]]:
     groups: dict[str, list[EntryRecord]] = {}
     for record in records:
         groups.setdefault(record["label"], []).append(record)

@@ -12,7 +12,7 @@ from ratt_opt.errors import ProofError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["defect_of", "definite", "largest_of_inverse", "total", "trace", "trace_of_inverse"]
+__all__ = ["defect_of", "definite", "largest_of_inverse", "output_trace", "total", "trace", "trace_of_inverse"]
 
 
 def total(terms: Iterable[Any]) -> Any:
@@ -27,7 +27,15 @@ def trace(a: fmpq_mat) -> Any:
 
 def trace_of_inverse(a: fmpq_mat) -> fmpq:
     """Return the trace of the inverse, rounded up to a multiple of ``2**-ctx.prec``: sums of those stay short."""
-    exact = trace(a) / a.det() if a.nrows() == 2 else trace(a.inv())
+    return _rounded_up(trace(a) / a.det() if a.nrows() == 2 else trace(a.inv()))
+
+
+def output_trace(c: fmpq_mat, a: fmpq_mat) -> fmpq:
+    """Return the trace of ``c a^{-1} c'``, rounded up likewise."""
+    return _rounded_up(trace(c * a.inv() * c.transpose()))
+
+
+def _rounded_up(exact: fmpq) -> fmpq:
     scale = fmpz(1) << ctx.prec
     return fmpq((exact * scale).ceil(), scale)
 

@@ -6,7 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
-from ratt_opt.certificates.verifier.exact_matrices import definite, largest_of_inverse, total, trace_of_inverse
+from ratt_opt.certificates.verifier.exact_matrices import (
+    definite,
+    largest_of_inverse,
+    output_trace,
+    total,
+    trace_of_inverse,
+)
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
 from ratt_opt.certificates.verifier.statement import PRECISIONS
 from ratt_opt.certificates.verifier.work import tick
@@ -152,6 +158,9 @@ class LowerCheck:
         pairs = list(zip(self.about.weights, posterior, strict=True))
         if self.about.objective == "maxeig":
             return self.about.prior_low - max(w * largest_of_inverse(m) for w, m in pairs)
+        if self.about.output is not None:
+            traces = zip(self.about.weights, self.about.output, posterior, strict=True)
+            return self.about.prior_trace - total(w * output_trace(c, m) for w, c, m in traces)
         if self.about.objective == "trace":
             return self.about.prior_trace - total(w * trace_of_inverse(m) for w, m in pairs)
         items = zip(self.about.weights, self.about.prior, posterior, strict=True)

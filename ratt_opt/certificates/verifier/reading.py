@@ -162,3 +162,11 @@ def packed(where: str, value: Any, d: int) -> fmpq_mat:
     flat = [exact(where, x) for x in array(where, value, d * (d + 1) // 2)]
     place = [(max(i, j), min(i, j)) for i in range(d) for j in range(d)]
     return fmpq_mat(d, d, [flat[i * (i + 1) // 2 + j] for i, j in place])
+
+
+def rows_of(where: str, value: Any, columns: int) -> fmpq_mat:
+    """Return a matrix of at least one row from its entries, row by row."""
+    flat = [exact(where, x) for x in array(where, value)]
+    if not flat or not columns or len(flat) % columns:
+        raise _refusal(where, f"must hold rows of {columns} numbers", f"{len(flat)} numbers")
+    return fmpq_mat(len(flat) // columns, columns, flat)

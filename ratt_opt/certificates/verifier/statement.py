@@ -8,7 +8,7 @@ from __future__ import annotations
 from flint import fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier.exact_matrices import defect_of, definite, total, trace
-from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed
+from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, rows_of
 from ratt_opt.certificates.verifier.work import hold, refuse_wide, tick
 
 __all__ = ["PRECISIONS", "Statement"]
@@ -22,6 +22,7 @@ LARGEST_TEAM = 1000
 class Statement:
     """One problem and plan, in exact numbers.
 
+    ``output`` : the part C (q, d) of each target's state whose trace counts, or ``None`` for the whole state.
     ``defect[e][j]`` : what has to be added to the eigenvalues of element ``e``'s information of target ``j`` to make it
     positive semidefinite. ``prior_low``, ``prior_high`` : bounds on ``max_j w_j lambda_max(prior_j)`` (max-eigenvalue).
 
@@ -32,14 +33,19 @@ class Statement:
     """
 
     def __init__(self, problem: object, plan: object, prior_range: object) -> None:
-        kind, d, prior, information, weights, owners, pairs, blinded, cut, *safe = fields("problem", problem, PROBLEM)
+        has_output = isinstance(problem, dict) and "output" in problem
+        given = fields("problem", problem, f"{PROBLEM} output" if has_output else PROBLEM)
+        output = given.pop() if has_output else None
+        kind, d, prior, information, weights, owners, pairs, blinded, cut, *safe = given
         need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
+        need(not has_output or kind == "trace", "problem: only the trace has an output")
         self.objective, self.d = kind, index("dimension", d, 101)
         self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(array("prior", prior))]
         m = len(self.prior)
         rows = [array(f"information[{e}]", row, m) for e, row in enumerate(array("information", information))]
         self.information = [[packed(f"information[{e}]", x, self.d) for x in row] for e, row in enumerate(rows)]
         self.weights = [exact("weights", w) for w in array("weights", weights, m)]
+        self.output = None if output is None else [rows_of("output", c, self.d) for c in array("output", output, m)]
         self._read_team(owners, pairs, (blinded, cut), safe)
         self.plan = tuple(index("plan", e, len(self.owner)) for e in array("plan", plan, self.n))
         need(
@@ -72,7 +78,9 @@ class Statement:
         """What the checks need; information must be semidefinite but for rounding."""
         self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
         self.inverse = [self._inverse(p) for p in self.prior]
-        self.prior_trace = total(w * trace(p) for w, p in zip(self.weights, self.prior, strict=True))
+        squares = [c.transpose() * c for c in self.output] if self.output else [self.identity] * len(self.prior)
+        parts = zip(self.weights, squares, self.prior, strict=True)
+        self.prior_trace = total(w * trace(square * p) for w, square, p in parts)
         self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
         self.prior_low, self.prior_high = self._check_prior_range(prior_range)
         # Stored information is positive semidefinite up to rounding: with its defect added, it is. So L(S) is

@@ -12,7 +12,18 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
-from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, walk
+from ratt_opt.certificates.verifier.reading import (
+    array,
+    exact,
+    fields,
+    index,
+    indices,
+    links,
+    need,
+    packed,
+    rows_of,
+    walk,
+)
 from ratt_opt.certificates.verifier.statement import PRECISIONS
 from ratt_opt.certificates.verifier.work import hold, tick
 from ratt_opt.errors import ProofError
@@ -171,6 +182,8 @@ class UpperCheck:
             blank = [fmpq(0)] * (d * d)
             constant = self.about.prior_high - 2 * self.about.weights[j] * t + trace(weight * self.about.inverse[j])
             return blank * j + weight.entries() + blank * (m - j - 1), constant
+        if self.about.output is not None:
+            return self._output_fenchel(point, self.about.output)
         row, constant = [], fmpq(0)
         packs = array("point", point, m)
         for given, w, prior, inverse in zip(
@@ -186,3 +199,17 @@ class UpperCheck:
             constant += trace(weight * inverse)
             row += weight.entries()
         return row, constant
+
+    def _output_fenchel(self, point: object, output: list[fmpq_mat]) -> tuple[list[fmpq], Any]:
+        """The same for the trace of ``C L^{-1} C'``, with Y (d, q).
+
+        ``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)``, from ``(L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0``; W = w Y Y'.
+        """
+        row, constant = [], fmpq(0)
+        parts = zip(array("point", point, len(output)), output, self.about.weights, self.about.inverse, strict=True)
+        for given, c, w, inverse in parts:
+            y = rows_of("point Y", array("point Y", given, c.nrows() * c.ncols()), c.nrows())
+            weight = y * y.transpose() * w
+            constant += trace(weight * inverse) - 2 * w * trace(c * y)
+            row += weight.entries()
+        return row, constant + self.about.prior_trace

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ratt_opt._rounding import gap_text, up
+
 __all__ = ["Verified"]
 
 
@@ -43,7 +45,7 @@ class Verified:
         """Say in plain text what was proved, for which data, with which arithmetic, and what was not."""
         proved = f"proved in {self.arithmetic}"
         lower = f"this plan keeps at least {self.lower!r} under every attack"
-        gap = f"the plan is within {self.gap:.3g} (relative) of the best possible worst case"
+        gap = f"the plan is within {gap_text(self.lower, self.upper, 3)} (relative) of the best possible worst case"
         return [
             f"problem: {self.objective}, {self.n_robots} robots, {self.n_elements} elements, {self.n_targets} targets, "
             f"alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}; SHA-256 of its data {self.problem_hash}",
@@ -53,6 +55,6 @@ class Verified:
             if self.lower_proved
             else f"NOT proved: {lower} (outcomes enumerated in floating point)",
             f"{'proved' if self.lower_proved else 'NOT proved'}: {gap}",
-            f"information: positive semidefinite up to {self.largest_defect:.3g}, which the proofs account for",
+            f"information: positive semidefinite up to {up(self.largest_defect, 3)}, which the proofs account for",
             "not covered: whether the data describe the real robots, targets and sensors",
         ]

@@ -6,13 +6,14 @@ from html import escape
 from importlib import resources
 from typing import TYPE_CHECKING
 
+from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt.report.bars import bar_ends
 from ratt_opt.report.notebook import html_table
 from ratt_opt.report.page.map_drawing import legend_html, map_svg
 from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
-from ratt_opt.report.tables import bracket_text, share_text, verdict_text
+from ratt_opt.report.tables import guarantee_text, share_text, verdict_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["report_page"]
 
+GUARANTEE_COLUMNS = ("guarantee", "share", "needs", "proved at")
 VIEW_TITLES = {
     "worst": "worst attack",
     "next worst": "next worst: spares a part of the worst attack",
@@ -49,11 +51,12 @@ def _sections(report: BoundReport) -> Iterator[str]:
     plan = report.recommended
     unit = f" {report.unit}" if report.unit else ""
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
+    share = share_text(plan.worst_case.lower, report.upper)
     yield (
         f"<p>This plan keeps <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}) under the worst "
         f"attack that blinds at most {report.problem.alpha_s} robots and cuts at most {report.problem.alpha_c} links: "
-        f"of what any plan could keep that is {escape(share_text(report.share(plan)))}, and no plan keeps more than "
-        f"{report.upper:.10g}.</p>"
+        f"of what any plan could keep that is {escape(share)}, and no plan keeps more than "
+        f"{up(report.upper, 10)}.</p>"
     )
     yield from _map_section(report)
     yield from _planner_section(report)
@@ -90,7 +93,7 @@ def _caption(name: str, view: PlanAssessment) -> str:
     attack = view.worst_case.attack
     blinded = " ".join(map(str, sorted(attack.sensing))) or "none"
     cut = " ".join(f"{i}-{j}" for i, j in sorted(attack.links)) or "none"
-    left = f"value left {view.worst_case.upper:.10g}"
+    left = f"value left {up(view.worst_case.upper, 10)}"
     return f"{VIEW_TITLES[name]}: {left}; blinded robots: {blinded}; cut links: {cut}"
 
 
@@ -112,7 +115,7 @@ def _planner_section(report: BoundReport) -> Iterator[str]:
         )
         yield (
             f'<tr><th scope="row">{escape(plan.name + mark)}</th><td data-lower="{low!r}" data-upper="{high!r}">'
-            f"{bracket_text(low, high)}</td><td>{escape(share_text(report.share(plan)))}</td><td>{bar}</td></tr>"
+            f"{bracket_text(low, high)}</td><td>{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
         )
     yield "</tbody></table></div></section>"
 
@@ -125,9 +128,11 @@ def _trust_section(report: BoundReport) -> Iterator[str]:
         yield "<code>ratt-opt verify certificate.json</code>."
     optimum = bracket_text(report.optimum.lower, report.upper)
     yield f"</p><p>Best possible: {optimum}; the search for it stopped because: {report.optimum.stop.value}.</p>"
-    rows = [(name, f"{float(g):.6g}", "; ".join(g.hypotheses)) for name, g in report.guarantees.items()]
-    rows += [(name, "none", f"does not apply: {why}") for name, why in report.inapplicable.items()]
-    yield f'<div class="wide">{html_table("Guaranteed before planning", ("guarantee", "share", "needs"), rows)}</div>'
+    rows = [(name, down(float(g), 6), "; ".join(g.hypotheses), g.proof) for name, g in report.guarantees.items()]
+    rows += [(name, "none", f"does not apply: {why}", "") for name, why in report.inapplicable.items()]
+    if said := guarantee_text(report):
+        yield f"<p>Guarantees: {escape(said)}.</p>"
+    yield f'<div class="wide">{html_table("Guaranteed before planning", GUARANTEE_COLUMNS, rows)}</div>'
     yield "</section>"
 
 

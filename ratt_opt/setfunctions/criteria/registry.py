@@ -7,17 +7,20 @@ from typing import TYPE_CHECKING
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective, TraceObjective
 
 if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["CRITERIA", "criterion_called"]
+__all__ = ["CERTIFIED", "CRITERIA", "criterion_called"]
 
 CRITERIA: dict[str, type[InformationObjective]] = {
     criterion.name: criterion for criterion in (TraceObjective, LogDetObjective, MaxEigenvalueObjective)
 }
 """A new criterion is a file beside these and a name in this line."""
+
+CERTIFIED: tuple[type[InformationObjective], ...] = (*CRITERIA.values(), OutputTraceObjective)
+"""Criteria whose tangents the verifier knows; subclasses of them may have another formula."""
 
 
 def criterion_called(name: str) -> type[InformationObjective]:

@@ -12,24 +12,33 @@ into its parts of each sign.
 
 An inexact ``P0``, ``Y`` or ``w`` costs strength, never validity.
 
-**Its largest marginals.** ``m`` is convex in ``P``, hence largest at an extreme point of ``0 <= P <= P0``: at ``P0``
-(no context), or at a rank-one ``P = w w'`` with ``w' P0^{-1} w = 1``, where it is ``|w|^2 q / (1 + q)`` with
-``q = w' I w``, at most ``lambda_max(P0) q_max / (1 + q_max)``, ``q_max = lambda_max(P0^{1/2} I P0^{1/2})``. An
+**With an output matrix** ``C`` (``W = C'C``) the criterion is ``tr(C L^{-1} C') = tr(W L^{-1})``. The parallel sum is
+concave as a matrix, so ``m`` stays convex in ``P``, with ``G = W - (1 + X P0)^{-1} W (1 + P0 X)^{-1}``; and
+``(L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0`` gives ``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for any ``Y`` (d, q).
+
+**Its largest marginals.** ``m`` is convex in ``P``, hence largest at an extreme point ``P0^{1/2} V V' P0^{1/2}`` of
+``0 <= P <= P0``, ``V`` with orthonormal columns: at ``P0`` (no context), or at one of lower rank ``k``, where it is
+``tr(B'B S (1 + S)^{-1})`` with ``B = P0^{1/2} V`` and ``S = B' I B``, at most ``lambda_max(P0)`` times the sum of
+``q / (1 + q)`` over the ``d - 1`` largest eigenvalues ``q`` of ``P0^{1/2} I P0^{1/2}`` (Poincare separation). An
 isotropic prior makes the first the larger.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from ratt_opt._validation import check_finite, readonly
+from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criteria.two_by_two import trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
@@ -45,13 +54,33 @@ MARGIN = 1e-11
 
 
 class TraceObjective(InformationObjective):
-    """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2]."""
+    """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2].
+
+    ``output`` : the part of the state that counts, (q, d) or (M, q, d) of full row rank, or ``None`` for all of it:
+    ``sum_j w_j [tr(C_j prior_j C_j') - tr(C_j Lambda_j(S)^{-1} C_j')]``.
+    """
 
     __slots__ = ()
 
     name: ClassVar[str] = "trace"
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 0
+
+    def __new__(cls, *_: Any, output: ArrayLike | None = None, **__: Any) -> Self:
+        """The criterion of a part of the state is one of its own, without the planar formulas."""
+        made: Self = object.__new__(OutputTraceObjective if output is not None and cls is TraceObjective else cls)  # type: ignore[assignment]
+        return made
+
+    def __init__(
+        self,
+        prior: ArrayLike,
+        information: ArrayLike,
+        weights: ArrayLike | None = None,
+        *,
+        output: ArrayLike | None = None,
+    ) -> None:
+        assert output is None, "a criterion with an output matrix is an OutputTraceObjective"
+        super().__init__(prior, information, weights)
 
     @property
     def prior_criterion(self) -> float:
@@ -99,21 +128,30 @@ class TraceObjective(InformationObjective):
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points."""
+        return self._ends(np.asarray(np.linalg.eigvalsh(self.prior)[:, -1], dtype=np.float64))
+
+    def _ends(self, largest: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The same, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
         values, vectors = np.linalg.eigh(self.prior)
         root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
-        q = np.linalg.eigvalsh(root @ self.information @ root)[..., -1]
-        rank_one = self.weights * values[:, -1] * q / (1 + q)
+        q = np.linalg.eigvalsh(root @ self.information @ root)[..., 1:].clip(0.0)
+        lower_rank = self.weights * largest * (q / (1 + q)).sum(axis=-1)
         alone = self.criterion(self.prior_information) - self.criterion(self.prior_information + self.information)
-        return np.zeros(self.n), np.asarray(np.maximum(alone, rank_one).sum(axis=-1) * (1 + MARGIN))
+        return np.zeros(self.n), np.asarray(np.maximum(alone, lower_rank).sum(axis=-1) * (1 + MARGIN))
+
+    @property
+    def output_square(self) -> FloatArray:
+        """(M, d, d) ``W = C'C``; the identity where the whole state counts."""
+        return np.broadcast_to(np.eye(self.dimension), self.prior.shape)
 
     def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
         """The tangent in ``P`` at the relaxed context, its rising part made linear, its falling part by owners."""
         posterior = self.prior_information + others.mixed(share)
         covariance, after = symmetric_inverse(posterior), symmetric_inverse(posterior + added)
-        # (1 + P X)^{-1} = (L + X)^{-1} L, hence G = 1 - L B B L with B = (L + X)^{-1}.
+        # (1 + P X)^{-1} = (L + X)^{-1} L, hence G = W - L B W B L with B = (L + X)^{-1}.
         shrunk = after @ posterior
-        slope = np.eye(self.dimension) - np.swapaxes(shrunk, -1, -2) @ shrunk
-        value = np.trace(covariance - after, axis1=-2, axis2=-1)
+        slope = self.output_square - np.swapaxes(shrunk, -1, -2) @ self.output_square @ shrunk
+        value = _pairs(self.output_square, covariance - after)
         gains, axes = np.linalg.eigh(slope)
         rising = (axes * np.clip(gains, 0.0, None)[:, None, :]) @ np.swapaxes(axes, -1, -2)
         falling = np.clip(-gains, 0.0, None) * self.weights[:, None]
@@ -148,6 +186,99 @@ class TraceObjective(InformationObjective):
         kept = np.where(others.regular, np.minimum(own, reserve[others.owners]), reserve[others.owners]).sum(axis=-1)
         constant = float(np.einsum("mak,mab,mbk,mk->", rest, self.prior, rest, strength)) / PRIOR_SHARE
         return SeparableMinorant(constant, kept, reserve.sum(axis=-1))
+
+
+class OutputTraceObjective(TraceObjective):
+    """The trace of a part of the state; made by ``TraceObjective(..., output=C)``.
+
+    Raises
+    ------
+    InputError : ``output`` has another shape, or its rows depend on each other.
+    """
+
+    __slots__ = ("_square", "output")
+
+    name: ClassVar[str] = "trace"
+    unit: ClassVar[str] = "m²"
+    marginal_minorant = TraceObjective.marginal_minorant
+
+    def __init__(
+        self,
+        prior: ArrayLike,
+        information: ArrayLike,
+        weights: ArrayLike | None = None,
+        *,
+        output: ArrayLike | None = None,
+    ) -> None:
+        self.output: FloatArray = readonly(_check_output(output, prior))
+        self._square: FloatArray = readonly(np.swapaxes(self.output, -1, -2) @ self.output)
+        super().__init__(prior, information, weights)
+
+    @property
+    def output_square(self) -> FloatArray:
+        """(M, d, d) ``W = C'C``."""
+        return self._square
+
+    @property
+    def prior_criterion(self) -> float:
+        """``sum_j w_j tr(C_j prior_j C_j')``."""
+        return float(self._baseline.sum())
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """(..., M) weighted traces of the outputs' covariances."""
+        covariance = np.linalg.inv(posterior_information)
+        return np.asarray(self.weights * np.einsum("mij,...mij->...m", self._square, covariance))
+
+    def gradient(self, posterior_information: FloatArray) -> FloatArray:
+        """``w_j Lambda_j^{-1} W_j Lambda_j^{-1}``: (..., M, d, d)."""
+        covariance = symmetric_inverse(posterior_information)
+        return np.asarray(self.weights[:, None, None] * (covariance @ self._square @ covariance))
+
+    def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
+        """``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for *any* ``Y``: an inexact inverse costs strength only."""
+        y = self._fenchel(point)
+        slope = self.weights[:, None, None] * (y @ np.swapaxes(y, -1, -2))
+        value = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, y)
+        return Tangent(slope, float((self._baseline - value).sum()))
+
+    def conic_value(self, posterior: Sequence[Any]) -> Any:
+        """``sum_j w_j [tr(C prior_j C') - sum_q c_q' L_j^{-1} c_q]`` in cvxpy."""
+        import cvxpy as cp
+
+        parts = zip(self.weights, self.output, posterior, strict=True)
+        return self._baseline.sum() - sum(w * sum(cp.matrix_frac(row, L) for row in C) for w, C, L in parts)
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
+        """``Y = L^{-1} C'`` of every target, row by row."""
+        rows: list[Any] = self._fenchel(point).reshape(len(point), -1).tolist()
+        return rows
+
+    def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
+        """0, and the larger of both kinds of extreme points, with ``lambda_max(C P0 C')`` for those of lower rank."""
+        outputs = self.output @ self.prior @ np.swapaxes(self.output, -1, -2)
+        return self._ends(np.asarray(np.linalg.eigvalsh(outputs)[:, -1], dtype=np.float64))
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The output matrices, row by row."""
+        return {"output": self.output.reshape(self.n_targets, -1).tolist()}
+
+    def _fenchel(self, point: FloatArray) -> FloatArray:
+        """(M, d, q) ``L^{-1} C'``."""
+        return np.asarray(symmetric_inverse(point) @ np.swapaxes(self.output, -1, -2))
+
+
+def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
+    """(M, q, d) matrices of full row rank."""
+    targets, d = check_finite("prior", prior, ndim=3).shape[:2]
+    matrices = given = check_finite("output", output)
+    if matrices.ndim == 2:
+        matrices = np.broadcast_to(matrices, (targets, *matrices.shape))
+    if matrices.ndim != 3 or matrices.shape[0] != targets or matrices.shape[2] != d or not 1 <= matrices.shape[1] <= d:
+        raise InputError("output", f"must have shape (q, {d}) or ({targets}, q, {d}), 1 <= q <= {d}", given.shape)
+    if (np.linalg.matrix_rank(matrices) < matrices.shape[1]).any():
+        raise InputError("output", "must have independent rows", given.shape)
+    return matrices
 
 
 def _pairs(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -13,9 +13,10 @@ from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack, Plan
+from ratt_opt.problem import Attack
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.any_function import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
@@ -23,7 +24,7 @@ from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
-from ratt_opt.solvers.result import MaxMinResult
+from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def solve_maxmin(
     max_nodes: int | None = None,
     progress: Progress = None,
     alpha_cs: int | None = None,
+    max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
@@ -55,7 +57,7 @@ def solve_maxmin(
     Relies on a non-decreasing objective (not checked). For the information criteria: outer approximation
     and branch and bound. Every bound is derived from the problem's matrices by the leaf
     formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only the multipliers are used. Other set
-    functions are enumerated where that is possible.
+    functions are enumerated where that is possible, and bracketed where it is not (``solvers/any_function.py``).
 
     Parameters
     ----------
@@ -64,19 +66,20 @@ def solve_maxmin(
     max_nodes : search nodes; with it (and no time limit) the result is reproducible
     progress : called as ``progress(nodes, lower, upper)``
     alpha_cs : sensing attacks that the link attacks are worth, where RATT was asked before
+    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
-    InputError : a limit is negative, or the set function is not an information criterion and has too many plans.
+    InputError : a limit is negative, or the objective is no information criterion and falls where it was looked at.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    budget = Budget.inside(budget, time_limit, max_nodes)
+    budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
-        return exhaustive_optimum(problem, budget=budget)
-    first = ratt(problem, alpha_cs=alpha_cs).elements
+        return search_any(problem, budget, gap)
+    first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
     search: BranchAndBound | None = None
@@ -84,7 +87,7 @@ def solve_maxmin(
         _list_outcomes(problem, pool)
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
-        plans = [first, *(planner(problem).elements for planner in (greedy, myopic))]
+        plans = [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
         incumbent.start(plans if pairs is None else [*plans, pairs.values.strongest_plan()])
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
@@ -158,21 +161,34 @@ def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = N
         raise InputError("max_nodes", "must be at least 1", max_nodes)
 
 
-FEW_PLANS = 300_000
-"""So few plans are evaluated one and all."""
+FEW_PLANS, ENUMERATION_SHARE = 300_000, 0.5
+"""So few plans are evaluated one and all, if that ends in this share of the seconds left."""
 
 
-def nonrobust_optimum(problem: Problem) -> Plan:
-    """Best plan when nobody attacks, to 1e-9 relative.
+def nonrobust_optimum(
+    problem: Problem,
+    *,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
+) -> NonrobustPlan:
+    """Best plan when nobody attacks, to 1e-9 relative; the best found, with its bracket, where a limit ends the search.
 
-    Raises
-    ------
-    InputError : more than 5 million plans of a set function that is no information criterion.
+    Parameters
+    ----------
+    time_limit, max_evaluations, budget : as for :func:`solve_maxmin`
 
     Source: the algorithm NR-OPT of ratt.tex, Section VI.
     """
-    result = nonrobust_search(problem)
-    return Plan(elements=result.elements, evaluations=result.evaluations)
+    own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
+    result = nonrobust_search(problem, budget=own)
+    return NonrobustPlan(
+        elements=result.elements,
+        evaluations=result.evaluations,
+        lower=result.lower,
+        upper=result.upper,
+        stop=result.stop,
+    )
 
 
 def nonrobust_search(
@@ -182,11 +198,13 @@ def nonrobust_search(
 
     ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
     ``budget`` : an outer search's budget: its seconds and interrupts count too
-
-    Raises ``InputError`` : more than 5 million plans of a set function that is no information criterion.
     """
     unattacked = replace(problem, alpha_s=0, alpha_c=0)
-    few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
-    if few or not isinstance(problem.objective, InformationObjective):
-        return exhaustive_optimum(unattacked, budget=Budget.inside(budget, time_limit))
-    return solve_maxmin(unattacked, time_limit=time_limit, budget=budget)
+    own = Budget.inside(budget, time_limit)
+    with np.errstate(over="ignore"):
+        few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
+    if few and isinstance(problem.objective, InformationObjective):
+        found = exhaustive_optimum(unattacked, budget=own.part(ENUMERATION_SHARE))
+        if found.stop is Stop.EXHAUSTED:
+            return found
+    return solve_maxmin(unattacked, budget=own)

@@ -163,6 +163,8 @@ class Incumbent:
         """Improve the most promising of some plans, beat all of them, and attack the best one briefly."""
         # What is known at once of the first plan: whatever interrupts the rest, the bracket is not empty.
         self.proved.attack(plans[0], self.budget.part(max_nodes=0))
+        if self.budget.is_over:
+            return
         for plan in plans:
             self.adversary.learn(plan)
         self.improve(max(plans, key=self.pool.plan_value))

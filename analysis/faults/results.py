@@ -1,0 +1,43 @@
+"""What must hold of a folder of results, whatever became of the run that wrote into it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import ratt_opt as ro
+from ratt_opt._files import MIXED
+from ratt_opt.report.write import FILES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from analysis.faults.campaign import Campaign
+
+__all__ = ["check_results", "earlier_results"]
+
+
+def earlier_results(campaign: Campaign, place: Path) -> Path:
+    """Make a folder with the results of an earlier run about another scenario."""
+    for name in (*FILES, "certificate.json"):
+        campaign.put(place, f"results/{name}")
+    return place / "results"
+
+
+def check_results(campaign: Campaign, folder: Path) -> None:
+    """Whole files: all of the earlier run, all of the later one, or a mark that says that they may be mixed.
+
+    A certificate belongs to the report beside it unless that says that it has none.
+    """
+    now = {file.name: file.read_bytes() for file in folder.iterdir() if not file.name.startswith(".")}
+    if MIXED not in now:
+        earlier = [now.get(name) == campaign.files[f"results/{name}"] for name in FILES]
+        assert all(earlier) or not any(earlier), f"files of two runs without a mark: {earlier}"
+    report = json.loads(now["report.json"])
+    assert now["report.html"].endswith(b"</html>\n"), "half a page"
+    assert now["plan.png"].endswith(b"IEND\xaeB`\x82"), "half a picture"
+    assert now["plan.svg"].endswith(b"</svg>\n"), "half a drawing"
+    if "certificate.json" in now:
+        proof = ro.verify_certificate(folder / "certificate.json")
+        claim = report["certificate"].get("claim")
+        assert claim in (None, {"lower": proof.lower, "upper": proof.upper}), "a report with another one's certificate"

@@ -1,0 +1,77 @@
+"""``ratt-check``, the checker extracted from its Coq proof, run as a program of its own (``formal/README.md``)."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from ratt_opt.errors import FileFormatError, InputError, ProofError, UndecidedError
+
+__all__ = ["ExtractedVerdict", "check_extracted", "find_checker"]
+
+NAME, VARIABLE = "ratt-check", "RATT_CHECK"
+PROVED, REFUSED, UNREADABLE, UPPER_ONLY = 0, 1, 2, 3
+"""Exit codes of the program."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExtractedVerdict:
+    """What the program accepted; ``text`` is its own line. ``lower_proved``: both ends, not the upper alone."""
+
+    program: str
+    lower_proved: bool
+    text: str
+
+
+def find_checker() -> str:
+    """The program's path: what ``RATT_CHECK`` names, else the one on the search path.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    named = os.environ.get(VARIABLE)
+    found = shutil.which(named or NAME)
+    if found is None:
+        rule = f"must be on the search path or named by {VARIABLE} (make -C formal ratt-check builds it)"
+        raise InputError(NAME, rule, named or "neither")
+    return found
+
+
+def check_extracted(
+    path: str | Path, *, program: str | None = None, time_limit: float | None = None
+) -> ExtractedVerdict:
+    """Run the program on one certificate.
+
+    Parameters
+    ----------
+    program : its path; looked for where ``None``
+    time_limit : seconds; no limit where ``None``
+
+    Raises
+    ------
+    ProofError : it refuses the certificate.
+    FileFormatError : it reads no such certificate (log-det, for one, which its proof does not cover).
+    UndecidedError : it did not end within the time limit.
+    InputError : there is no such program, or what runs is another one.
+    """
+    found = program or find_checker()
+    command = [found, str(Path(path).absolute())]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=time_limit)
+    except subprocess.TimeoutExpired:
+        raise UndecidedError(f"{NAME}: not decided within {time_limit:g} s") from None
+    except OSError as error:
+        raise InputError(NAME, "must be a program that runs", f"{found}: {error.strerror}") from None
+    code, _, line = done.stdout.partition(" ")
+    if code != str(done.returncode) or done.returncode not in (PROVED, REFUSED, UNREADABLE, UPPER_ONLY):
+        raise InputError(NAME, "must answer as it is written to", f"{found}: {done.stdout or done.stderr}")
+    text = line.removeprefix(f"{command[1]}: ").strip()
+    if done.returncode == REFUSED:
+        raise ProofError(f"{NAME}: {text}")
+    if done.returncode == UNREADABLE:
+        raise FileFormatError(str(path), f"must be a certificate that {NAME} reads", text)
+    return ExtractedVerdict(program=found, lower_proved=done.returncode == PROVED, text=text)

@@ -1,0 +1,71 @@
+"""Interrupts (Ctrl-C) that are never lost and never a traceback. Light: it is imported before anything else."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+__all__ = ["Interrupts", "ignore_interrupts"]
+
+AGAIN_AFTER = 0.01
+"""Seconds until a dropped interrupt comes again: the destructor or callback that dropped it has ended by then."""
+
+
+class Interrupts:
+    """Raises ``KeyboardInterrupt`` as Python does, and remembers that it did; ``happened`` : whether there was one.
+
+    One that Python drops, because it came inside a destructor or callback, comes again after it. What an
+    interrupt leaves half done may fail when it is collected; that says nothing and is not shown.
+    """
+
+    def __init__(self) -> None:
+        self.happened = False
+        self._before: Any = None
+        self._hook: Any = None
+        self._again: threading.Timer | None = None
+
+    def __enter__(self) -> Self:
+        main_thread = threading.current_thread() is threading.main_thread()
+        if main_thread and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            self._before = signal.signal(signal.SIGINT, self._interrupt)
+        self._hook, sys.unraisablehook = sys.unraisablehook, self._dropped
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._again is not None:
+            self._again.cancel()
+        sys.unraisablehook = self._hook
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        self.happened = True
+        signal.default_int_handler(number, frame)
+
+    def _dropped(self, what: Any) -> None:
+        if issubclass(what.exc_type, KeyboardInterrupt):
+            self.happened = True
+            # Raised from here it would be dropped again.
+            self._again = threading.Timer(AGAIN_AFTER, _interrupt_main)
+            self._again.daemon = True
+            self._again.start()
+        elif not self.happened:
+            self._hook(what)
+
+
+def _interrupt_main() -> None:
+    """Send the main thread an interrupt that also ends its waiting, unless the process would end by it."""
+    main = threading.main_thread().ident
+    if callable(signal.getsignal(signal.SIGINT)) and main is not None:
+        send = getattr(signal, "pthread_kill", lambda _, number: signal.raise_signal(number))
+        send(main, signal.SIGINT)
+
+
+def ignore_interrupts() -> None:
+    """From now on an interrupt does nothing: the program is ending, and has said all it has to say."""
+    signal.signal(signal.SIGINT, lambda *_: None)

@@ -1,0 +1,55 @@
+"""Who attacks: nobody, the exact worst case, heuristics, or the user's own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.heuristics.greedy import greedy_attack
+from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.errors import InputError
+from ratt_opt.problem import Attack
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.problem import Problem
+
+    Attacker = Callable[[Problem, IntArray, int], Attack | AttackResult]
+    OwnAttacker = Callable[[Problem, IntArray], Attack | AttackResult]
+
+__all__ = ["ATTACKERS", "attack_of", "attacker_called"]
+
+ATTACKERS: dict[str, Attacker] = {
+    "none": lambda _problem, _plan, _seed: Attack(),
+    "worst": lambda problem, plan, _seed: worst_case_attack(problem, plan),
+    "bounded rational": lambda problem, plan, _seed: bounded_rational_attack(problem, plan),
+    "greedy": lambda problem, plan, _seed: greedy_attack(problem, plan),
+    "random": lambda problem, plan, seed: random_attack(problem, plan, seed=seed),
+}
+"""Called with the problem, the plan and a seed of the step."""
+
+
+def attacker_called(attacker: str | OwnAttacker) -> Attacker:
+    """The attacker of that name, or the given one, called with problem and plan.
+
+    InputError : there is none of that name, or it cannot be called.
+    """
+    if isinstance(attacker, str):
+        if attacker not in ATTACKERS:
+            raise InputError("attacker", f"must be {', '.join(ATTACKERS)} or a callable", attacker)
+        return ATTACKERS[attacker]
+    if not callable(attacker):
+        raise InputError("attacker", f"must be {', '.join(ATTACKERS)} or a callable", attacker)
+    return lambda problem, plan, _seed: attacker(problem, plan)
+
+
+def attack_of(found: Attack | AttackResult, problem: Problem) -> Attack:
+    """An attacker's attack, checked. InputError : it is none, or exceeds the budgets."""
+    attack = found if isinstance(found, Attack) else getattr(found, "attack", None)
+    if not isinstance(attack, Attack):
+        raise InputError("attacker", "must return an Attack", type(found).__name__)
+    return problem.check_attack(attack)

@@ -1,0 +1,124 @@
+"""What survives a kill: one line a step with its decisions, from which a mission is replayed and goes on.
+
+Everything else in a mission follows from its arguments and the seed, so that a replay is the mission, to the bit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt._files import output_file
+from ratt_opt._validation import IntArray, readonly
+from ratt_opt.errors import FileFormatError, InputError
+from ratt_opt.problem import Attack
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["Journal"]
+
+
+@dataclass(slots=True)
+class Journal:
+    """The decisions recorded so far; ``path`` is ``None`` where none are kept."""
+
+    path: Path | None
+    lines: list[tuple[IntArray, Attack]] = field(default_factory=list)
+
+    @classmethod
+    def open(cls, path: str | Path | None, scenario: Scenario, settings: Mapping[str, str]) -> Journal:
+        """Read what a file holds of this mission, or begin it.
+
+        A line that a kill cut short is dropped.
+
+        Raises
+        ------
+        FileFormatError : the file is no journal.
+        InputError : it is another mission's, or cannot be written.
+        """
+        if path is None:
+            return cls(None)
+        file = output_file(path)
+        text = json.dumps([scenario.model_dump(mode="json"), dict(settings)], sort_keys=True)
+        head = {
+            "format": "ratt-opt mission journal",
+            "version": 1,
+            "mission": hashlib.sha256(text.encode()).hexdigest(),
+        }
+        journal = cls(file)
+        whole = _whole_lines(file)
+        if not whole:
+            _write(file, "w", head)
+            return journal
+        first, *rest = [_parsed(file, number, line) for number, line in enumerate(whole, start=1)]
+        if first.get("format") != head["format"]:
+            raise FileFormatError(f"{file} line 1", "must be a mission's journal", first.get("format"))
+        if first != head:
+            raise InputError("journal", "must be of the same mission (scenario, seed and all settings)", file)
+        journal.lines = [_decision(file, number, line) for number, line in enumerate(rest)]
+        # Anything after the last whole line goes: the next step is written there.
+        file.write_text("".join(line + "\n" for line in whole), encoding="utf-8")
+        return journal
+
+    def recorded(self, step: int) -> tuple[IntArray, Attack] | None:
+        """The decisions of a step, where they are known."""
+        return self.lines[step] if step < len(self.lines) else None
+
+    def append(self, step: int, elements: IntArray, attack: Attack) -> None:
+        """Keep the decisions of the next step."""
+        if self.path is not None:
+            links = [list(link) for link in sorted(attack.links)]
+            line = {"step": step, "elements": elements.tolist(), "sensing": sorted(attack.sensing), "links": links}
+            _write(self.path, "a", line)
+
+
+def _whole_lines(file: Path) -> list[str]:
+    if not file.exists():
+        return []
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileFormatError(str(file), "must be a mission's journal", type(error).__name__) from None
+    return text.split("\n")[:-1]
+
+
+def _write(file: Path, mode: str, record: Mapping[str, Any]) -> None:
+    try:
+        with file.open(mode, encoding="utf-8") as stream:
+            stream.write(json.dumps(record) + "\n")
+            stream.flush()
+            os.fsync(stream.fileno())
+    except OSError as error:
+        raise InputError("journal", "must be a file that can be written", f"{file} ({error.strerror})") from None
+
+
+def _parsed(file: Path, number: int, line: str) -> dict[str, Any]:
+    try:
+        record = json.loads(line)
+    except ValueError:
+        record = None
+    if not isinstance(record, dict):
+        raise FileFormatError(f"{file} line {number}", "must be a JSON object", line)
+    return record
+
+
+def _decision(file: Path, step: int, record: dict[str, Any]) -> tuple[IntArray, Attack]:
+    where = f"{file} line {step + 2}"
+    try:
+        if record["step"] != step:
+            raise FileFormatError(where, f"must be step {step}", record["step"])
+        links = frozenset((int(i), int(j)) for i, j in record["links"])
+        return readonly(np.array(record["elements"], dtype=np.int64)), Attack(frozenset(record["sensing"]), links)
+    except (KeyError, TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise FileFormatError(where, "must hold step, elements, sensing and links", sorted(record)) from None

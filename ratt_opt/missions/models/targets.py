@@ -1,0 +1,258 @@
+"""How targets move: a known velocity (the paper's), a constant velocity or a coordinated turn that is estimated too."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, readonly
+from ratt_opt._values import ByValue
+from ratt_opt.errors import InputError
+from ratt_opt.missions.belief import Belief
+from ratt_opt.scenario.motion import predict_targets
+
+if TYPE_CHECKING:
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["TARGET_MOTIONS", "ConstantVelocity", "CoordinatedTurn", "KnownVelocity", "TargetMotion", "target_motion"]
+
+VELOCITY_STD = 1.0
+"""Standard deviation per axis of what is believed of a target's velocity at first [m/s]; a scenario does not say."""
+TURN_STD = 0.05
+"""The same of its turn rate [rad/s]: half the largest of the paper's."""
+TURN_NOISE = 0.01
+"""Standard deviation by which a turn rate drifts in one second [rad/s]."""
+STRAIGHT = 1e-4
+"""Angles turned in a step [rad] below this use the series of the coordinated turn, whose error is then below 1e-13."""
+
+
+class TargetMotion(ABC):
+    """All targets' motion over one period; states (..., M, d) begin with the position x, y [m].
+
+    A motion of your own subclasses this. ``time`` is that of the state given [s], 0 at the mission's start.
+    """
+
+    dimension: ClassVar[int]
+
+    @abstractmethod
+    def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
+        """(..., M, d) states one period later, without noise."""
+
+    @abstractmethod
+    def transition(self, states: FloatArray, period: float) -> FloatArray:
+        """(..., M, d, d) derivative of :meth:`predict` by the state."""
+
+    @abstractmethod
+    def noise(self, period: float) -> FloatArray:
+        """(M, d, d) covariance of the motion noise of one period, symmetric positive semidefinite."""
+
+    @abstractmethod
+    def initial(self, scenario: Scenario) -> Belief:
+        """What a scenario believes of its targets, as states."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class KnownVelocity(ByValue, TargetMotion):
+    """The paper's targets: the position is the state, speed and turning are known.
+
+    ``motions`` : (M, 3) speed [m/s], turn rate [rad/s], heading at time 0 [rad]; ``process_std`` : (M,) standard
+    deviation per axis of the noise of one ``sampling_period`` [m], [s]. The heading advances with the turn rate, so
+    that a target circles; the first period is the one of :attr:`Scenario.predicted_targets`.
+    """
+
+    motions: FloatArray
+    process_std: FloatArray
+    sampling_period: float = 1.0
+    dimension: ClassVar[int] = 2
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> KnownVelocity:
+        """The scenario's targets."""
+        targets = scenario.targets
+        motions = np.array([(target.speed, target.turn_rate, target.heading) for target in targets])
+        return cls(readonly(motions), _process_std(scenario), scenario.sampling_period)
+
+    def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
+        """(..., M, 2) positions one period later."""
+        turned = self.motions + time * self.motions[:, 1:2] * np.array([0.0, 0.0, 1.0])
+        return predict_targets(states, turned, period)
+
+    def transition(self, states: FloatArray, period: float) -> FloatArray:  # noqa: ARG002  (known motion)
+        """Identities: the step does not depend on where a target is."""
+        return np.broadcast_to(np.eye(2), (*states.shape, 2))
+
+    def noise(self, period: float) -> FloatArray:
+        """(M, 2, 2) isotropic, in proportion to the time."""
+        return np.asarray((self.process_std**2)[:, None, None] * np.eye(2) * (period / self.sampling_period))
+
+    def initial(self, scenario: Scenario) -> Belief:
+        """The scenario's estimates."""
+        return _positions(scenario)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ConstantVelocity(ByValue, TargetMotion):
+    """States x, y [m], velocity [m/s]; white acceleration.
+
+    ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in a ``sampling_period`` [m].
+    ``velocity_std`` : of what is believed of the velocity at first [m/s].
+
+    Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.2.
+    """
+
+    process_std: FloatArray
+    sampling_period: float = 1.0
+    velocity_std: float = VELOCITY_STD
+    dimension: ClassVar[int] = 4
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> ConstantVelocity:
+        """The scenario's targets, their velocity now to be estimated."""
+        return cls(_process_std(scenario), scenario.sampling_period)
+
+    def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
+        """(..., M, 4) states one period later."""
+        return np.concatenate([states[..., :2] + period * states[..., 2:], states[..., 2:]], axis=-1)
+
+    def transition(self, states: FloatArray, period: float) -> FloatArray:
+        """(..., M, 4, 4), the same for all."""
+        step = np.kron(np.array([[1.0, period], [0.0, 1.0]]), np.eye(2))
+        return np.broadcast_to(step, (*states.shape, 4))
+
+    def noise(self, period: float) -> FloatArray:
+        """(M, 4, 4) of white acceleration."""
+        return _white_acceleration(self.process_std, self.sampling_period, period)
+
+    def initial(self, scenario: Scenario) -> Belief:
+        """The scenario's estimates, with its speeds and headings as velocities."""
+        return _with_velocities(scenario, self.velocity_std)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CoordinatedTurn(ByValue, TargetMotion):
+    """States x, y [m], velocity [m/s], turn rate [rad/s]; white acceleration and a drifting turn rate.
+
+    ``process_std``, ``velocity_std`` : as for :class:`ConstantVelocity`; ``turn_std`` : of what is believed of the turn
+    rate at first [rad/s]; ``turn_noise`` : of its drift in one second [rad/s].
+
+    Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 11.7.
+    """
+
+    process_std: FloatArray
+    sampling_period: float = 1.0
+    velocity_std: float = VELOCITY_STD
+    turn_std: float = TURN_STD
+    turn_noise: float = TURN_NOISE
+    dimension: ClassVar[int] = 5
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> CoordinatedTurn:
+        """The scenario's targets, their velocity and turn rate now to be estimated."""
+        return cls(_process_std(scenario), scenario.sampling_period)
+
+    def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
+        """(..., M, 5) states one period later."""
+        along, across, *_ = _turn(states[..., 4], period)
+        vx, vy = states[..., 2], states[..., 3]
+        angle = period * states[..., 4]
+        cosine, sine = np.cos(angle), np.sin(angle)
+        moved = (
+            states[..., 0] + along * vx - across * vy,
+            states[..., 1] + across * vx + along * vy,
+            cosine * vx - sine * vy,
+            sine * vx + cosine * vy,
+            states[..., 4],
+        )
+        return np.stack(moved, axis=-1)
+
+    def transition(self, states: FloatArray, period: float) -> FloatArray:
+        """(..., M, 5, 5)."""
+        along, across, d_along, d_across = _turn(states[..., 4], period)
+        vx, vy = states[..., 2], states[..., 3]
+        angle = period * states[..., 4]
+        cosine, sine = np.cos(angle), np.sin(angle)
+        step = np.zeros((*states.shape, 5))
+        step[..., range(5), range(5)] = 1.0
+        step[..., 0, 2], step[..., 0, 3] = along, -across
+        step[..., 1, 2], step[..., 1, 3] = across, along
+        step[..., 0, 4] = d_along * vx - d_across * vy
+        step[..., 1, 4] = d_across * vx + d_along * vy
+        step[..., 2, 2], step[..., 2, 3] = cosine, -sine
+        step[..., 3, 2], step[..., 3, 3] = sine, cosine
+        step[..., 2, 4] = period * (-sine * vx - cosine * vy)
+        step[..., 3, 4] = period * (cosine * vx - sine * vy)
+        return step
+
+    def noise(self, period: float) -> FloatArray:
+        """(M, 5, 5)."""
+        noise = np.zeros((len(self.process_std), 5, 5))
+        noise[:, :4, :4] = _white_acceleration(self.process_std, self.sampling_period, period)
+        noise[:, 4, 4] = period * self.turn_noise**2
+        return noise
+
+    def initial(self, scenario: Scenario) -> Belief:
+        """The scenario's estimates, with its speeds, headings and turn rates."""
+        moving = _with_velocities(scenario, self.velocity_std)
+        rates = np.array([[target.turn_rate] for target in scenario.targets])
+        covariance = np.zeros((len(rates), 5, 5))
+        covariance[:, :4, :4] = moving.covariance
+        covariance[:, 4, 4] = self.turn_std**2
+        return Belief.of(np.concatenate([moving.mean, rates], axis=1), covariance)
+
+
+TARGET_MOTIONS: dict[str, type[KnownVelocity] | type[ConstantVelocity] | type[CoordinatedTurn]] = {
+    "known velocity": KnownVelocity,
+    "constant velocity": ConstantVelocity,
+    "coordinated turn": CoordinatedTurn,
+}
+
+
+def target_motion(motion: str | TargetMotion, scenario: Scenario) -> TargetMotion:
+    """The motion of that name for a scenario's targets. InputError : there is none."""
+    if isinstance(motion, TargetMotion):
+        return motion
+    if motion not in TARGET_MOTIONS:
+        raise InputError("motion", f"must be {', '.join(TARGET_MOTIONS)} or a TargetMotion", motion)
+    return TARGET_MOTIONS[motion].of(scenario)
+
+
+def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """``sin(wT)/w`` and ``(1 - cos(wT))/w`` with their derivatives by ``w``, by series where ``wT`` is small."""
+    small = np.abs(rate * period) < STRAIGHT
+    w = np.where(small, 1.0, rate)
+    sine, cosine = np.sin(w * period), np.cos(w * period)
+    square = (rate * period) ** 2
+    along = np.where(small, period * (1 - square / 6), sine / w)
+    across = np.where(small, period * (rate * period / 2), (1 - cosine) / w)
+    d_along = np.where(small, -(period**2) * (rate * period / 3), (period * cosine - sine / w) / w)
+    d_across = np.where(small, period**2 / 2 * (1 - square / 4), (period * sine - (1 - cosine) / w) / w)
+    return along, across, d_along, d_across
+
+
+def _process_std(scenario: Scenario) -> FloatArray:
+    return readonly(np.array([target.process_std for target in scenario.targets]))
+
+
+def _white_acceleration(process_std: FloatArray, sampling_period: float, period: float) -> FloatArray:
+    """(M, 4, 4); its density is such that one sampling period moves a position by ``process_std``."""
+    density = 3 * process_std**2 / sampling_period**3
+    shape = np.array([[period**3 / 3, period**2 / 2], [period**2 / 2, period]])
+    return np.asarray(density[:, None, None] * np.kron(shape, np.eye(2)))
+
+
+def _positions(scenario: Scenario) -> Belief:
+    means = np.array([(target.x, target.y) for target in scenario.targets])
+    return Belief.of(means, np.array([target.covariance for target in scenario.targets]))
+
+
+def _with_velocities(scenario: Scenario, velocity_std: float) -> Belief:
+    known = _positions(scenario)
+    speed, heading = np.array([(target.speed, target.heading) for target in scenario.targets]).T
+    velocity = speed[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+    covariance = np.zeros((len(speed), 4, 4))
+    covariance[:, :2, :2] = known.covariance
+    covariance[:, [2, 3], [2, 3]] = velocity_std**2
+    return Belief.of(np.concatenate([known.mean, velocity], axis=1), covariance)

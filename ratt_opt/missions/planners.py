@@ -1,0 +1,75 @@
+"""Who plans: the library's planners by name, and the user's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import IntArray, check_integer
+from ratt_opt.errors import InputError
+from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
+from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt.problem import Plan, Problem
+    from ratt_opt.solvers.result import MaxMinResult
+
+    Planner = Callable[[Problem], Plan | MaxMinResult | IntArray]
+
+__all__ = ["PLANNERS", "MaxMinPlanner", "RandomPlanner", "planner_called"]
+
+
+@dataclass(frozen=True, slots=True)
+class MaxMinPlanner:
+    """The max-min plan with a bracket, as good as its limits allow; by ``max_nodes`` alone it is reproducible."""
+
+    gap: float = 1e-3
+    time_limit: float | None = None
+    max_nodes: int | None = 30
+
+    def __call__(self, problem: Problem) -> MaxMinResult:
+        """Search until closed to the gap or out of limits."""
+        return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes)
+
+
+@dataclass(frozen=True, slots=True)
+class RandomPlanner:
+    """A random plan; the numbers of a step depend on the seed and on how much the robots have to choose from."""
+
+    seed: int = 0
+
+    def __call__(self, problem: Problem) -> Plan:
+        """A uniformly random element of every robot."""
+        information = getattr(problem.objective, "information", np.zeros(0))
+        mixed = np.random.SeedSequence([check_integer("seed", self.seed, low=0), *information.tobytes()[:64]])
+        return random_plan(problem, seed=int(mixed.generate_state(1)[0]))
+
+
+PLANNERS: dict[str, Planner] = {
+    "ratt": ratt,
+    "maxmin": MaxMinPlanner(),
+    "greedy": greedy,
+    "myopic": myopic,
+    "nonrobust": nonrobust_optimum,
+    "random": RandomPlanner(),
+}
+
+
+def planner_called(planner: str | Planner) -> Planner:
+    """The planner of that name, or the given one. InputError : there is none, or it cannot be called."""
+    if isinstance(planner, str):
+        if planner not in PLANNERS:
+            raise InputError("planner", f"must be {', '.join(PLANNERS)} or a callable", planner)
+        return PLANNERS[planner]
+    if not callable(planner):
+        raise InputError("planner", f"must be {', '.join(PLANNERS)} or a callable", planner)
+    return planner
+
+
+def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:
+    """A planner's elements, checked. InputError : they are no plan of the problem."""
+    return problem.check_plan(plan if isinstance(plan, (np.ndarray, list, tuple)) else plan.elements)

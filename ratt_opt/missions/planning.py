@@ -1,0 +1,140 @@
+"""The plan of one step for the whole team: one problem, or one for each part that standing failures keep apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt.missions.beam import beam_sequences
+from ratt_opt.missions.horizon import Sequences
+from ratt_opt.problem import Attack, Problem
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from ratt_opt.missions.belief import Belief
+    from ratt_opt.missions.memory import Memory
+    from ratt_opt.missions.world import Threatened, World
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["Part", "TeamPlan", "offered_sequences", "plan_team"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """Robots that plan together: ``elements`` of the team, ascending, that are those of ``problem``."""
+
+    elements: IntArray
+    problem: Problem
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TeamPlan:
+    """What can be chosen in a step: ``sequences`` are the elements of ``problem``, the whole team's."""
+
+    memory: Memory
+    sequences: Sequences
+    problem: Problem
+    parts: tuple[Part, ...]
+
+    def chosen(self, plan: Callable[[Problem], IntArray]) -> IntArray:
+        """(N,) elements of the team, each part planned by ``plan``."""
+        picked = [part.elements[plan(part.problem)] for part in self.parts]
+        return readonly(np.sort(np.concatenate(picked)))  # elements are ascending by robot
+
+    def with_budgets(self, alpha_s: int, alpha_c: int) -> Problem:
+        """The team's problem for an attacker with these budgets."""
+        return replace(self.problem, alpha_s=alpha_s, alpha_c=alpha_c)
+
+    def groups_under(self, attack: Attack) -> list[frozenset[int]]:
+        """Connected robots, blinded ones included, by the lowest."""
+        links = attack.links & self.problem.communication.links
+        return sorted(self.problem.communication.groups(links), key=min)
+
+    def best_of(self, groups: Sequence[frozenset[int]], elements: IntArray, attack: Attack) -> int:
+        """Position of the group worth most; among equals the first."""
+        return int(np.argmax([self.value(group - attack.sensing, elements) for group in groups]))
+
+    def value(self, robots: frozenset[int], elements: IntArray) -> float:
+        """Criterion of some robots' measurements."""
+        return self.problem.objective(elements[sorted(robots)])
+
+
+def plan_team(world: World, memory: Memory, poses: FloatArray, step: int, threatened: Threatened) -> TeamPlan:
+    """What the team can choose in a step, after everybody who is connected has told what it knows."""
+    time = step * world.period
+    apart = world.communication(poses, threatened.standing).groups()
+    memory = memory.shared(apart)
+    beliefs = [memory.belief(min(group)) for group in apart]
+    if all(belief is beliefs[0] or belief == beliefs[0] for belief in beliefs[1:]):
+        objective, sequences = world.objective(beliefs[0], offered_sequences(world, beliefs[0], poses, time), time)
+        problem = world.problem(objective, sequences.owner, poses, threatened)
+        return TeamPlan(memory, sequences, problem, (Part(np.arange(problem.objective.n), problem),))
+    return _apart(world, memory, (poses, time, threatened), list(zip(apart, beliefs, strict=True)))
+
+
+def offered_sequences(world: World, belief: Belief, poses: FloatArray, time: float) -> Sequences:
+    """All control sequences, or the beam of a belief."""
+    if world.model.beam is None or world.horizon == 1:
+        return world.sequences(poses)
+    return beam_sequences(world, belief, poses, time)
+
+
+def _apart(
+    world: World,
+    memory: Memory,
+    now: tuple[FloatArray, float, Threatened],
+    groups: list[tuple[frozenset[int], Belief]],
+) -> TeamPlan:
+    """Each group plans with its own belief; the attacker's problem is that of the belief that knows most."""
+    poses, time, threatened = now
+    own, kept = [], []
+    for group, belief in groups:
+        offered = offered_sequences(world, belief, poses, time)
+        objective, sequences = world.objective(belief, offered.only(np.isin(offered.owner, sorted(group))), time)
+        own.append(objective)
+        kept.append(sequences)
+    owner = np.concatenate([sequences.owner for sequences in kept])
+    order = np.argsort(owner, kind="stable")
+    joined = Sequences(
+        readonly(owner[order]),
+        readonly(np.concatenate([sequences.controls for sequences in kept])[order]),
+        readonly(np.concatenate([sequences.poses for sequences in kept])[order]),
+    )
+    knowing = min((belief for _, belief in groups), key=lambda belief: belief.trace)
+    criterion = world.criterion(knowing, joined, time)
+    team = world.problem(criterion, joined.owner, poses, threatened)
+    parts = []
+    for (group, _), objective in zip(groups, own, strict=True):
+        elements = np.flatnonzero(np.isin(joined.owner, sorted(group)))
+        parts.append(Part(readonly(elements), _part_problem(team, objective, sorted(group), elements, threatened)))
+    return TeamPlan(memory, joined, team, tuple(parts))
+
+
+def _part_problem(
+    team: Problem, objective: InformationObjective, members: list[int], elements: IntArray, threatened: Threatened
+) -> Problem:
+    """The problem of some robots, numbered anew, with what of the budgets can hit them."""
+    import networkx as nx
+
+    number = {robot: k for k, robot in enumerate(members)}
+    graph: nx.Graph = nx.Graph()
+    graph.add_nodes_from(range(len(members)))
+    links = {link for link in team.communication.links if link[0] in number and link[1] in number}
+    graph.add_edges_from((number[i], number[j]) for i, j in links)
+    owner = np.array([number[int(i)] for i in team.robot[elements]])
+    blind = np.isin(team.robot[elements], sorted(threatened.standing.sensing))
+    if blind.any():
+        objective = objective.with_information(np.where(blind[:, None, None, None], 0.0, objective.information))
+    return Problem(
+        objective,
+        owner,
+        graph,
+        min(team.alpha_s, len(members)),
+        min(team.alpha_c, len(links)),
+        frozenset(number[i] for i in team.protected_robots if i in number),
+        frozenset((number[i], number[j]) for i, j in team.protected_links & links),
+    )

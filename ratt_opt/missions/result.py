@@ -1,0 +1,178 @@
+"""What a mission returns: every step as it happened, and what is made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt._values import ByValue
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ratt_opt.missions.belief import Belief
+    from ratt_opt.missions.sensing import Innovation
+    from ratt_opt.problem import Attack
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["GroupTrack", "Mission", "MissionStep"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class GroupTrack(ByValue):
+    """A group after a step: its ``robots``, those that ``see``, what it believes, and its measurements' surprise."""
+
+    robots: frozenset[int]
+    see: frozenset[int]
+    belief: Belief
+    innovation: Innovation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MissionStep(ByValue):
+    """One step: ``poses`` (N, 3) after it, ``controls`` (N, 2) that led there, the ``attack`` in force.
+
+    ``truth`` : (M, d) states; ``links`` : those that were not cut; ``groups`` : by the lowest robot. ``best`` : which
+    of them is the team's, the one with the smallest trace of position covariances (sharing the best group's belief
+    only: the group that the criterion values most); ``value`` : the criterion of its seeing robots.
+    """
+
+    poses: FloatArray
+    controls: FloatArray
+    attack: Attack
+    links: frozenset[tuple[int, int]]
+    truth: FloatArray
+    groups: tuple[GroupTrack, ...]
+    best: int
+    value: float
+
+    @property
+    def team(self) -> GroupTrack:
+        """The team's group."""
+        return self.groups[self.best]
+
+    def role(self, robot: int) -> str:
+        """``blinded``, ``best group`` or ``cut off``."""
+        if robot in self.attack.sensing:
+            return "blinded"
+        return "best group" if robot in self.team.robots else "cut off"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Mission(ByValue):
+    """A mission as it went; equal missions are equal to the bit.
+
+    ``start`` : the poses (N, 3) it began at; ``settings`` : its arguments by name, for people; ``decisions`` : the
+    elements and attack of every step, from which it can be replayed.
+    """
+
+    scenario: Scenario
+    settings: dict[str, str]
+    start: FloatArray
+    steps: tuple[MissionStep, ...]
+    decisions: tuple[tuple[IntArray, Attack], ...]
+    seconds: tuple[float, ...] = ()
+
+    def __hash__(self) -> int:
+        return hash((self.scenario, self.steps))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mission):
+            return NotImplemented
+        same = self.scenario == other.scenario and self.settings == other.settings
+        return same and self.steps == other.steps
+
+    def __repr__(self) -> str:
+        if not self.steps:
+            return "Mission(0 steps)"
+        rmse = f"RMSE {self.rmse[-1]:.4g} m at the end, {self.rmse.mean():.4g} m on average"
+        return f"Mission({len(self.steps)} steps, {rmse}, NEES {self.nees.mean():.3g} of {self.dimension})"
+
+    @property
+    def dimension(self) -> int:
+        """Numbers d in a target's state."""
+        return int(self.steps[0].truth.shape[1]) if self.steps else 2
+
+    @property
+    def squared_errors(self) -> FloatArray:
+        """(T, M) squared distances of the team's estimates from the truth [m^2]."""
+        errors = [step.team.belief.mean[:, :2] - step.truth[:, :2] for step in self.steps]
+        return readonly((np.array(errors).reshape(len(errors), -1, 2) ** 2).sum(axis=-1))
+
+    @property
+    def rmse(self) -> FloatArray:
+        """(T,) root of the mean squared error over the targets [m]."""
+        return readonly(np.sqrt(self.squared_errors.mean(axis=1)))
+
+    @property
+    def traces(self) -> FloatArray:
+        """(T,) mean over the targets of the trace of the team's position covariances [m^2]."""
+        return readonly(np.array([step.team.belief.trace / len(step.truth) for step in self.steps]))
+
+    @property
+    def nees(self) -> FloatArray:
+        """(T,) normalised estimation error squared, mean over the targets; ``d`` where the filter is consistent."""
+        return readonly(np.array([step.team.belief.nees(step.truth).mean() for step in self.steps]))
+
+    @property
+    def nis(self) -> FloatArray:
+        """(T,) normalised innovation squared of the team's group per number measured; NaN where none was."""
+        pairs = [(step.team.innovation.squared, step.team.innovation.count) for step in self.steps]
+        return readonly(np.array([s / n if n else np.nan for s, n in pairs]))
+
+    def nees_band(self, level: float = 0.95) -> tuple[float, float]:
+        """What :attr:`nees` of a step lies in with probability ``level`` for a consistent filter (chi-square)."""
+        from scipy.stats import chi2
+
+        freedom = self.dimension * self.scenario.n_targets
+        low, high = (float(chi2.ppf(end, freedom)) for end in ((1 - level) / 2, (1 + level) / 2))
+        return low / self.scenario.n_targets, high / self.scenario.n_targets
+
+    def nis_band(self, level: float = 0.95) -> FloatArray:
+        """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN where none."""
+        from scipy.stats import chi2
+
+        counts = np.array([step.team.innovation.count or np.nan for step in self.steps])
+        ends = [(1 - level) / 2, (1 + level) / 2]
+        return readonly(np.stack([chi2.ppf(end, counts) / counts for end in ends], axis=-1))
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``mission.json`` holds: settings, and the figures of every step."""
+        low, high = self.nees_band()
+        return {
+            "format": "ratt-opt mission",
+            "version": 1,
+            "settings": self.settings,
+            "n_robots": self.scenario.n_robots,
+            "n_targets": self.scenario.n_targets,
+            "rmse": self.rmse.tolist(),
+            "trace": self.traces.tolist(),
+            "nees": self.nees.tolist(),
+            "nees_expected": self.dimension,
+            "nees_band": [low, high],
+            "nis": [None if np.isnan(x) else float(x) for x in self.nis],
+            "value": [step.value for step in self.steps],
+            "attacks": [step.attack.to_dict() for step in self.steps],
+            "groups": [[sorted(group.robots) for group in step.groups] for step in self.steps],
+        }
+
+    def save(self, directory: str | Path) -> list[Path]:
+        """Write ``mission.json``, ``mission.csv``, ``tracks.csv``, figures, the animation and the player.
+
+        InputError : the folder cannot be written.
+        """
+        from ratt_opt.report.mission.write import write_mission
+
+        return write_mission(self, directory)
+
+    def animate(self, path: str | Path) -> Path:
+        """Write the animation: ``.gif``, or ``.html`` for a player that needs nothing else.
+
+        InputError : another ending, or the file cannot be written.
+        """
+        from ratt_opt.report.mission.write import write_animation
+
+        return write_animation(self, path)

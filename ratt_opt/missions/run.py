@@ -1,0 +1,230 @@
+"""The loop of a mission: predict, plan, move, be attacked, measure, update, and again.
+
+Every random number of a step comes from the mission's seed and the step's number alone, one stream for each purpose: a
+mission is the same to the bit on every run, targets move alike under every planner, and robots have the same luck.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.missions.attack_models import AttackModel, attack_model
+from ratt_opt.missions.attackers import attack_of, attacker_called
+from ratt_opt.missions.journal import Journal
+from ratt_opt.missions.memory import Memory, Pieces
+from ratt_opt.missions.planners import elements_of, planner_called
+from ratt_opt.missions.planning import plan_team
+from ratt_opt.missions.result import GroupTrack, Mission, MissionStep
+from ratt_opt.missions.sensing import group_pieces, simulated_readings
+from ratt_opt.missions.world import MissionModel, World
+from ratt_opt.problem import Attack
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+    from ratt_opt.missions.attackers import Attacker, OwnAttacker
+    from ratt_opt.missions.planners import Planner
+    from ratt_opt.missions.planning import TeamPlan
+    from ratt_opt.missions.sensing import Innovation, Reading
+    from ratt_opt.missions.world import Threatened
+    from ratt_opt.scenario.model import Scenario
+
+__all__ = ["SHARING", "run_mission"]
+
+SHARING = ("best group", "all surviving")
+TRUTH, MOTION, LUCK, STRIKE, ATTACKER = range(5)
+"""Streams of random numbers: the first states, motion noise, measurement noise, failures, the attacker's own."""
+
+
+def run_mission(
+    scenario: Scenario,
+    *,
+    steps: int,
+    planner: str | Planner = "ratt",
+    attacker: str | OwnAttacker = "worst",
+    attacks: str | AttackModel = "renewed",
+    sharing: str = "best group",
+    horizon: int = 1,
+    seed: int = 0,
+    model: MissionModel | None = None,
+    journal: str | Path | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Mission:
+    """Fly a mission in simulation.
+
+    Parameters
+    ----------
+    scenario : where the robots are, what is believed of the targets, and the adversary's budgets
+    steps : T >= 1
+    planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)``
+        that returns a plan or its elements, such as :class:`MaxMinPlanner`
+    attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
+        that returns an :class:`Attack`
+    attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or
+        an :class:`AttackModel`
+    sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's), or each group keeps its
+        own and they are merged without double counting when links return (``"all surviving"``). Then groups that
+        standing failures keep apart plan for themselves, each against what of the budgets can hit it; and the attacker
+        sees the belief of the group that knows most.
+    horizon : steps H that a plan looks ahead; its first controls are executed
+    seed : of everything random
+    model : motions, sensors and filter; the paper's and the textbook EKF by default
+    journal : a file that keeps every step's decisions; a mission that was killed is replayed from it and goes on
+    progress : called as ``progress(step, steps)``
+
+    Targets that nobody can reach stay as uncertain as their motion makes them; a robot that drives off is not stopped
+    unless ``model.area`` says so.
+
+    Raises
+    ------
+    InputError : an argument breaks its rule, a planner or attacker returns what it may not, or the journal is another
+        mission's.
+    """
+    check_integer("steps", steps, low=1)
+    check_integer("seed", seed, low=0)
+    if sharing not in SHARING:
+        raise InputError("sharing", f"must be {' or '.join(SHARING)}", sharing)
+    world = World(scenario, model or MissionModel(), horizon)
+    players = _Players(planner_called(planner), attacker_called(attacker), attack_model(attacks))
+    named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
+    settings = {name: value if isinstance(value, str) else repr(value) for name, value in named.items()}
+    settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
+    log = Journal.open(journal, scenario, settings | {"model": repr(world.model)})
+    flight = _Flight(world, players, sharing, seed)
+    for step in range(steps):
+        flight.advance(step, log)
+        if progress is not None:
+            progress(step + 1, steps)
+    return Mission(
+        scenario=scenario,
+        settings=settings,
+        start=scenario.poses,
+        steps=tuple(flight.steps),
+        decisions=tuple(flight.decisions),
+        seconds=tuple(flight.seconds),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Players:
+    plan: Planner
+    attack: Attacker
+    model: AttackModel
+
+
+class _Flight:
+    """The state of a mission under way."""
+
+    def __init__(self, world: World, players: _Players, sharing: str, seed: int) -> None:
+        self.world, self.players, self.sharing, self.seed = world, players, sharing, seed
+        scenario = world.scenario
+        belief = world.motion.initial(scenario)
+        self.memory = Memory.start(world.motion, world.period, belief, scenario.n_robots)
+        self.poses = scenario.poses
+        self.truth = belief.mean + _drawn(self._rng(0, TRUTH), belief.covariance)
+        self.attack = Attack()
+        self.steps: list[MissionStep] = []
+        self.decisions: list[tuple[IntArray, Attack]] = []
+        self.seconds: list[float] = []
+
+    def advance(self, step: int, log: Journal) -> None:
+        """One step of everything."""
+        threatened = self.players.model.threatened(step, self.attack, self.world.scenario)
+        began = perf_counter()
+        team = plan_team(self.world, self.memory, self.poses, step, threatened)
+        self.memory = team.memory
+        recorded = log.recorded(step)
+        if recorded is None:
+            elements = team.chosen(lambda problem: elements_of(self.players.plan(problem), problem))
+            self.seconds.append(perf_counter() - began)
+            self.attack = self._attacked(step, team, elements, threatened)
+            log.append(step, elements, self.attack)
+        else:
+            elements, self.attack = recorded
+            self.seconds.append(0.0)
+            team.problem.check_plan(elements)
+        self.decisions.append((elements, self.attack))
+        self.poses = readonly(team.sequences.poses[elements, 0])
+        self._move_targets(step)
+        controls = readonly(team.sequences.controls[elements, 0])
+        self._measure(step, team, elements, controls)
+
+    def _attacked(self, step: int, team: TeamPlan, elements: IntArray, threatened: Threatened) -> Attack:
+        """What is in force in this step: what stood before and what the attacker adds."""
+        standing = threatened.standing
+        sensors, links = self.players.model.strikes(
+            threatened, len(team.problem.communication.links), self._rng(step, STRIKE)
+        )
+        problem = team.with_budgets(sensors, links)
+        new = attack_of(self.players.attack(problem, elements, self._word(step, ATTACKER)), problem)
+        return Attack(standing.sensing | new.sensing, standing.links | new.links)
+
+    def _move_targets(self, step: int) -> None:
+        motion, period = self.world.motion, self.world.period
+        moved = motion.predict(self.truth, period, step * period)
+        self.truth = readonly(moved + _drawn(self._rng(step, MOTION), motion.noise(period)))
+
+    def _measure(self, step: int, team: TeamPlan, elements: IntArray, controls: FloatArray) -> None:
+        """Every group updates what it believes; then what is to be shared is."""
+        world, n_robots = self.world, self.world.scenario.n_robots
+        size = max(sensor.size for sensor in world.sensors)
+        luck = self._rng(step, LUCK).standard_normal((n_robots, len(self.truth), size))
+        readings = dict(enumerate(simulated_readings(world, self.poses, self.truth[:, :2], luck)))
+        groups = team.groups_under(self.attack)
+        whole = Pieces.none(n_robots, self.memory.base)
+        made, innovations = np.zeros(n_robots, dtype=np.bool_), []
+        best = None if self.sharing == "all surviving" else team.best_of(groups, elements, self.attack)
+        for k, group in enumerate(groups):
+            see = group - self.attack.sensing if best in {None, k} else frozenset()
+            own, innovation = self._pieces(step, min(group), readings, see)
+            members = sorted(see)
+            whole.information[members], whole.vector[members] = own.information[members], own.vector[members]
+            made[members] = True
+            innovations.append(innovation)
+        memory = self.memory.advanced(whole, made)
+        self.memory = memory.shared([range(n_robots)] if best is not None else groups)
+        beliefs = [self.memory.belief(min(group)) for group in groups]
+        tracks = tuple(
+            GroupTrack(robots=group, see=group - self.attack.sensing, belief=belief, innovation=innovation)
+            for group, belief, innovation in zip(groups, beliefs, innovations, strict=True)
+        )
+        if best is None:
+            best = int(np.argmin([belief.trace for belief in beliefs]))
+        record = MissionStep(
+            poses=self.poses,
+            controls=controls,
+            attack=self.attack,
+            links=team.problem.communication.links - self.attack.links,
+            truth=self.truth,
+            groups=tracks,
+            best=best,
+            value=team.value(groups[best] - self.attack.sensing, elements),
+        )
+        self.steps.append(record)
+
+    def _pieces(
+        self, step: int, robot: int, readings: Mapping[int, Reading], see: frozenset[int]
+    ) -> tuple[Pieces, Innovation]:
+        """A group's new pieces, linearised at what its ``robot`` predicts."""
+        predicted = self.memory.belief(robot).predicted(self.world.motion, self.world.period, step * self.world.period)
+        return group_pieces(self.world, predicted, self.poses, readings, see)
+
+    def _rng(self, step: int, stream: int) -> np.random.Generator:
+        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(step, stream)))
+
+    def _word(self, step: int, stream: int) -> int:
+        return int(np.random.SeedSequence(self.seed, spawn_key=(step, stream)).generate_state(1)[0])
+
+
+def _drawn(rng: np.random.Generator, covariance: FloatArray) -> FloatArray:
+    """(M, d) numbers of the given covariances, which may be singular."""
+    values, vectors = np.linalg.eigh(covariance)
+    standard = rng.standard_normal(covariance.shape[:2]) * np.sqrt(np.clip(values, 0.0, None))
+    return np.asarray((vectors @ standard[..., None])[..., 0])

@@ -1,0 +1,211 @@
+"""What one step of a mission is made of: how things move and are measured, and the max-min problem that follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, get_args
+
+import networkx as nx
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.missions.horizon import (
+    OUTPUTS,
+    Sequences,
+    control_sequences,
+    joint_covariance,
+    output_matrix,
+    undominated,
+)
+from ratt_opt.missions.models.robots import robot_motion
+from ratt_opt.missions.models.sensors import SensorModel, sensors_of
+from ratt_opt.missions.models.targets import TargetMotion, target_motion
+from ratt_opt.problem import Attack, Problem
+from ratt_opt.setfunctions.criteria.registry import criterion_called
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt.missions.belief import Belief
+    from ratt_opt.missions.models.robots import RobotMotion
+    from ratt_opt.scenario.model import Scenario
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["MissionModel", "Threatened", "World"]
+
+Linearisation = Literal["first order", "second order", "iterated"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionModel:
+    """How a mission's targets and robots move and measure, and what its plans are for.
+
+    Parameters
+    ----------
+    motion : of the targets: ``"known velocity"`` (the paper's), ``"constant velocity"``, ``"coordinated turn"``, or a
+        :class:`TargetMotion`
+    sensor : a :class:`SensorModel` for all robots or one for each; the scenario's range and bearing where ``None``
+    robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
+    linearisation : ``"first order"`` is the textbook EKF; ``"second order"`` adds the second-order term to the noise of
+        plans and filter, which the EKF is overconfident without; ``"iterated"`` also linearises again at the estimate
+    objective : criterion of a plan; another than the trace only where a single position is planned for
+    output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``
+    area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
+        a robot that has no other keeps the one that ends nearest to it.
+    beam : so many control sequences of each robot are planned with, those worth most alone; all where ``None``
+    """
+
+    motion: str | TargetMotion = "known velocity"
+    sensor: SensorModel | Sequence[SensorModel] | None = None
+    robot_motion: str = "paper"
+    linearisation: Linearisation = "first order"
+    objective: str = "trace"
+    output: Literal["mean", "last"] = "mean"
+    area: tuple[float, float, float, float] | None = None
+    beam: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, known in (("linearisation", get_args(Linearisation)), ("output", OUTPUTS)):
+            if getattr(self, name) not in known:
+                raise InputError(name, f"must be {', '.join(known)}", getattr(self, name))
+        criterion_called(self.objective)
+        if self.area is not None and not (self.area[0] < self.area[2] and self.area[1] < self.area[3]):
+            raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
+        if self.beam is not None:
+            check_integer("beam", self.beam, low=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Threatened:
+    """What is known to have failed when a plan is made, and the budgets that may still strike."""
+
+    standing: Attack
+    alpha_s: int
+    alpha_c: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class World:
+    """A scenario with the models of a mission."""
+
+    scenario: Scenario
+    model: MissionModel
+    horizon: int
+    motion: TargetMotion = field(init=False)
+    sensors: tuple[SensorModel, ...] = field(init=False)
+    move: RobotMotion = field(init=False)
+
+    def __post_init__(self) -> None:
+        check_integer("horizon", self.horizon, low=1)
+        object.__setattr__(self, "motion", target_motion(self.model.motion, self.scenario))
+        object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
+        object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
+        if self.model.objective != "trace" and (self.horizon > 1 or self.motion.dimension > 2):
+            raise InputError(
+                "objective", "must be trace for a part of a state (horizon > 1, velocities)", self.model.objective
+            )
+
+    @property
+    def period(self) -> float:
+        """Sampling period [s]."""
+        return self.scenario.sampling_period
+
+    def sequences(self, poses: FloatArray) -> Sequences:
+        """The elements of a plan from poses (N, 3), those that leave the area left out."""
+        offered = control_sequences(self.scenario, poses, self.horizon, self.move)
+        if self.model.area is None:
+            return offered
+        low, high = np.array(self.model.area[:2]), np.array(self.model.area[2:])
+        places = offered.poses[..., :2]
+        outside = np.maximum(np.maximum(low - places, places - high), 0.0).sum(axis=(1, 2))
+        nearest = np.array([outside[offered.owner == i].min() for i in range(self.scenario.n_robots)])
+        return offered.only(outside <= nearest[offered.owner])
+
+    def objective(self, belief: Belief, sequences: Sequences, time: float) -> tuple[InformationObjective, Sequences]:
+        """The criterion of all sequences that are not dominated, and these; a single step keeps them all."""
+        if self.horizon > 1:
+            kept, _ = undominated(self._blocks(sequences, self._predictions(belief, time)), sequences.owner)
+            sequences = sequences.only(kept)
+        return self.criterion(belief, sequences, time), sequences
+
+    def criterion(self, belief: Belief, sequences: Sequences, time: float) -> InformationObjective:
+        """The criterion of these sequences."""
+        predicted, d = self._predictions(belief, time), self.motion.dimension
+        blocks = self._blocks(sequences, predicted)
+        information = np.zeros((*blocks.shape[:2], self.horizon * d, self.horizon * d))
+        for h in range(self.horizon):
+            information[:, :, h * d : h * d + 2, h * d : h * d + 2] = blocks[:, :, h]
+        prior = joint_covariance(predicted, self.motion, self.period)
+        weights = np.array([target.weight for target in self.scenario.targets])
+        output = output_matrix(self.model.output, self.horizon, d)
+        if output is None:
+            return criterion_called(self.model.objective)(prior, information, weights)
+        return TraceObjective(prior, information, weights, output=output)
+
+    def communication(self, poses: FloatArray, standing: Attack) -> CommunicationGraph:
+        """The links of robots at poses (N, 3) that have not failed."""
+        graph = self._graph(poses, standing)
+        n_robots = self.scenario.n_robots
+        if graph is None:
+            return CommunicationGraph.complete(n_robots)
+        return CommunicationGraph.from_networkx(graph, n_robots)
+
+    def problem(
+        self,
+        objective: InformationObjective,
+        owner: IntArray,
+        poses: FloatArray,
+        threatened: Threatened,
+    ) -> Problem:
+        """The max-min problem of the whole team, without what has failed."""
+        blind = np.isin(owner, sorted(threatened.standing.sensing))
+        if blind.any():
+            information = np.where(blind[:, None, None, None], 0.0, objective.information)
+            objective = objective.with_information(information)
+        team, graph = self.scenario, self._graph(poses, threatened.standing)
+        n_links = team.n_robots * (team.n_robots - 1) // 2 if graph is None else graph.number_of_edges()
+        safe = frozenset(link for link in team.protected_links if graph is None or graph.has_edge(*link))
+        return Problem(
+            objective,
+            owner,
+            graph,
+            min(threatened.alpha_s, team.n_robots),
+            min(threatened.alpha_c, n_links),
+            frozenset(team.protected_robots),
+            safe,
+        )
+
+    def _graph(self, poses: FloatArray, standing: Attack) -> nx.Graph | None:
+        graph = self.scenario.graph_at(poses)
+        if standing.links:
+            graph = nx.complete_graph(self.scenario.n_robots) if graph is None else graph
+            graph.remove_edges_from(standing.links)
+        return graph
+
+    def _predictions(self, belief: Belief, time: float) -> list[Belief]:
+        """What is believed after 1, ..., H steps without a measurement."""
+        beliefs: list[Belief] = []
+        for h in range(self.horizon):
+            belief = belief.predicted(self.motion, self.period, time + h * self.period)
+            beliefs.append(belief)
+        return beliefs
+
+    def _blocks(self, sequences: Sequences, predicted: list[Belief]) -> FloatArray:
+        """(E, M, H, 2, 2) information about the positions, step by step."""
+        steps = [self._information(sequences, h, ahead) for h, ahead in enumerate(predicted)]
+        return np.stack(steps, axis=2)
+
+    def _information(self, sequences: Sequences, h: int, ahead: Belief) -> FloatArray:
+        """(E, M, 2, 2) of the h-th step, about the positions."""
+        points = ahead.positions
+        spread = None if self.model.linearisation == "first order" else ahead.position_covariance
+        information = np.empty((len(sequences.owner), len(points), 2, 2))
+        for i, sensor in enumerate(self.sensors):
+            own = sequences.owner == i
+            with np.errstate(divide="ignore", invalid="ignore"):  # on top of a target there is no bearing
+                information[own] = sensor.information(sequences.poses[own, h], points, spread)
+        usable = np.asarray(np.isfinite(information).all(axis=(-1, -2)))
+        return readonly(np.where(usable[..., None, None], information, 0.0))

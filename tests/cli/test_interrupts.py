@@ -1,0 +1,82 @@
+"""An interrupt at any moment ends the program with 130 and one line, and is never lost."""
+
+from __future__ import annotations
+
+import gc
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from ratt_opt.cli.interrupts import Interrupts
+
+DURING_IMPORT = """
+import signal, sys
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        if name == {name!r}:
+            sys.meta_path.remove(self)
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Finder())
+from ratt_opt.cli import main
+main()
+"""
+ON_THE_WAY_OUT = """
+import atexit, signal
+atexit.register(signal.raise_signal, signal.SIGINT)
+from ratt_opt.cli import main
+main()
+"""
+
+
+def _run(program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("name", ["ratt_opt.cli.interrupts", "typer", "ratt_opt.cli.planning", "numpy", "pydantic"])
+def test_while_modules_are_imported(name: str) -> None:
+    done = _run(DURING_IMPORT.format(name=name), "bound", "none.json", "--out", ".")
+    assert done.returncode == 130
+    assert done.stderr in {"error: interrupted\n", ""}
+    assert (done.stderr == "") == (name == "ratt_opt.cli.interrupts")  # the guards themselves are not there yet
+
+
+def test_when_all_is_done_it_changes_nothing() -> None:
+    done = _run(ON_THE_WAY_OUT, "--version")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+class _Collected:
+    """Interrupted while it is collected, where Python drops the exception."""
+
+    def __del__(self) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+
+class _HalfMade:
+    def __del__(self) -> None:
+        raise AttributeError("never made")
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_one_that_python_drops_comes_again(capsys: pytest.CaptureFixture[str]) -> None:
+    with Interrupts() as interrupts:
+        with pytest.raises(KeyboardInterrupt):  # noqa: PT012  (it comes some time later)
+            _Collected()
+            gc.collect()
+            time.sleep(10)
+        _HalfMade()
+        gc.collect()
+    assert interrupts.happened
+    assert capsys.readouterr().err == ""
+
+
+def test_without_an_interrupt_errors_of_destructors_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", shown.append)
+    with Interrupts():
+        _HalfMade()
+        gc.collect()
+    assert len(shown) == 1

@@ -1,0 +1,227 @@
+"""Missions: the textbook filter, the same to the bit, resumed after a kill, every attack model, bad arguments."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ratt_opt import Attack, InputError, random_scenario, ratt, worst_case_attack
+from ratt_opt.missions.attack_models import PermanentFailures, PersistentAttacks
+from ratt_opt.missions.models.sensors import PositionSensor
+from ratt_opt.missions.planners import MaxMinPlanner
+from ratt_opt.missions.run import run_mission
+from ratt_opt.missions.world import MissionModel
+from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
+
+
+def scenario_of(seed=3, n_robots=4, **options):
+    return random_scenario(n_robots, 3, **({"alpha_s": 1, "alpha_c": 3, "seed": seed} | options))
+
+
+def test_without_attack_it_is_the_textbook_filter(monkeypatch) -> None:
+    """Robots' measurements, taken from the mission, through an EKF in covariance form, one after the other."""
+    from ratt_opt.missions import run
+
+    taken = []
+    simulate = run.simulated_readings
+    monkeypatch.setattr(run, "simulated_readings", lambda *a: taken.append(simulate(*a)) or taken[-1])
+    scenario = scenario_of()
+    mission = run_mission(scenario, steps=8, attacker="none")
+    first = scenario.targets
+    mean, covariance = np.array([(t.x, t.y) for t in first]), np.array([t.covariance for t in first])
+    for k, (step, readings) in enumerate(zip(mission.steps, taken, strict=True)):
+        for j, target in enumerate(first):
+            angle = target.heading + (k + 1) * target.turn_rate
+            mean[j] += target.speed * np.array([np.cos(angle), np.sin(angle)])
+            covariance[j] = covariance[j] + target.process_std**2 * np.eye(2)
+            H = np.concatenate([jacobian(pose, mean[j]) for pose in step.poses])
+            expected = np.array([measure(pose, mean[j]) for pose in step.poses])
+            R = np.diag(np.stack(scenario.sensor.noise_variances(*expected.T), axis=-1).ravel())
+            surprise = np.array([reading.values[j] for reading in readings]) - expected
+            surprise[:, 1] = wrap_angle(surprise[:, 1])
+            gain = covariance[j] @ H.T @ np.linalg.inv(H @ covariance[j] @ H.T + R)
+            mean[j] += gain @ surprise.ravel()
+            covariance[j] = covariance[j] - gain @ H @ covariance[j]
+        np.testing.assert_allclose(step.team.belief.mean, mean, rtol=1e-8, atol=1e-8)
+        np.testing.assert_allclose(step.team.belief.covariance, covariance, rtol=1e-7, atol=1e-10)
+
+
+def test_the_first_step_is_the_one_step_problem() -> None:
+    scenario = scenario_of(seed=5)
+    mission = run_mission(scenario, steps=1)
+    elements, attack = mission.decisions[0]
+    problem = scenario.problem()
+    assert np.array_equal(elements, ratt(problem).elements)
+    assert attack == worst_case_attack(problem, elements).attack
+    step = mission.steps[0]
+    assert step.value == problem.team_value(elements, attack)
+    prior = problem.objective.prior.trace(axis1=1, axis2=2).sum()
+    assert step.team.belief.trace == pytest.approx(prior - step.value)
+    assert np.array_equal(step.poses, scenario.predicted_poses[elements])
+
+
+@pytest.mark.parametrize("attacks", ["renewed", "persistent", "permanent"])
+@pytest.mark.parametrize("sharing", ["best group", "all surviving"])
+def test_the_same_to_the_bit_and_resumed(attacks: str, sharing: str, tmp_path) -> None:
+    scenario = scenario_of()
+    arguments = {"steps": 9, "attacks": attacks, "sharing": sharing, "seed": 4}
+    whole = run_mission(scenario, **arguments)
+    assert whole == run_mission(scenario, **arguments)
+    journal = tmp_path / "journal.jsonl"
+    run_mission(scenario, **(arguments | {"steps": 5}), journal=journal)
+    text = journal.read_text()
+    journal.write_text(text[:-9])  # killed in the middle of a line
+    assert run_mission(scenario, **arguments, journal=journal) == whole
+    assert run_mission(scenario, **arguments, journal=journal) == whole
+    assert len(journal.read_text().splitlines()) == 10
+    assert run_mission(scenario, **(arguments | {"seed": 5})) != whole
+
+
+def test_targets_move_alike_under_every_player() -> None:
+    scenario = scenario_of()
+    first = run_mission(scenario, steps=4)
+    second = run_mission(scenario, steps=4, planner="myopic", attacker="none")
+    for a, b in zip(first.steps, second.steps, strict=True):
+        assert np.array_equal(a.truth, b.truth)
+
+
+def test_persistent_attacks_are_held_and_renewed() -> None:
+    mission = run_mission(scenario_of(), steps=6, attacks=PersistentAttacks(hold=3))
+    attacks = [step.attack for step in mission.steps]
+    assert attacks[0] == attacks[1] == attacks[2]
+    assert attacks[3] == attacks[4] == attacks[5]
+    assert attacks[0] != Attack()
+
+
+def test_failures_add_up_within_the_budgets() -> None:
+    scenario = scenario_of(n_robots=5, alpha_s=2, alpha_c=4)
+    model = PermanentFailures(sensor_rate=0.3, link_rate=0.2)
+    for sharing in ("best group", "all surviving"):
+        mission = run_mission(scenario, steps=12, attacks=model, sharing=sharing)
+        before = Attack()
+        for step in mission.steps:
+            assert before.sensing <= step.attack.sensing
+            assert before.links <= step.attack.links
+            before = step.attack
+        assert (len(before.sensing), len(before.links)) == (2, 4)
+
+
+def test_surviving_measurements_are_worth_at_least_the_best_groups() -> None:
+    """With linear sensors and without attack both kinds of sharing are the same filter; under attack more is known."""
+    scenario = scenario_of(alpha_s=1, alpha_c=3)
+    model = MissionModel(sensor=PositionSensor(2.0))
+    same = [
+        run_mission(scenario, steps=5, attacker="none", sharing=s, model=model) for s in ("best group", "all surviving")
+    ]
+    np.testing.assert_allclose(same[0].rmse, same[1].rmse, rtol=1e-9)
+    apart, together = (
+        run_mission(scenario, steps=8, attacker="worst", sharing=s, model=model, planner="random")
+        for s in ("best group", "all surviving")
+    )
+    assert together.traces[-1] <= apart.traces[-1] * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("motion", ["constant velocity", "coordinated turn"])
+def test_other_motions_and_sensors(motion: str) -> None:
+    scenario = scenario_of()
+    for linearisation in ("first order", "second order", "iterated"):
+        model = MissionModel(motion=motion, robot_motion="arc", linearisation=linearisation)
+        mission = run_mission(scenario, steps=5, model=model)
+        assert mission.dimension == {"constant velocity": 4, "coordinated turn": 5}[motion]
+        assert np.isfinite(mission.nees).all()
+
+
+def test_a_consistent_filter_stays_within_its_bands() -> None:
+    """Linear sensors: NEES and NIS are chi-square; their means over a long mission are within five deviations."""
+    scenario = scenario_of(n_robots=3, alpha_s=0, alpha_c=0)
+    mission = run_mission(
+        scenario, steps=120, attacker="none", planner="myopic", model=MissionModel(sensor=PositionSensor(3.0))
+    )
+    numbers = 2 * 3 * 120
+    # Errors of successive steps are correlated; the band is that of a tenth as many.
+    assert abs(mission.nees.mean() - 2) < 5 * 2 * np.sqrt(2 / (numbers / 10))
+    assert abs(mission.nis.mean() - 1) < 5 * np.sqrt(2 / (3 * numbers))
+    low, high = mission.nees_band()
+    assert np.mean((low <= mission.nees) & (mission.nees <= high)) > 0.85
+    band = mission.nis_band()
+    assert np.mean((band[:, 0] <= mission.nis) & (mission.nis <= band[:, 1])) > 0.9
+
+
+def test_robots_stay_in_the_area() -> None:
+    scenario = scenario_of()
+    places = scenario.poses[:, :2]
+    low, high = places.min(axis=0) - 1.5, places.max(axis=0) + 1.5
+    model = MissionModel(area=(*low.tolist(), *high.tolist()))
+    mission = run_mission(scenario, steps=15, model=model)
+    for step in mission.steps:
+        assert (step.poses[:, :2] >= low - 3.1).all()
+        assert (step.poses[:, :2] <= high + 3.1).all()
+    inside = [((s.poses[:, :2] >= low) & (s.poses[:, :2] <= high)).all() for s in mission.steps]
+    assert np.mean(inside) > 0.5
+
+
+def test_targets_out_of_reach_stay_as_uncertain_as_their_motion_makes_them() -> None:
+    from ratt_opt import Sensor
+
+    scenario = scenario_of(sensor=Sensor(max_range=1e-3))
+    mission = run_mission(scenario, steps=4)
+    assert np.isnan(mission.nis).all()
+    np.testing.assert_allclose(mission.traces, [2 * (9 + 0.25 * (k + 1)) for k in range(4)])
+    assert mission.to_dict()["nis"] == [None] * 4
+
+
+def test_own_planners_and_attackers() -> None:
+    scenario = scenario_of()
+    mission = run_mission(
+        scenario,
+        steps=2,
+        planner=lambda problem: np.array([choice[-1] for choice in problem.choices]),
+        attacker=lambda _problem, _elements: Attack({0}, set()),
+    )
+    assert all(step.attack == Attack({0}, set()) for step in mission.steps)
+    assert mission.steps[0].role(0) == "blinded"
+    assert run_mission(scenario, steps=1, planner=MaxMinPlanner(max_nodes=5)).steps[0].value > 0
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"planner": "best"}, "planner must be ratt"),
+        ({"planner": 3}, "planner must be ratt"),
+        ({"attacker": "evil"}, "attacker must be none"),
+        ({"attacker": 3}, "attacker must be none"),
+        ({"attacks": "sometimes"}, "attacks must be renewed"),
+        ({"sharing": "nothing"}, "sharing must be best group"),
+        ({"steps": 0}, "steps must be an integer >= 1"),
+        ({"horizon": 0}, "horizon must be an integer >= 1"),
+        ({"horizon": 9}, "horizon must give robot 0"),
+        ({"seed": -1}, "seed must be an integer"),
+        ({"planner": lambda _: np.zeros(4, dtype=int)}, r"elements\[1\] must be an element of robot 1"),
+        ({"attacker": lambda *_: Attack({0, 1}, set())}, "attack must blind at most"),
+        ({"attacker": lambda *_: 3}, "attacker must return an Attack"),
+    ],
+)
+def test_bad_arguments(change: dict[str, object], text: str) -> None:
+    with pytest.raises(InputError, match=text) as caught:
+        run_mission(scenario_of(), **({"steps": 1} | change))  # type: ignore[arg-type]
+    assert "\n" not in str(caught.value)
+
+
+def test_bad_models_and_journals(tmp_path) -> None:
+    with pytest.raises(InputError, match="linearisation must be first order"):
+        MissionModel(linearisation="third order")
+    with pytest.raises(InputError, match="area"):
+        MissionModel(area=(0, 0, 0, 1))
+    with pytest.raises(InputError, match="objective must be trace for a part"):
+        run_mission(scenario_of(), steps=1, horizon=2, model=MissionModel(objective="logdet"))
+    with pytest.raises(InputError, match="hold must be"):
+        PersistentAttacks(hold=0)
+    with pytest.raises(InputError, match="sensor_rate must be a probability"):
+        PermanentFailures(sensor_rate=2)
+    journal = tmp_path / "j"
+    run_mission(scenario_of(), steps=1, journal=journal)
+    with pytest.raises(InputError, match="journal must be of the same mission"):
+        run_mission(scenario_of(), steps=1, journal=journal, seed=9)
+    journal.write_text('{"format": "else"}\n')
+    with pytest.raises(InputError, match="must be a mission's journal"):
+        run_mission(scenario_of(), steps=1, journal=journal)

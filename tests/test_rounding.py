@@ -1,0 +1,114 @@
+"""Printed brackets hold the brackets, printed gaps are no smaller than the gaps."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ratt_opt import Attack
+from ratt_opt._rounding import bracket_text, down, gap_text, up
+from ratt_opt.attackers.task import AttackResult
+from ratt_opt.certificates.verifier.verified import Verified
+from ratt_opt.report.tables import attack_tables, share_text
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FLOATS = st.floats(allow_nan=False, allow_infinity=False)
+POSITIVE = st.floats(min_value=0, exclude_min=True, allow_infinity=False)
+DIGITS = st.integers(1, 15)
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
+
+
+def _close(low: float, rounding: int) -> float:
+    """A float a little above another one, as ends of brackets that are nearly closed."""
+    return low + abs(low) * 10.0**-rounding
+
+
+NEARLY_CLOSED = st.builds(_close, st.floats(-1e300, 1e300), st.integers(1, 17))
+
+
+@given(value=FLOATS, digits=DIGITS)
+def test_down_and_up_are_the_nearest_decimals_on_either_side(value: float, digits: int) -> None:
+    low, exact, high = Fraction(down(value, digits)), Fraction(value), Fraction(up(value, digits))
+    assert low <= exact <= high
+    assert low == high == exact or high - low <= abs(exact) * Fraction(10) ** (1 - digits)
+    for text in (down(value, digits), up(value, digits)):
+        assert len(re.sub(r"e.*|[-.]", "", text).strip("0")) <= digits
+
+
+@given(lower=st.one_of(FLOATS, NEARLY_CLOSED), other=st.one_of(FLOATS, st.integers(1, 17)), digits=DIGITS)
+def test_a_printed_bracket_holds_the_bracket(lower: float, other: float | int, digits: int) -> None:
+    upper = _close(lower, other) if isinstance(other, int) else max(lower, other)
+    shown = [Fraction(number) for number in NUMBER.findall(bracket_text(lower, upper, digits=digits))]
+    if lower == upper:
+        assert len(shown) == 1
+    else:
+        assert len(shown) == 2
+        assert shown[0] <= Fraction(lower)
+        assert shown[1] >= Fraction(upper)
+
+
+@given(upper=POSITIVE, share=st.floats(0, 1), digits=DIGITS)
+def test_a_printed_gap_is_no_smaller_than_the_gap_and_a_share_no_larger(
+    upper: float, share: float, digits: int
+) -> None:
+    lower = upper * share
+    exact = 1 - Fraction(lower) / Fraction(upper)
+    assert exact <= Fraction(gap_text(lower, upper, digits)) <= exact * (1 + Fraction(10) ** (1 - digits))
+    shown = share_text(lower, upper)
+    least = 1 - Fraction("1e-9") if shown == "optimal to 1e-9" else Fraction(shown.removeprefix("at least "))
+    assert least <= 1 - exact
+
+
+def test_what_is_exact_is_printed_as_it_is() -> None:
+    assert [down(0.5, 3), up(0.5, 3), up(100.0, 3), up(0.0, 3), down(1e10, 10)] == ["0.5", "0.5", "100", "0", "1e+10"]
+    assert bracket_text(1 / 3, 1 / 3) == "0.3333333333"
+    assert bracket_text(1 / 3, 2 / 3, digits=3) == "[0.333, 0.667]"
+    assert bracket_text(0.0, float("inf")) == "[0, inf]"
+    assert gap_text(0.0, 0.0, 3) == "0"
+    assert share_text(0.0, 0.0) == "optimal to 1e-9"
+    assert share_text(1.0, 4.0) == "at least 0.25"
+
+
+def _cells(tables: Sequence[object]) -> str:
+    return " ".join(str(cell) for table in tables for column in table.columns for cell in column.cells)  # type: ignore[attr-defined]
+
+
+@given(lower=st.floats(0, 1e6), width=st.floats(0, 1))
+def test_tables_and_representations_use_it(lower: float, width: float) -> None:
+    """The numbers a person reads of an attack and of a certificate."""
+    upper = lower + width
+    result = AttackResult(attack=Attack(), lower=lower, upper=upper, stop=Stop.TIME, evaluations=0)
+    shown = [Fraction(x) for x in NUMBER.findall(_cells(list(attack_tables({"exact": result}, None, None, None))))]
+    assert max(shown) >= Fraction(upper) or lower == upper
+    found = repr(result)
+    low, high = (Fraction(x) for x in NUMBER.findall(found)[:2])
+    assert low <= Fraction(lower)
+    assert high >= Fraction(upper)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(1.0, 1.0 + 2**-52), (0.1, 0.3), (0.0, 0.0), (5e-324, 1e-323)])
+def test_the_verifier_says_a_gap_no_smaller_than_it_is(lower: float, upper: float) -> None:
+    counts = dict.fromkeys(["n_robots", "n_targets", "n_elements", "alpha_s", "alpha_c", "upper_leaves"], 1)
+    words = dict.fromkeys(["lower_method", "objective", "arithmetic", "problem_hash"], "")
+    about = Verified(
+        lower=lower,
+        upper=upper,
+        lower_proved=True,
+        elements=(0,),
+        largest_defect=1 / 3,
+        lower_leaves=1,
+        **counts,
+        **words,
+    )
+    said = "\n".join(about.lines())
+    gap = Fraction(re.findall(r"within (\S+) \(relative\)", said)[0])
+    assert gap * Fraction(upper) >= Fraction(upper) - Fraction(lower)
+    assert Fraction(re.findall(r"up to (\S+),", said)[0]) >= Fraction(1 / 3)
