@@ -15,6 +15,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.problem import Plan
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.any_function import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
@@ -44,6 +45,7 @@ ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
 
+@Step("the best plan")
 def solve_maxmin(
     problem: Problem,
     *,
