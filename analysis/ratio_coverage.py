@@ -44,7 +44,9 @@ THREES = tuple(
     Fraction(n, d) for n, d in ((1, 8), (1, 4), (3, 8), (2, 5), (1, 2), (3, 5), (2, 3), (3, 4), (4, 5), (7, 8))
 )
 LARGE = tuple(
-    (g, p, Fraction(k)) for g, p in ((5, 1), (4, 2), (6, 1), (5, 2), (4, 3)) for k in ("1/4", "2/5", "1/2", "3/4")
+    (size, swapped, Fraction(k))
+    for size, swapped in ((5, 1), (4, 2), (3, 3), (6, 1), (5, 2), (4, 3), (3, 4))
+    for k in ("1/4", "2/5", "1/2", "3/4")
 )
 SHARED = ((3, 1, "nondecreasing"), (4, 1, "nondecreasing"), (4, 2, "nondecreasing"), (5, 2, "nondecreasing"),
           (5, 3, "nondecreasing"), (3, 1, "submodular"), (4, 2, "submodular"))  # fmt: skip
