@@ -2,7 +2,7 @@
     two curvatures from it; tests/formal/test_definitions.py computes them with the Python library. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Planner ExamplesRatt.
+From Ratt Require Import Extrema Teams Guarantees Planner Sublists ExamplesRatt.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -18,26 +18,12 @@ Hypothesis owners_ok : all (fun i => i < n.+1)%N owners.
 
 Definition fraction_value (S : {set E}) : rat := (table_value table S)%:~R.
 
-Fixpoint parts (T : Type) (s : seq T) : seq (seq T) :=
-  if s is x :: s' then parts s' ++ [seq x :: r | r <- parts s'] else [:: [::]].
 Definition listed_feasible (s : seq nat) : bool :=
   all (fun x => all (fun y => (nth 0%N owners x == nth 0%N owners y) ==> (x == y)) s) s.
 (** An element and what it adds to a feasible set. *)
 Definition gains : seq (nat * int) :=
   [seq (x, value (x :: A) - value A)%R |
     A <- parts all_elements, x <- [seq x <- all_elements | (x \notin A) && listed_feasible (x :: A)]].
-
-Lemma filter_parts (T : eqType) (P : pred T) s : [seq x <- s | P x] \in parts s.
-Proof.
-elim: s => [//|x s IH] /=; rewrite mem_cat; case: (P x); last by rewrite IH.
-by rewrite (map_f (cons x) IH) orbT.
-Qed.
-Lemma parts_sub (T : eqType) (s r : seq T) : r \in parts s -> {subset r <= s}.
-Proof.
-elim: s r => [|x s IH] r /=; first by rewrite inE => /eqP ->.
-rewrite mem_cat => /orP[/IH h y /h ys|/mapP[r' /IH h ->] y]; first by rewrite in_cons ys orbT.
-by rewrite !in_cons => /orP[->//|/h ->]; rewrite orbT.
-Qed.
 
 Lemma mem_all (e : E) : (val e \in all_elements) = true.
 Proof. by rewrite mem_iota add0n ltn_ord. Qed.
