@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio
+from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -1,9 +1,9 @@
-"""The one budget of a search: deadline, nodes, interrupt."""
+"""The one budget of a search: deadline, nodes, values of a set function, interrupt."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isinf
 from numbers import Real
 from time import monotonic
 
@@ -31,7 +31,7 @@ class _Interrupt:
 
 @dataclass(slots=True)
 class Budget:
-    """Seconds and nodes that a search may spend, and whether the user interrupted it.
+    """Seconds, nodes and evaluations that a search may spend, and whether the user interrupted it.
 
     A search passes its budget down and asks it in every loop that can be long. Inner searches get a
     :meth:`part` of it. Whoever catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
@@ -41,36 +41,49 @@ class Budget:
     ----------
     time_limit : seconds from now; ``None`` is unlimited, 0 is spent at once
     max_nodes : nodes; ``None`` is unlimited
+    max_evaluations : values of a set function, here and in all parts; ``None`` is unlimited. Counted, and kept, where
+        values are asked for through :class:`ratt_opt.setfunctions.metered.Metered`
 
     Raises
     ------
-    InputError : ``max_nodes`` is not an integer >= 0 or ``time_limit`` is not a number >= 0.
+    InputError : ``max_nodes`` or ``max_evaluations`` is not an integer >= 0, or ``time_limit`` is not a number >= 0.
     """
 
     time_limit: float | None = None
     max_nodes: int | None = None
+    max_evaluations: int | None = None
     nodes: int = field(default=0, init=False)
+    evaluations: int = field(default=0, init=False)
     started: float = field(default_factory=monotonic, init=False)
     _interrupt: _Interrupt = field(default_factory=_Interrupt, init=False, repr=False)
+    _outer: Budget | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.max_nodes is not None:
             self.max_nodes = check_integer("max_nodes", self.max_nodes, low=0)
+        if self.max_evaluations is not None:
+            self.max_evaluations = check_integer("max_evaluations", self.max_evaluations, low=0)
         given = self.time_limit
         if given is not None and (isinstance(given, bool) or not isinstance(given, Real) or not given >= 0):
             raise InputError("time_limit", "must be a number of seconds >= 0", given)
 
     @classmethod
-    def inside(cls, outer: Budget | None, time_limit: float | None = None, max_nodes: int | None = None) -> Budget:
-        """These limits, and the seconds and interrupts of ``outer`` where one is given.
+    def inside(
+        cls,
+        outer: Budget | None,
+        time_limit: float | None = None,
+        max_nodes: int | None = None,
+        max_evaluations: int | None = None,
+    ) -> Budget:
+        """These limits, and the seconds, evaluations and interrupts of ``outer`` where one is given.
 
         Raises
         ------
         InputError : as for a budget of its own.
         """
-        inner = cls(time_limit, max_nodes)
+        inner = cls(time_limit, max_nodes, max_evaluations)
         if outer is not None:
-            inner._interrupt = outer._interrupt
+            inner._interrupt, inner._outer = outer._interrupt, outer
             if outer.time_limit is not None:
                 left = outer.seconds_left
                 inner.time_limit = left if time_limit is None else min(time_limit, left)
@@ -92,20 +105,34 @@ class Budget:
             return Stop.INTERRUPTED
         if self.time_limit is not None and self.elapsed >= self.time_limit:
             return Stop.TIME
+        if self.evaluations_left == 0:
+            return Stop.EVALUATIONS
         if self.max_nodes is not None and self.nodes >= self.max_nodes:
             return Stop.NODES
         return None
 
     @property
     def is_over(self) -> bool:
-        """Whether the time is up or the user interrupted; nodes are not asked."""
+        """Whether the time is up, no evaluation is left or the user interrupted; nodes are not asked."""
         return self.stop() not in {None, Stop.NODES}
 
     def check(self) -> None:
-        """Raise :class:`OutOfBudget` when the time is up or the user interrupted; nodes are not asked."""
+        """Raise :class:`OutOfBudget` when :attr:`is_over`."""
         if (stop := self.stop()) not in {None, Stop.NODES}:
             assert stop is not None
             raise OutOfBudget(stop)
+
+    @property
+    def evaluations_left(self) -> float:
+        """Values of a set function that may still be asked for; infinite without a limit."""
+        own = inf if self.max_evaluations is None else max(self.max_evaluations - self.evaluations, 0)
+        return own if self._outer is None else min(own, self._outer.evaluations_left)
+
+    def evaluate(self, count: int) -> None:
+        """Count values of a set function, here and in every budget around this one."""
+        self.evaluations += count
+        if self._outer is not None:
+            self._outer.evaluate(count)
 
     def nodes_left(self, at_most: int) -> int:
         """Nodes that may still be spent, at most ``at_most``; raises :class:`OutOfBudget` when none is left."""
@@ -119,12 +146,13 @@ class Budget:
         self.nodes += nodes
 
     def part(self, share: float = 1.0, *, max_nodes: int | None = None, at_least: float = 0.0) -> Budget:
-        """A budget of its own nodes with ``share`` of the seconds left (never less than ``at_least`` of them).
+        """A budget of its own nodes with ``share`` of the seconds and evaluations left (``at_least`` so many seconds).
 
         An interrupt of either is an interrupt of both.
         """
-        left = self.seconds_left
-        return Budget.inside(self, None if self.time_limit is None else max(share * left, at_least), max_nodes)
+        seconds = None if self.time_limit is None else max(share * self.seconds_left, at_least)
+        evaluations = None if isinf(self.evaluations_left) else int(share * self.evaluations_left)
+        return Budget.inside(self, seconds, max_nodes, evaluations)
 
     def interrupt(self) -> Stop:
         """Note that the user interrupted; returns the reason to stop with."""

@@ -20,6 +20,8 @@ class Stop(Enum):
     """The time limit was reached."""
     NODES = "nodes"
     """The node limit was reached."""
+    EVALUATIONS = "evaluations"
+    """The limit on values of a set function was reached."""
     INTERRUPTED = "interrupted"
     """The user interrupted; the bracket so far is valid."""
     HEURISTIC = "heuristic"

@@ -2,8 +2,8 @@
 
 ``python -m analysis.missions.real_data --data FOLDER --trials 5``
 
-Trials start at different times and believe the landmarks elsewhere at first; all planners fly every trial. The sensor is
-fitted to the half of the dataset that is not replayed.
+Trials start at different times and believe the landmarks elsewhere at first; all planners fly every trial. The sensor
+is fitted to the half of the dataset that is not replayed.
 """
 
 from __future__ import annotations

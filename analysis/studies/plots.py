@@ -85,10 +85,14 @@ def _side_by_side(
         yield at, width, planner, means, spread
 
 
-def bands(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, look: Look, label: str) -> None:
-    """Draw a curve of means with its confidence band."""
+def bands(
+    axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, look: Look, label: str, dashed: bool = False
+) -> None:
+    """Draw a curve of means with its confidence band; ``dashed`` where it may run along one drawn before."""
     colour = look.colour
-    axes.plot(x, [e.mean for e in estimates], color=colour, label=label, marker=look.marker, markersize=4.5)
+    style: dict[str, Any] = {"linestyle": (0, (3, 3)), "markerfacecolor": "none"} if dashed else {}
+    means = [e.mean for e in estimates]
+    axes.plot(x, means, color=colour, label=label, marker=look.marker, markersize=7 if dashed else 4.5, **style)
     low, high = ([getattr(e, side) for e in estimates] for side in ("low", "high"))
     if np.isfinite([*low, *high]).all():
         axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)

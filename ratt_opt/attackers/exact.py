@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
 from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
@@ -17,7 +19,9 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -34,16 +38,21 @@ THRESHOLDS_FASTER = 15
 BOUND_SHARE = 0.3
 """Of what is left of the budget, for the weakest group of the forced size; prices get the rest. Not measured."""
 
+EXACT_SHARE = 0.9
+"""Of the seconds of a survey; the heuristics need little."""
+
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
 
 
+@Step("the worst attack")
 def worst_case_attack(
     problem: Problem,
     elements: ArrayLike,
     *,
     max_nodes: int | None = None,
     time_limit: float | None = None,
+    max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
@@ -62,6 +71,8 @@ def worst_case_attack(
       own: annealed attacks, and prices that no weak group pays (``by_prices``; a node is a branch on one robot),
       until closed or out of time. Relies on a non-decreasing objective, as above; targets of any dimension. Compiling
       takes about a minute once per machine.
+    - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
+      steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
       non-decreasing objective (not checked).
 
@@ -74,6 +85,7 @@ def worst_case_attack(
     problem : N robots, E elements
     elements : (N,) element chosen for each robot
     max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
+    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -82,40 +94,49 @@ def worst_case_attack(
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
-    own = Budget.inside(budget, time_limit, max_nodes)
+    own = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     values = PlanValues(problem, elements)
     bracket = None
     try:
-        first = bounded_rational_attack(problem, values.plan)
+        asked = problem
+        if not isinstance(problem.objective, InformationObjective):
+            asked = metered_problem(problem, own)
+            values.objective = asked.objective
+        first = bounded_rational_attack(asked, values.plan)
         bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
         patient = time_limit is not None and budget is None
-        stop = _search(AttackTask(problem, values, bracket, own), patient=patient)
+        stop = _search(AttackTask(asked, values, bracket, own), patient=patient)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
     if bracket is None:  # what no attack at all gives
-        values.evaluations += len(problem.communication.groups())
-        bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), values(()))
+        values.objective = unmetered(problem.objective)
+        bracket = AttackBracket(Attack(), _unattacked(problem, values), values(()))
     attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
     return AttackResult(
         attack=attack, lower=lower, upper=upper, stop=stop, evaluations=values.evaluations, nodes=own.nodes
     )
 
 
+def _unattacked(problem: Problem, values: PlanValues) -> float:
+    return max(values(group) for group in problem.communication.groups())
+
+
 def _search(task: AttackTask, *, patient: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
+    if not isinstance(problem.objective, InformationObjective):
+        return _any_function(task)
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(task)
-    if isinstance(problem.objective, InformationObjective):
-        task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
+    task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
     team = PlanarTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
 
         return SizeVectorSearch(task, team).run()
-    better = greedy_attack(problem, plan)
+    better = greedy_attack(problem, plan, budget=task.budget)
     task.bracket.offer(better.attack, better.upper)
     task.budget.check()
     groups = _few_groups(problem, team)
@@ -124,6 +145,18 @@ def _search(task: AttackTask, *, patient: bool) -> Stop:
     if team is not None and problem.communication.is_complete:
         unprotected_bound(task, team)
     return _any_graph(task, team, groups, patient=patient)
+
+
+def _any_function(task: AttackTask) -> Stop:
+    """Thresholds where all sets of robots can be valued; where that is limited, and beyond, first what is quick."""
+    n_robots, budget = task.problem.n_robots, task.budget
+    is_limited = min(budget.seconds_left, budget.evaluations_left) < math.inf
+    if n_robots > LARGEST_COMPILED or is_limited:
+        any_bound(task)
+        exchange_attack(task)
+    if n_robots <= LARGEST_COMPILED and 2**n_robots <= budget.evaluations_left:
+        return threshold_search(task)
+    return Stop.CLOSED if task.bracket.is_closed else budget.stop() or Stop.HEURISTIC
 
 
 def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, patient: bool) -> Stop:
@@ -189,7 +222,7 @@ def attack_survey(
 
     Parameters
     ----------
-    time_limit : seconds for the exact attack; unlimited by default
+    time_limit : seconds for all of them, nine tenths for the exact attack; unlimited by default
     seed : of the random attack
     budget : an outer search's budget: its seconds and interrupts count too
 
@@ -197,9 +230,11 @@ def attack_survey(
     ------
     InputError : the plan is not one element per robot.
     """
+    own = Budget.inside(budget, time_limit)
+    seconds = None if time_limit is None else EXACT_SHARE * time_limit
     return {
-        "exact": worst_case_attack(problem, elements, time_limit=time_limit, budget=budget),
+        "exact": worst_case_attack(problem, elements, time_limit=seconds, budget=budget),
         "bounded rational": bounded_rational_attack(problem, elements),
-        "greedy": greedy_attack(problem, elements),
+        "greedy": greedy_attack(problem, elements, budget=own),
         "random": random_attack(problem, elements, seed=seed),
     }

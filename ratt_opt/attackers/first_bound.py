@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["first_bound", "weakest_average"]
+__all__ = ["first_bound", "strongest_left", "weakest_average"]
 
 ROUNDING = 1e-12
 """Relative: values are sums of a few hundred numbers."""
@@ -33,7 +33,7 @@ def first_bound(objective: InformationObjective, plan: IntArray, threat: Threat)
         return -np.inf
     single = objective.extensions(np.array([], dtype=np.int64), plan)
     weakest = max(float(np.sort(single)[size - 1]), weakest_average(objective, plan, size))
-    bound = max(_strongest_left(single, threat), weakest)
+    bound = max(strongest_left(single, threat), weakest)
     return bound - ROUNDING * abs(bound) - objective.rounding
 
 
@@ -43,7 +43,7 @@ def weakest_average(objective: InformationObjective, plan: IntArray, size: int) 
     return float(np.partition(worths, size - 1)[:size].mean())
 
 
-def _strongest_left(single: FloatArray, threat: Threat) -> float:
+def strongest_left(single: FloatArray, threat: Threat) -> float:
     """The largest individual value once the strongest robots that may be are blinded."""
     is_protected = np.isin(np.arange(len(single)), list(threat.protected_robots))
     left = np.sort(single[~is_protected])[: len(single) - int(is_protected.sum()) - threat.n_blinded]

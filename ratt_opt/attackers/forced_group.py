@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.graph.largest_group.counting import counting_bound, heuristic_cut
+from ratt_opt.graph.largest_group.counting import counting_bound
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
@@ -61,7 +62,7 @@ def forced_group_bound(task: AttackTask, team: PlanarTeam | None) -> Stop:
 def _offer_cut(task: AttackTask, single: FloatArray) -> None:
     """The cut that shrinks the largest group, with the strongest robots of the best group blinded in turn."""
     problem = task.problem
-    cut = heuristic_cut(problem.threat)
+    cut = heuristic_cut(problem.threat, task.budget)
     groups = problem.communication.groups(cut)
     blinded: set[int] = set()
     for _ in range(problem.threat.n_blinded):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt.bounds.group_size import achievable_group_size, strongest_robots
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.curvatures.curvature import SECONDS, total_curvature
 from ratt_opt.curvatures.domains import domain_of, over_subsets
 from ratt_opt.errors import InputError
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["instance_bound"]
 
+TABLE_SHARE = 0.5
+"""Share of the seconds left in which all subsets have to be looked at; a bracket of the marginals gets the rest."""
 MOST_ROBOTS = 16
 """Most robots whose subsets are all looked at: one table of 2**16 marginals a robot."""
 
@@ -39,14 +41,14 @@ def instance_bound(
 ) -> Guarantee:
     """Share of the optimum that a plan keeps under the worst attack, from this plan's and the instance's own numbers.
 
-    The larger of two. *By marginals.* Let ``u`` be the plan, ``o`` any plan, and put the robots in any order. For
-    every set ``S`` of robots, ``u_S`` is built robot by robot in that order, each adding at least ``l_i``, the smallest
-    marginal of ``u_i`` over sets of elements that the plan has before ``i`` (submodular: the marginal on top of all of
-    them). And ``o_S`` is built from marginals of at most ``m_i``, the largest marginal of any element of robot ``i``
-    over feasible sets (submodular: its value alone). So ``phi(u_S) >= sum_S l_i >= min_i (l_i / m_i) phi(o_S)``, for
-    every ``S``, hence for the best group of every outcome and after the worst attack. The order that makes the smallest
-    ratio largest puts last, again and again, the robot with the largest ratio among those left: leaving robots out can
-    only raise the others' ``l``.
+    Proof, of the larger of two. *By marginals.* Let ``u`` be the plan, ``o`` any plan, and put the robots in any
+    order. For every set ``S`` of robots, ``u_S`` is built robot by robot in that order, each adding at least ``l_i``,
+    the smallest marginal of ``u_i`` over sets of elements that the plan has before ``i`` (submodular: the marginal on
+    top of all of them). And ``o_S`` is built from marginals of at most ``m_i``, the largest marginal of any element of
+    robot ``i`` over feasible sets (submodular: its value alone). So ``phi(u_S) >= sum_S l_i >= min_i (l_i / m_i)
+    phi(o_S)``, for every ``S``, hence for the best group of every outcome and after the worst attack. The order that
+    makes the smallest ratio largest puts last, again and again, the robot with the largest ratio among those left:
+    leaving robots out can only raise the others' ``l``.
 
     *By group size* (:func:`group_size_bound` with the numbers themselves). Some robot of the ``alpha_s + 1`` largest
     ``phi(u_i)`` sees after every attack, so the plan keeps the smallest of these. And the attack that blinds the
@@ -58,7 +60,7 @@ def instance_bound(
     elements : (N,) any plan, RATT's or not
     k : curvature over feasible sets of a submodular objective (its word for submodularity, and its values alone)
     c : total curvature over feasible sets of a non-decreasing objective; give exactly one of the two
-    time_limit : seconds for the marginals within the plan, where a table of its subsets is too large (over 16 robots)
+    time_limit : seconds; what is not known by then counts as nothing
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -77,10 +79,19 @@ def instance_bound(
         raise InputError("k" if k else "c", "must be over feasible sets (give the owners)", given.domain)
     plan = problem.check_plan(elements)
     largest = np.array([given.marginals.largest_upper[choice].max() for choice in problem.choices])
-    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, Budget.inside(budget, time_limit))
-    value = max(_best_order(within, largest), _by_group_size(problem, plan, largest))
+    own = Budget.inside(budget, time_limit)
+    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, own)
+    try:
+        value = _best_order(within, largest, own)
+    except OutOfBudget:
+        value = 0.0
+    except KeyboardInterrupt:
+        own.interrupt()
+        value = 0.0
+    if np.isfinite(largest).all():
+        value = max(value, _by_group_size(problem, plan, largest))
     needs = (SUBMODULAR if k else NON_DECREASING, "this instance and this plan")
-    return Guarantee(min(max(value, 0.0), 1.0), needs, "this instance's marginals and groups (proof in its docstring)")
+    return Guarantee(min(max(value, 0.0), 1.0), needs, "this instance's marginals and groups", "instance_bound")
 
 
 def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray) -> float:
@@ -102,12 +113,18 @@ def _free_robots(problem: Problem) -> IntArray:
     return np.setdiff1d(np.arange(problem.n_robots), list(problem.protected_robots)).astype(np.int64)
 
 
-def _best_order(within: Callable[[IntArray, int], float], largest: FloatArray) -> float:
-    """The smallest ratio under the best order; robots that can never add anything do not count."""
+def _best_order(within: Callable[[IntArray, int], float], largest: FloatArray, budget: Budget) -> float:
+    """The smallest ratio under the best order; robots that can never add anything do not count.
+
+    Raises ``OutOfBudget``.
+    """
     left = np.flatnonzero(largest > 0)
     smallest = 1.0
     while len(left):
-        ratios = np.array([within(left[left != i], int(i)) / largest[i] for i in left])
+        ratios = np.empty(len(left))
+        for position, i in enumerate(left):
+            budget.check()
+            ratios[position] = within(left[left != i], int(i)) / largest[i]
         smallest = min(smallest, float(ratios.max()))
         left = np.delete(left, int(ratios.argmax()))
     return smallest
@@ -126,14 +143,21 @@ def _on_top(problem: Problem, plan: IntArray) -> Callable[[IntArray, int], float
 def _smallest_within(problem: Problem, plan: IntArray, budget: Budget) -> Callable[[IntArray, int], float]:
     """Smallest marginals of a robot's element over subsets of some others'."""
     f, robots = problem.objective, len(plan)
-    if robots > MOST_ROBOTS:
+    values = None
+    domain = domain_of(f, None, plan) if robots <= MOST_ROBOTS else None
+    if domain is not None:
+        try:
+            values = domain.values(budget.part(TABLE_SHARE))
+        except OutOfBudget:
+            pass
+        except KeyboardInterrupt:
+            budget.interrupt()
+    if domain is None or values is None:
         # The domain's elements ascend; the plan's are in the order of the robots.
         order = np.argsort(np.argsort(plan, kind="stable"), kind="stable")
         lower = total_curvature(f, plan=plan, gap=0.1, time_limit=None, budget=budget).marginals.smallest_lower[order]
         return lambda _, robot: float(lower[robot])
-    domain = domain_of(f, None, plan)
     position = {int(name): axis for axis, name in enumerate(domain.names)}
-    values = domain.values()
     axes_of = [position[int(e)] for e in plan]
     tables = [over_subsets(np.minimum, np.diff(values, axis=axis).squeeze(axis)) for axis in axes_of]
 

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_number
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.curvatures.any_function import any_marginals
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.curvatures.marginals import (
     MarginalBrackets,
@@ -25,14 +26,17 @@ from ratt_opt.curvatures.marginals import (
 from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
 from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.progress import Step
+from ratt_opt.setfunctions.base import TableFunction, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.setfunctions.properties import Violation, find_submodularity_violation
+from ratt_opt.setfunctions.metered import Metered
+from ratt_opt.setfunctions.properties import NotFound, Violation, find_submodularity_violation
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt._validation import FloatArray
     from ratt_opt.setfunctions.base import SetFunction
 
 __all__ = ["Curvature", "curvature", "curvature_over", "total_curvature"]
@@ -41,6 +45,8 @@ GAP = 0.02
 """Default gap: a guarantee that is linear in ``1 - curvature`` then loses at most 2 % to the bracket."""
 SECONDS = 30.0
 """Default seconds: what 30 robots with 12 controls take at a gap of 0.15, up to one instance in twenty (measured)."""
+ENUMERATION_SHARE = 0.5
+"""Share of the seconds left in which an enumeration has to end; a bracket gets the rest."""
 LARGEST_CHECKED = 16
 """Largest ground set whose submodularity is checked before the closed form is used (milliseconds)."""
 
@@ -80,12 +86,14 @@ def total_curvature(
     gap: float = GAP,
     time_limit: float | None = SECONDS,
     max_nodes: int | None = None,
+    max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Curvature:
     """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
 
-    Exact where the domain can be enumerated (up to 2**24 sets), else for information criteria a certified bracket,
-    tightened by branch and bound. An interrupt returns the bracket.
+    Exact where the domain can be enumerated (up to 2**24 sets) in time, else for information criteria a certified
+    bracket, tightened by branch and bound; for other functions what theory says of them, and contexts drawn at random
+    (seeded), which attain the lower end. An interrupt returns the bracket.
 
     Parameters
     ----------
@@ -94,15 +102,16 @@ def total_curvature(
     plan : one element per robot, for the domain ``"robots"`` (``owners`` are then not used)
     gap : the search stops once ``(1 - lower) / (1 - upper) <= 1 + gap``; not used where everything is enumerated
     time_limit : seconds for the search; ``None`` for no limit. max_nodes : parts it may bound
+    max_evaluations : values of a function that is no information criterion; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
-    InputError : not non-decreasing, or the domain is too large for an enumeration and no bracket is known for ``f``.
+    InputError : not non-decreasing (shown).
 
     Source: ratt.tex, eq:total_curvature (Sviridenko, Vondrak, Ward 2017, Section 8).
     """
-    inner = Budget.inside(budget, time_limit, max_nodes)
+    inner = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     return curvature_over(domain_of(f, owners, plan), total=True, gap=check_number("gap", gap, low=0), budget=inner)
 
 
@@ -114,6 +123,7 @@ def curvature(
     gap: float = GAP,
     time_limit: float | None = SECONDS,
     max_nodes: int | None = None,
+    max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Curvature:
     """Curvature ``k = 1 - min_x (smallest marginal of x) / f(x)`` of a submodular function.
@@ -125,72 +135,98 @@ def curvature(
     ----------
     f : normalised, non-decreasing and submodular. Over ``"elements"`` and ``"robots"`` that is checked where the table
         fits, known where theory proves it (log-det), and otherwise relied on, not checked (``how`` says which)
-    owners, plan, gap, time_limit, max_nodes, budget : see :func:`total_curvature`
+    owners, plan, gap, time_limit, max_nodes, max_evaluations, budget : see :func:`total_curvature`
 
     Raises
     ------
-    InputError : not non-decreasing or not submodular (shown), or the domain is too large for an enumeration and no
-        bracket is known for ``f``.
+    InputError : not non-decreasing or not submodular (shown).
 
     Source: ratt.tex, eq:curvature (Conforti and Cornuejols 1984).
     """
-    inner = Budget.inside(budget, time_limit, max_nodes)
+    inner = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     return curvature_over(domain_of(f, owners, plan), total=False, gap=check_number("gap", gap, low=0), budget=inner)
 
 
+@Step("curvature")
 def curvature_over(domain: Domain, *, total: bool, gap: float, budget: Budget) -> Curvature:
     """The total curvature, or the curvature, over a domain."""
     if total:
         return _curvature_from(_measured(domain, gap, budget, against_own=False), domain)
     if domain.name == "feasible":
         found = _measured(domain, gap, budget, against_own=True)
-        if not domain.restricted.is_submodular:
+        if not domain.is_submodular:
             found = replace(found, how=f"{found.how} (submodularity relied on, not checked)")
     else:
-        top, how = _top_of_lattice(domain.restricted), _submodularity(domain)
-        found = MeasuredMarginals(marginals=top, how=how, stop=Stop.EXHAUSTED, nodes=0)
-        check_monotone(domain, top)
-    single = finite_values(domain.restricted.singletons()) - finite_values(np.array([domain.restricted([])]))
-    marginals = replace(found.marginals, largest_lower=single, largest_upper=single)
+        found = _on_top(domain, budget)
+    marginals = found.marginals
+    if (single := _singles(domain, budget)) is not None:
+        marginals = replace(marginals, largest_lower=single, largest_upper=single)
     return _curvature_from(replace(found, marginals=marginals), domain)
+
+
+def _singles(domain: Domain, budget: Budget) -> FloatArray | None:
+    """(n,) marginals without context; ``None`` where the budget does not allow that many values."""
+    f = domain.restricted
+    metered = f if isinstance(f, InformationObjective | TableFunction) else Metered(f, budget)
+    try:
+        return finite_values(metered.singletons()) - metered([])
+    except OutOfBudget:
+        return None
+
+
+def _on_top(domain: Domain, budget: Budget) -> MeasuredMarginals:
+    """Smallest marginals of a submodular function over sets of any elements: on top of all others."""
+    try:
+        top, how = _top_of_lattice(domain.restricted, budget), _submodularity(domain, budget)
+    except OutOfBudget as out:
+        return any_marginals(domain, budget, out.stop)
+    check_monotone(domain, top)
+    return MeasuredMarginals(marginals=top, how=how, stop=Stop.EXHAUSTED, nodes=0)
 
 
 def _measured(domain: Domain, gap: float, budget: Budget, *, against_own: bool) -> MeasuredMarginals:
     """``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal."""
     f = domain.restricted
     if domain.count <= LARGEST_ENUMERATION:
-        marginals = enumerate_marginals(domain)
-        return MeasuredMarginals(marginals=marginals, how="every context enumerated", stop=Stop.EXHAUSTED, nodes=0)
+        try:
+            marginals = enumerate_marginals(domain, budget.part(ENUMERATION_SHARE))
+            return MeasuredMarginals(marginals=marginals, how="every context enumerated", stop=Stop.EXHAUSTED, nodes=0)
+        except OutOfBudget:
+            pass  # a bracket in the time left
+        except KeyboardInterrupt:
+            budget.interrupt()
     if not isinstance(f, InformationObjective):
-        need = f"{domain.count:.3g} contexts, {domain.count * 8 / 2**30:.3g} GiB"
-        raise InputError("f", f"must have at most {LARGEST_ENUMERATION:,} sets in its domain to be enumerated", need)
+        return any_marginals(domain, budget, Stop.HEURISTIC)
     kind: type[MarginalBrackets] = SeparableBrackets if f.planar_levels() is None else PlanarBrackets
     brackets = kind(f, domain.owners, gap=gap, budget=budget, against_own=against_own)
     stop, how = brackets.run(), f"{brackets.rests_on} and attained contexts"
     return MeasuredMarginals(marginals=brackets.marginals(), how=how, stop=stop, nodes=budget.nodes)
 
 
-def _submodularity(domain: Domain) -> str:
+def _submodularity(domain: Domain, budget: Budget) -> str:
     """Say on what the closed form rests; refuse a function that is shown not to be submodular."""
     how = "ends of the lattice"
-    if domain.restricted.is_submodular:
+    if domain.is_submodular:
         return f"{how} (submodular by theory)"
+    unchecked = f"{how} (submodularity relied on, not checked)"
     if domain.restricted.n > LARGEST_CHECKED:
-        return f"{how} (submodularity relied on, not checked)"
-    found = find_submodularity_violation(domain.restricted)
+        return unchecked
+    found = find_submodularity_violation(domain.restricted, budget=budget.part(ENUMERATION_SHARE))
+    if isinstance(found, NotFound):
+        return unchecked
     if isinstance(found, Violation):
         sets = " and ".join(str(list(domain.named(s))) for s in (found.a, found.b))
         raise InputError("f", "must be submodular (see total_curvature)", f"slack {found.slack:.6g} at {sets}")
     return f"{how} (submodularity checked)"
 
 
-def _top_of_lattice(f: SetFunction) -> Marginals:
-    """Marginals on top of all other elements."""
-    everything = np.arange(f.n)
-    top = finite_values(np.array([f(everything)])) - finite_values(f.evaluate(~np.eye(f.n, dtype=np.bool_)))
+def _top_of_lattice(given: SetFunction, budget: Budget) -> Marginals:
+    """Marginals on top of all other elements; raises ``OutOfBudget``."""
+    f, everything = Metered(given, budget), np.arange(given.n)
+    top = f(everything) - f.evaluate(~np.eye(f.n, dtype=np.bool_))
     contexts = tuple(tuple(int(e) for e in everything if e != x) for x in everything)
     nothing: tuple[tuple[int, ...], ...] = ((),) * f.n
-    single = finite_values(f.singletons())
+    single = given.singletons() if isinstance(given, InformationObjective) else f.singletons()
     return Marginals(top, top, single, single, contexts, nothing)
 
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt._validation import IntArray, check_subset
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_subset
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import TableFunction, check_table_size, finite_values
+from ratt_opt.setfunctions.base import SetFunction, TableFunction, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.metered import Metered
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from ratt_opt._validation import FloatArray
-    from ratt_opt.setfunctions.base import SetFunction
 
 __all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "over_subsets", "values_over"]
 
@@ -44,17 +44,24 @@ class Domain:
 
     @property
     def count(self) -> float:
-        """Number of sets in the domain."""
-        return float(np.prod(np.bincount(self.owners) + 1.0))
+        """Number of sets in the domain; infinite beyond floating point."""
+        with np.errstate(over="ignore"):
+            return float(np.prod(np.bincount(self.owners) + 1.0))
+
+    @property
+    def is_submodular(self) -> bool:
+        """Whether theory proves it of the function."""
+        f = self.restricted
+        return f.f.is_submodular if isinstance(f, Restricted) else f.is_submodular
 
     @property
     def groups(self) -> list[IntArray]:
         """Elements of each owner."""
         return [np.flatnonzero(self.owners == i) for i in range(int(self.owners.max(initial=-1)) + 1)]
 
-    def values(self) -> FloatArray:
-        """Values of all sets: one axis an owner, index 0 for none of its elements."""
-        return finite_values(values_over(self.restricted, self.groups))
+    def values(self, budget: Budget) -> FloatArray:
+        """Values of all sets: one axis an owner, index 0 for none of its elements; raises ``OutOfBudget``."""
+        return finite_values(values_over(self.restricted, self.groups, budget))
 
     def element(self, x: int | np.int64) -> int:
         """The original index of one element."""
@@ -84,12 +91,17 @@ def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) 
     return Domain(name="feasible", restricted=f, owners=numbered.astype(np.int64), names=everything, rounding=error)
 
 
-def values_over(f: SetFunction, groups: list[IntArray]) -> FloatArray:
-    """Values of all sets with at most one element of each group: one axis a group, index 0 for none of it."""
+def values_over(f: SetFunction, groups: list[IntArray], budget: Budget) -> FloatArray:
+    """Values of all sets with at most one element of each group: one axis a group, index 0 for none of it.
+
+    Raises ``OutOfBudget``.
+    """
     shape = tuple(len(group) + 1 for group in groups)
     if isinstance(f, InformationObjective):
-        return _information_values(f, groups).reshape(shape)
-    size = int(np.prod(shape))
+        return _information_values(f, groups, budget).reshape(shape)
+    size, f = int(np.prod(shape)), Metered(f, budget)
+    if size > budget.evaluations_left:
+        raise OutOfBudget(Stop.EVALUATIONS)
     values = np.empty(size)
     for start in range(0, size, BLOCK):
         index = np.arange(start, min(start + BLOCK, size))
@@ -101,7 +113,7 @@ def values_over(f: SetFunction, groups: list[IntArray]) -> FloatArray:
     return values.reshape(shape)
 
 
-def _information_values(f: InformationObjective, groups: list[IntArray]) -> FloatArray:
+def _information_values(f: InformationObjective, groups: list[IntArray], budget: Budget) -> FloatArray:
     """Flat values in C order; the last groups' sums are shared by all choices of the first ones."""
     shape = [len(group) + 1 for group in groups]
     split = len(groups)
@@ -111,7 +123,11 @@ def _information_values(f: InformationObjective, groups: list[IntArray]) -> Floa
         block *= shape[split]
     low = _sums(f, groups[split:], f.prior_information)
     high = _sums(f, groups[:split], np.zeros_like(f.prior_information))
-    return np.concatenate([f.value(low + offset) for offset in high])
+    blocks = []
+    for offset in high:
+        budget.check()
+        blocks.append(f.value(low + offset))
+    return np.concatenate(blocks)
 
 
 def _sums(f: InformationObjective, groups: list[IntArray], start: FloatArray) -> FloatArray:
@@ -126,8 +142,10 @@ def _sums(f: InformationObjective, groups: list[IntArray], start: FloatArray) ->
 def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
     if isinstance(f, InformationObjective):
         return f.restricted_to(chosen)
-    check_table_size(len(chosen))
-    return TableFunction(values_over(f, list(chosen[:, None])).ravel(order="F"))  # the first element is the lowest bit
+    if isinstance(f, TableFunction):
+        values = values_over(f, list(chosen[:, None]), Budget())
+        return TableFunction(values.ravel(order="F"))  # the first element is the lowest bit
+    return Restricted(f, chosen)
 
 
 def _rounding(f: SetFunction) -> float:
@@ -137,6 +155,31 @@ def _rounding(f: SetFunction) -> float:
     if isinstance(f, InformationObjective):
         size += f.prior_magnitude
     return ROUNDING * size
+
+
+class Restricted(SetFunction):
+    """``f`` on some of its elements, in the given order."""
+
+    __slots__ = ("chosen", "f")
+
+    def __init__(self, f: SetFunction, chosen: IntArray) -> None:
+        self.f, self.chosen = f, chosen
+
+    @property
+    def n(self) -> int:
+        """Number of elements that take part."""
+        return len(self.chosen)
+
+    @property
+    def most_total_curvature(self) -> float:
+        """As of the whole function: fewer contexts can only be less curved."""
+        return self.f.most_total_curvature
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        whole = np.zeros((len(membership), self.f.n), dtype=np.bool_)
+        whole[:, self.chosen] = membership
+        return self.f.evaluate(whole)
 
 
 def over_subsets(extreme: np.ufunc, table: FloatArray) -> FloatArray:

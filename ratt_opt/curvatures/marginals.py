@@ -75,20 +75,21 @@ class MeasuredMarginals:
     nodes: int
 
 
-def enumerate_marginals(domain: Domain, values: FloatArray | None = None) -> Marginals:
+def enumerate_marginals(domain: Domain, budget: Budget, values: FloatArray | None = None) -> Marginals:
     """Exact smallest and largest marginals, O(n) passes over the domain (``values`` : its table, if known).
 
-    InputError : the function is not non-decreasing; the text shows where.
+    Raises ``OutOfBudget``, and ``InputError`` : the function is not non-decreasing; the text shows where.
     """
     alone = len(np.unique(domain.owners)) == domain.restricted.n
     if values is None and alone and isinstance(domain.restricted, TableFunction):
         from ratt_opt.setfunctions.lattice import marginal_ends
 
         f = domain.restricted
+        budget.check()
         least, most = marginal_ends(f.values, f.n)
         found = Marginals(least, least, most, most, _TableContexts(f, 1.0), _TableContexts(f, -1.0))
     else:
-        found = _all_marginals(domain, domain.values() if values is None else values)
+        found = _all_marginals(domain, domain.values(budget) if values is None else values, budget)
     check_monotone(domain, found)
     return found
 
@@ -118,11 +119,12 @@ def elements_at(index: tuple[int | np.intp, ...], groups: list[IntArray]) -> Con
     return tuple(int(group[pick - 1]) for group, pick in zip(groups, index, strict=True) if pick > 0)
 
 
-def _all_marginals(domain: Domain, values: FloatArray) -> Marginals:
+def _all_marginals(domain: Domain, values: FloatArray, budget: Budget) -> Marginals:
     n = domain.restricted.n
     ends = np.empty((2, n))
     contexts: tuple[list[Context], list[Context]] = ([()] * n, [()] * n)
     for x, marginal, rest in each_marginal(values, domain.groups):
+        budget.check()
         for side, where in enumerate((int(marginal.argmin()), int(marginal.argmax()))):
             index = np.unravel_index(where, marginal.shape)
             ends[side, x] = marginal[index]

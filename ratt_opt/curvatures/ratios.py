@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.budget import Budget
-from ratt_opt.curvatures.curvature import GAP, SECONDS, curvature_over
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.curvatures.curvature import ENUMERATION_SHARE, GAP, SECONDS, curvature_over
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.stopping import Stop
 
@@ -71,12 +72,15 @@ class GeneralisedCurvature:
     stop: Stop
 
 
+@Step("submodularity ratio")
 def submodularity_ratio(
     f: SetFunction,
     owners: ArrayLike | None = None,
     *,
     plan: ArrayLike | None = None,
     seed: int = 0,
+    time_limit: float | None = SECONDS,
+    max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> SubmodularityRatio:
     """Bracket the submodularity ratio ``gamma`` of a non-decreasing function.
@@ -88,28 +92,41 @@ def submodularity_ratio(
     attained, by a seeded search.
 
     Arguments and errors are those of :func:`ratt_opt.total_curvature`; ``seed`` : of the search beyond enumeration.
+    A spent limit, or an interrupt, ends enumeration: the bracket is that of a larger domain then.
 
     Source: Bian, Buhmann, Krause, Tschiatschek 2017, Definition 1 (after Das and Kempe 2011).
     """
-    domain, inner = domain_of(f, owners, plan), Budget.inside(budget, SECONDS)
+    domain, inner = domain_of(f, owners, plan), Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
     seed = check_integer("seed", seed, low=0)
-    if domain.count > LARGEST_ENUMERATION:
+    try:
+        if domain.count > LARGEST_ENUMERATION:
+            return _ratio_from_curvature(domain, seed, inner)
+        part = inner.part(ENUMERATION_SHARE)
+        values, groups = _monotone_values(domain, part), domain.groups
+        if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= LARGEST_PAIRS:
+            found = _smallest_ratio(values, groups, part)
+            part.check()
+            return _ratio(min(found[0], 1.0), found, domain, "every nested pair of sets", Stop.EXHAUSTED)
+        later = _later_marginals(values, groups, inner)
+    except OutOfBudget:
         return _ratio_from_curvature(domain, seed, inner)
-    values, groups = _monotone_values(domain), domain.groups
-    if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= LARGEST_PAIRS:
-        found = _smallest_ratio(values, groups)
-        return _ratio(min(found[0], 1.0), found, domain, "every nested pair of sets", Stop.EXHAUSTED)
+    except KeyboardInterrupt:
+        inner.interrupt()
+        return _ratio_from_curvature(domain, seed, inner)
     found = _sampled_ratio(domain, seed, inner)
-    lower = min(_later_marginals(values, groups), 1.0, found[0])
+    lower = min(later, 1.0, found[0])
     return _ratio(lower, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
+@Step("generalised curvature")
 def generalised_curvature(
     f: SetFunction,
     owners: ArrayLike | None = None,
     *,
     plan: ArrayLike | None = None,
     seed: int = 0,
+    time_limit: float | None = SECONDS,
+    max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> GeneralisedCurvature:
     """Bracket the generalised curvature ``alpha`` of a non-decreasing function.
@@ -122,10 +139,19 @@ def generalised_curvature(
 
     Source: Bian, Buhmann, Krause, Tschiatschek 2017, Definition 2.
     """
-    domain, inner = domain_of(f, owners, plan), Budget.inside(budget, SECONDS)
+    domain, inner = domain_of(f, owners, plan), Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
     seed = check_integer("seed", seed, low=0)
+    exact = None
     if domain.count <= LARGEST_ENUMERATION:
-        kept, element, small, large = _smallest_kept(_monotone_values(domain), domain.groups)
+        try:
+            part = inner.part(ENUMERATION_SHARE)
+            exact = _smallest_kept(_monotone_values(domain, part), domain.groups, part)
+        except OutOfBudget:
+            pass  # a bracket in the time left
+        except KeyboardInterrupt:
+            inner.interrupt()
+    if exact is not None:
+        kept, element, small, large = exact
         upper, how, stop = 1.0 - kept, "every nested pair of sets", Stop.EXHAUSTED
     else:
         # The same total curvature compares a marginal with any other of its element, not only with earlier ones.
@@ -141,7 +167,7 @@ def generalised_curvature(
 
 def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget) -> SubmodularityRatio:
     """``rho(w | S)`` is at least ``1 - c`` times the largest marginal of ``w``; those add up to ``rho(W | S)``."""
-    if domain.restricted.is_submodular:
+    if domain.is_submodular:
         return _ratio(1.0, (1.0, (), ()), domain, "submodular by theory", Stop.EXHAUSTED)
     curved = curvature_over(domain, total=True, gap=GAP, budget=budget)
     found = _sampled_ratio(domain, seed, budget)
@@ -156,17 +182,17 @@ def _ratio(
     return SubmodularityRatio(lower=lower, upper=upper, domain=name, base=base, added=added, how=how, stop=stop)
 
 
-def _monotone_values(domain: Domain) -> FloatArray:
-    values = domain.values()
-    enumerate_marginals(domain, values)  # refuses a function that falls
+def _monotone_values(domain: Domain, budget: Budget) -> FloatArray:
+    values = domain.values(budget)
+    enumerate_marginals(domain, budget, values)  # refuses a function that falls
     return values
 
 
-def _smallest_ratio(values: FloatArray, groups: list[IntArray]) -> tuple[float, Context, Context]:
+def _smallest_ratio(values: FloatArray, groups: list[IntArray], budget: Budget) -> tuple[float, Context, Context]:
     """``gamma`` (1 where nothing restricts it) and the sets that attain it."""
     from ratt_opt.setfunctions.lattice import smallest_gain_ratio
 
-    ratio, top, part = smallest_gain_ratio(np.ravel(values), np.array(values.shape, dtype=np.int64))
+    ratio, top, part = smallest_gain_ratio(np.ravel(values), np.array(values.shape, dtype=np.int64), budget)
     if not np.isfinite(ratio):
         return 1.0, (), ()
     whole = elements_at(np.unravel_index(int(top), values.shape), groups)
@@ -174,10 +200,13 @@ def _smallest_ratio(values: FloatArray, groups: list[IntArray]) -> tuple[float, 
     return float(ratio), base, tuple(e for e in whole if e not in base)
 
 
-def _smallest_kept(values: FloatArray, groups: list[IntArray]) -> tuple[float, int | None, Context, Context]:
+def _smallest_kept(
+    values: FloatArray, groups: list[IntArray], budget: Budget
+) -> tuple[float, int | None, Context, Context]:
     """Smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 where no gain is positive); ``i``, ``A`` and ``B``."""
     best: tuple[float, int | None, Context, Context] = (1.0, None, (), ())
     for i, gain, rest in each_marginal(values, groups):
+        budget.check()
         earlier = over_subsets(np.maximum, gain)
         with np.errstate(divide="ignore", invalid="ignore"):
             kept = np.where(earlier > 0, gain / earlier, np.inf)
@@ -189,10 +218,11 @@ def _smallest_kept(values: FloatArray, groups: list[IntArray]) -> tuple[float, i
     return best
 
 
-def _later_marginals(values: FloatArray, groups: list[IntArray]) -> float:
+def _later_marginals(values: FloatArray, groups: list[IntArray], budget: Budget) -> float:
     """Smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``, where that is positive."""
     best = np.inf
     for _, gain, _ in each_marginal(values, groups):
+        budget.check()
         later = gain.copy()
         for axis in range(gain.ndim):
             view = np.moveaxis(later, axis, 0)
@@ -220,11 +250,15 @@ def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatA
             return
         taken = np.sort(rng.choice(len(groups), size, replace=False))
         chosen = [np.array([rng.choice(groups[k])]) for k in taken]
-        yield finite_values(values_over(domain.restricted, chosen)), chosen
+        try:
+            values = finite_values(values_over(domain.restricted, chosen, budget))
+        except OutOfBudget:
+            return
+        yield values, chosen
 
 
 def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> tuple[float, Context, Context]:
-    tried = (_smallest_ratio(values, groups) for values, groups in _samples(domain, seed, budget))
+    tried = (_smallest_ratio(values, groups, Budget()) for values, groups in _samples(domain, seed, budget))
     return min(tried, default=(1.0, (), ()))
 
 
@@ -233,7 +267,7 @@ def _searched_kept(
 ) -> tuple[float, int | None, Context, Context]:
     """The best of the sampled pairs and, if nested, of the contexts that attain the curvature (restricted names)."""
     tried: list[tuple[float, int | None, Context, Context]] = [(1.0, None, (), ())]
-    tried += [_smallest_kept(values, groups) for values, groups in _samples(domain, seed, budget)]
+    tried += [_smallest_kept(values, groups, Budget()) for values, groups in _samples(domain, seed, budget)]
     if found.element is not None and set(found.largest_context) <= set(found.smallest_context):
         back = {domain.element(x): x for x in range(domain.restricted.n)}
         small, large = (tuple(back[e] for e in c) for c in (found.largest_context, found.smallest_context))

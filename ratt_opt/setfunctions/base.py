@@ -11,11 +11,11 @@ from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, 
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import ArrayLike
 
-__all__ = ["SetFunction", "SizedFunction", "TableFunction", "check_table_size", "finite_values"]
+__all__ = ["SetFunction", "SizedFunction", "TableFunction", "check_table_size", "checked_values", "finite_values"]
 
 LARGEST_TABLE = 26
 """Largest ground set that :meth:`SetFunction.table` accepts (512 MiB of float64)."""
@@ -35,6 +35,22 @@ def finite_values(values: FloatArray) -> FloatArray:
     if not np.isfinite(total) and not np.isfinite(values).all():
         bad = values[~np.isfinite(values)][0]
         raise InputError("f", "must have finite values", f"{bad} among the {values.size} asked for")
+    return values
+
+
+def checked_values(f: SetFunction, membership: BoolArray) -> FloatArray:
+    """(K,) values of the subsets in the rows of ``membership`` (K, n), refused where one is no finite number."""
+    values = np.asarray(f.evaluate(membership))
+    if values.shape != (len(membership),) or values.dtype.kind not in "fiub":
+        rule = f"must evaluate to one number for each of {len(membership)} sets"
+        raise InputError("f", rule, f"{values.dtype} array of shape {values.shape}")
+    values = values.astype(np.float64, copy=False)
+    with np.errstate(all="ignore"):
+        is_fine = bool(np.isfinite(values.sum())) or bool(np.isfinite(values).all())  # a finite sum has finite terms
+    if not is_fine:
+        k = int(np.flatnonzero(~np.isfinite(values))[0])
+        shown = f"{values[k]} for the set {np.flatnonzero(membership[k]).tolist()}"
+        raise InputError("f", "must have finite values", shown)
     return values
 
 
@@ -63,6 +79,14 @@ class SetFunction(ABC):
         """Values that differ by no more may be equal but for rounding; 0 where nothing is known of that."""
         return 0.0
 
+    @property
+    def most_total_curvature(self) -> float:
+        """What theory says that the total curvature over all elements is at most; 1 where it says nothing.
+
+        A function of your own that knows better says so: what keeps a share of its value then has a bound.
+        """
+        return 1.0
+
     @abstractmethod
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of many subsets; ``membership`` (K, n) is True where the element belongs to the subset."""
@@ -85,7 +109,7 @@ class SetFunction(ABC):
         """
         membership = np.zeros((1, self.n), dtype=np.bool_)
         membership[0, check_subset("subset", subset, self.n)] = True
-        return float(self.evaluate(membership)[0])
+        return float(checked_values(self, membership)[0])
 
     def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
         """(C,) values ``f(base + {e})`` for each candidate ``e``.
@@ -95,7 +119,7 @@ class SetFunction(ABC):
         membership = np.zeros((len(candidates), self.n), dtype=np.bool_)
         membership[:, base] = True
         membership[np.arange(len(candidates)), candidates] = True
-        return self.evaluate(membership)
+        return checked_values(self, membership)
 
     def singletons(self) -> FloatArray:
         """(n,) values of the one-element sets."""
@@ -107,13 +131,18 @@ class SetFunction(ABC):
         InputError : the table cannot fit in memory (the text says how much it would need).
         """
         check_table_size(self.n)
-        values = np.empty(2**self.n)
-        bits = np.arange(self.n)
-        chunk = 2 ** min(self.n, 14)
-        for start in range(0, 2**self.n, chunk):
-            masks = np.arange(start, start + chunk)
-            values[start : start + chunk] = self.evaluate((masks[:, None] >> bits & 1).astype(np.bool_))
+        values, done = np.empty(2**self.n), 0
+        for block in self.table_blocks():
+            values[done : done + len(block)] = block
+            done += len(block)
         return values
+
+    def table_blocks(self) -> Iterator[FloatArray]:
+        """The table, block by block."""
+        bits, size = np.arange(self.n), 2 ** min(self.n, 14)
+        for start in range(0, 2**self.n, size):
+            masks = np.arange(start, start + size)
+            yield checked_values(self, (masks[:, None] >> bits & 1).astype(np.bool_))
 
 
 class SizedFunction(SetFunction):

@@ -5,10 +5,14 @@ Every pass reads the table in its own order and makes no copy of it. The plain v
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
 
 __all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_differences", "smallest_gain_ratio"]
 
@@ -37,32 +41,41 @@ def marginal_ends(values: Any, n: int) -> Any:
     return ends
 
 
-@numba.njit(cache=True, fastmath=_FINITE)
-def second_differences(values: Any, n: int) -> Any:
+def second_differences(values: FloatArray, n: int, budget: Budget) -> FloatArray:
     """(n, n) smallest ``f(S+i) + f(S+j) - f(S+i+j) - f(S)`` over ``S``, for ``i < j``; 0 elsewhere.
 
-    The first differences by ``j`` of a block are computed once and stay in cache for all ``i`` within the block.
+    Raises ``OutOfBudget`` : asked before each ``j``, and each of the last ``i``.
     """
     ends = np.zeros((n, n))
     for j in range(1, n):
-        for i in range(j):
-            ends[i, j] = np.inf
+        budget.check()
+        ends[:j, j] = _second_differences_by(values, j)
+        for i in range(_BLOCK_BITS, j):
+            budget.check()
+            ends[i, j] = _smallest_far(values, 1 << i, 1 << j)
+    return ends
+
+
+@numba.njit(cache=True, fastmath=_FINITE)
+def _second_differences_by(values: Any, j: int) -> Any:
+    """(j,) smallest second differences by ``j`` and each lower ``i`` within a block; infinite for other ``i``.
+
+    The first differences by ``j`` of a block are computed once and stay in cache for all ``i``.
+    """
+    ends = np.full(j, np.inf)
     half = len(values) // 2
     size = min(half, _BLOCK)
     falls = np.zeros(size + _WIDTH)
-    for j in range(1, n):
-        for first in range(0, half, size):
-            _first_differences(values, 1 << j, first, falls[:size])
-            for i in range(j):
-                step = 1 << i
-                if step >= size:
-                    break
-                if size < _WIDTH:
-                    ends[i, j] = min(ends[i, j], _smallest_rise(falls, size, step))
-                else:
-                    ends[i, j] = min(ends[i, j], _smallest_wide(falls, size, step))
-        for i in range(_BLOCK_BITS, j):
-            ends[i, j] = _smallest_far(values, 1 << i, 1 << j)
+    for first in range(0, half, size):
+        _first_differences(values, 1 << j, first, falls[:size])
+        for i in range(j):
+            step = 1 << i
+            if step >= size:
+                break
+            if size < _WIDTH:
+                ends[i] = min(ends[i], _smallest_rise(falls, size, step))
+            else:
+                ends[i] = min(ends[i], _smallest_wide(falls, size, step))
     return ends
 
 
@@ -136,11 +149,35 @@ def _subtract(result: Any, left: Any, right: Any) -> None:
         result[s] = left[s] - right[s]
 
 
+_PAIRS = 1 << 24
+"""Pairs that compiled loops look at between two looks at the clock: some hundredths of a second."""
+
+
+def disjoint_slack(values: FloatArray, budget: Budget) -> tuple[float, int, int]:
+    """Smallest ``f(A) + f(B) - f(A + B)`` over disjoint ``A``, ``B`` (3**n pairs), with its ``A`` and ``B``.
+
+    Raises ``OutOfBudget``.
+    """
+    worst, step = (np.inf, 0, 0), max(_PAIRS // len(values), 1)
+    for first in range(0, len(values), step):
+        budget.check()
+        worst = _disjoint(values, first, min(first + step, len(values)), worst)
+    return float(worst[0]), int(worst[1]), int(worst[2])
+
+
+def overlapping_slack(values: FloatArray, budget: Budget) -> tuple[float, int, int]:
+    """Smallest ``f(A) + f(B) - f(A | B)`` over all pairs (4**n), with its ``A`` and ``B``; raises ``OutOfBudget``."""
+    worst, step = (np.inf, 0, 0), max(_PAIRS // len(values), 1)
+    for first in range(0, len(values), step):
+        budget.check()
+        worst = _overlapping(values, first, min(first + step, len(values)), worst)
+    return float(worst[0]), int(worst[1]), int(worst[2])
+
+
 @numba.njit(cache=True)
-def disjoint_slack(values: Any) -> Any:
-    """Smallest ``f(A) + f(B) - f(A + B)`` over disjoint ``A``, ``B`` (3**n pairs), with its ``A`` and ``B``."""
-    worst, first, second = np.inf, 0, 0
-    for union in range(len(values)):
+def _disjoint(values: Any, start: int, end: int, known: Any) -> Any:
+    worst, first, second = known
+    for union in range(start, end):
         part = union
         while True:
             slack = values[part] + values[union ^ part] - values[union]
@@ -153,10 +190,9 @@ def disjoint_slack(values: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def overlapping_slack(values: Any) -> Any:
-    """Smallest ``f(A) + f(B) - f(A | B)`` over all pairs (4**n), with its ``A`` and ``B``."""
-    worst, first, second = np.inf, 0, 0
-    for a in range(len(values)):
+def _overlapping(values: Any, start: int, end: int, known: Any) -> Any:
+    worst, first, second = known
+    for a in range(start, end):
         for b in range(a, len(values)):
             slack = values[a] + values[b] - values[a | b]
             if slack < worst:
@@ -164,18 +200,27 @@ def overlapping_slack(values: Any) -> Any:
     return worst, first, second
 
 
-@numba.njit(cache=True)
-def smallest_gain_ratio(values: Any, sizes: Any) -> Any:
+def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget) -> tuple[float, int, int]:
     """Smallest ``(sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S))``, ``S`` in ``T``, where the gain is not 0.
 
     ``values`` : flat, in C order, one axis of ``sizes[a]`` options an owner, option 0 being none of its elements.
     Returns the ratio (infinite if no gain is positive), the position of ``T``, and ``S`` as a mask over the axes
-    where ``T`` takes part, the last axis first. Looks at ``prod(2 * sizes - 1)`` pairs.
+    where ``T`` takes part, the last axis first. Looks at ``prod(2 * sizes - 1)`` pairs, or (spent budget) some.
     """
+    best, step = (np.inf, 0, 0), max(_PAIRS >> len(sizes), 1)
+    for first in range(0, len(values), step):
+        if budget.is_over:
+            break
+        best = _gain_ratio(values, sizes, first, min(first + step, len(values)), best)
+    return float(best[0]), int(best[1]), int(best[2])
+
+
+@numba.njit(cache=True)
+def _gain_ratio(values: Any, sizes: Any, start: int, end: int, known: Any) -> Any:
     axes = len(sizes)
-    best, best_top, best_part = np.inf, 0, 0
+    best, best_top, best_part = known
     position = np.empty(1 << axes, np.int64)
-    for top in range(len(values)):
+    for top in range(start, end):
         rest, stride, count = top, 1, 0
         position[0] = 0
         for a in range(axes - 1, -1, -1):

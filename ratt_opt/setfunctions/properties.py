@@ -1,18 +1,24 @@
 """What a set function is: each check returns a witness against the property, or says that there is none.
 
-``None`` is a statement: every set was looked at (or theory decides). Where the ground set is too large for a table,
-the answer is a witness or :class:`NotFound`, which is false, counts its trials and claims nothing more.
+``None`` is a statement: every set was looked at (or theory decides). Where the ground set is too large for a table, or
+the time too short, the answer is a witness or :class:`NotFound`, which is false, counts its trials and claims nothing
+more. An interrupt propagates.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from ratt_opt._validation import check_number
-from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.progress import Step
+from ratt_opt.setfunctions.base import checked_values, finite_values
+from ratt_opt.setfunctions.metered import table_within
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -38,35 +44,96 @@ LARGEST_OVERLAPPING = 12
 """Largest ground set whose 4**n pairs are looked at."""
 TOLERANCE = 1e-9
 """Default tolerance: a violation must exceed it times the largest absolute value of the function."""
+TABLE_SHARE = 0.5
+"""Share of the seconds in which a table has to be complete; of a slower function random sets are tried in the rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Question:
+    """Does ``f`` keep a rule within a tolerance? ``trials``, ``seed`` : of the sampled search."""
+
+    f: SetFunction
+    rule: str
+    tolerance: float
+    trials: int
+    seed: int
+    budget: Budget
+
+    @classmethod
+    def of(cls, f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: int, budget: Budget) -> Self:
+        """InputError : the tolerance is not a number >= 0."""
+        return cls(f, rule, check_number("tolerance", tolerance, low=0), trials, seed, budget)
+
+    def table(self) -> FloatArray | None:
+        """The table of ``f``; ``None`` where it is too large, or not complete in its share of the time."""
+        if self.f.n > LARGEST_EXACT:
+            return None
+        try:
+            return finite_values(table_within(self.f, self.budget.part(TABLE_SHARE)))
+        except OutOfBudget as out:
+            if out.stop is Stop.INTERRUPTED:
+                raise
+            return None
+
+    def sampled(self) -> Violation | NotFound:
+        """What random sets say."""
+        return sample(self.f, self.rule, self.tolerance, trials=self.trials, seed=self.seed, budget=self.budget)
+
+    def witness(self, masks: tuple[int, int], values: FloatArray) -> Violation | None:
+        """Return the pair of sets as a violation, its slack recomputed from the table."""
+        first, second = (np.array([mask]) for mask in masks)
+        slack = float(slack_of(values.take, self.rule, first, second)[0])
+        limit = self.tolerance * max(float(values.max()), -float(values.min()))
+        if slack >= -limit:
+            return None
+        a, b = (tuple(e for e in range(self.f.n) if mask >> e & 1) for mask in masks)
+        return Violation(rule=self.rule, a=a, b=b, slack=slack, tolerance=limit)
 
 
 def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> Violation | None:
     """Return the empty set as a witness if its value is not 0 (``tolerance`` is absolute: there is no scale to it)."""
     tolerance = check_number("tolerance", tolerance, low=0)
-    value = float(finite_values(np.array([f([])]))[0])
+    value = float(checked_values(f, np.zeros((1, f.n), dtype=np.bool_))[0])
     if abs(value) <= tolerance:
         return None
     return Violation(rule="normalised", a=(), b=(), slack=-abs(value), tolerance=tolerance)
 
 
+@Step("looking for a negative value")
 def find_negativity(
-    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+    f: SetFunction,
+    *,
+    tolerance: float = TOLERANCE,
+    trials: int = TRIALS,
+    seed: int = 0,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
 ) -> Violation | NotFound | None:
     """Return the set with the most negative value, if any; parameters as in :func:`find_monotonicity_violation`."""
-    tolerance = check_number("tolerance", tolerance, low=0)
-    if f.n > LARGEST_EXACT:
-        return sample(f, "non-negative", tolerance, trials=trials, seed=seed)
-    values = finite_values(f.table())
-    return _witness(f, "non-negative", (int(values.argmin()), 0), values, tolerance)
+    own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
+    asked = _Question.of(f, "non-negative", tolerance, trials=trials, seed=seed, budget=own)
+    values = asked.table()
+    return asked.sampled() if values is None else asked.witness((int(values.argmin()), 0), values)
 
 
+@Step("looking for a falling value")
 def find_monotonicity_violation(
-    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+    f: SetFunction,
+    *,
+    tolerance: float = TOLERANCE,
+    trials: int = TRIALS,
+    seed: int = 0,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
 ) -> Violation | NotFound | None:
     """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
 
     ``tolerance`` : how negative counts, relative to the largest absolute value of the function
-    ``trials``, ``seed`` : of the sampled search, where the ground set has more than 24 elements
+    ``trials``, ``seed`` : of the sampled search, where the ground set has more than 24 elements or time is short
+    ``time_limit``, ``max_evaluations`` : seconds, and values of ``f``; unlimited by default
+    ``budget`` : an outer search's budget: its seconds and interrupts count too
 
     Returns the witness; ``None`` where there is none, by a look at every set (up to 24 elements) or by theory
     (information criteria: added information is positive semidefinite, up to the rounding their input rule admits);
@@ -74,23 +141,33 @@ def find_monotonicity_violation(
 
     Source: ratt.tex, Section III.
     """
-    rule = "non-decreasing"
-    tolerance = check_number("tolerance", tolerance, low=0)
-    if f.n > LARGEST_EXACT:
-        return None if f.is_non_decreasing else sample(f, rule, tolerance, trials=trials, seed=seed)
-    from ratt_opt.setfunctions.lattice import marginal_ends
-
-    values = finite_values(f.table())
+    own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
+    asked = _Question.of(f, "non-decreasing", tolerance, trials=trials, seed=seed, budget=own)
+    if f.n > LARGEST_EXACT and f.is_non_decreasing:
+        return None
+    values = asked.table()
+    if values is None:
+        return asked.sampled()
     if f.n == 0:
         return None
+    from ratt_opt.setfunctions.lattice import marginal_ends
+
     x = int(marginal_ends(values, f.n)[0].argmin())
     sets = values.reshape(-1, 2, 1 << x)
     base = mask_without(int((sets[:, 1] - sets[:, 0]).argmin()), x)
-    return _witness(f, rule, (base, 1 << x), values, tolerance)
+    return asked.witness((base, 1 << x), values)
 
 
+@Step("looking for a violation of submodularity")
 def find_submodularity_violation(
-    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+    f: SetFunction,
+    *,
+    tolerance: float = TOLERANCE,
+    trials: int = TRIALS,
+    seed: int = 0,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
 ) -> Violation | NotFound | None:
     """Find sets ``a = S + x`` and ``b = S + y`` that break ``f(a) + f(b) >= f(a | b) + f(a & b)`` most.
 
@@ -98,23 +175,40 @@ def find_submodularity_violation(
 
     Source: the definition by second differences, equivalent to all pairs of sets.
     """
-    if f.n > LARGEST_EXACT and f.is_submodular:
-        return None
-    return _second_order(f, "submodular", tolerance, trials, seed)
+    own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
+    asked = _Question.of(f, "submodular", tolerance, trials=trials, seed=seed, budget=own)
+    return None if f.n > LARGEST_EXACT and f.is_submodular else _second_order(asked)
 
 
+@Step("looking for a violation of modularity")
 def find_modularity_violation(
-    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+    f: SetFunction,
+    *,
+    tolerance: float = TOLERANCE,
+    trials: int = TRIALS,
+    seed: int = 0,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
 ) -> Violation | NotFound | None:
     """Find sets ``a = S + x`` and ``b = S + y`` with the largest ``|f(a) + f(b) - f(a | b) - f(a & b)|``.
 
     Parameters and result are those of :func:`find_monotonicity_violation`.
     """
-    return _second_order(f, "modular", tolerance, trials, seed)
+    own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
+    return _second_order(_Question.of(f, "modular", tolerance, trials=trials, seed=seed, budget=own))
 
 
+@Step("looking for a violation of subadditivity")
 def find_subadditivity_violation(
-    f: SetFunction, *, tolerance: float = TOLERANCE, trials: int = TRIALS, seed: int = 0
+    f: SetFunction,
+    *,
+    tolerance: float = TOLERANCE,
+    trials: int = TRIALS,
+    seed: int = 0,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
 ) -> Violation | NotFound | None:
     """Find sets that break ``f(a) + f(b) >= f(a | b)`` most.
 
@@ -123,38 +217,49 @@ def find_subadditivity_violation(
     faster exact way is known. Beyond: sampled. Parameters and result are those of
     :func:`find_monotonicity_violation`.
     """
-    rule = "subadditive"
-    tolerance = check_number("tolerance", tolerance, low=0)
-    if f.n <= LARGEST_EXACT:
-        values = finite_values(f.table())
-        limit = 0.0  # theory needs the premises exactly
-        if values.min() >= 0 and _second_order(f, "submodular", limit, trials, seed) is None:
-            return None
-        monotone = f.n <= LARGEST_DISJOINT and find_monotonicity_violation(f, tolerance=limit) is None
-        if monotone or f.n <= LARGEST_OVERLAPPING:
-            from ratt_opt.setfunctions.lattice import disjoint_slack, overlapping_slack
-
-            _, a, b = (disjoint_slack if monotone else overlapping_slack)(values)
-            return _witness(f, rule, (int(a), int(b)), values, tolerance)
-    return sample(f, rule, tolerance, trials=trials, seed=seed)
+    own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
+    asked = _Question.of(f, "subadditive", tolerance, trials=trials, seed=seed, budget=own)
+    values = asked.table()
+    if values is None:
+        return asked.sampled()
+    try:
+        return _subadditive(asked, values)
+    except OutOfBudget as out:
+        return NotFound(rule=asked.rule, trials=0, smallest_slack=np.inf, tolerance=0.0, stop=out.stop)
 
 
-def _second_order(f: SetFunction, rule: str, tolerance: float, trials: int, seed: int) -> Violation | NotFound | None:
-    tolerance = check_number("tolerance", tolerance, low=0)
-    if f.n > LARGEST_EXACT:
-        return sample(f, rule, tolerance, trials=trials, seed=seed)
-    if f.n < 2:
+def _subadditive(asked: _Question, values: FloatArray) -> Violation | NotFound | None:
+    from ratt_opt.setfunctions.lattice import disjoint_slack, marginal_ends, overlapping_slack, second_differences
+
+    n = asked.f.n
+    # Theory needs the premises exactly.
+    if values.min() >= 0 and (n < 2 or second_differences(values, n, asked.budget).min() >= 0):
+        return None
+    monotone = n <= LARGEST_DISJOINT and (n == 0 or marginal_ends(values, n)[0].min() >= 0)
+    if not monotone and n > LARGEST_OVERLAPPING:
+        return asked.sampled()
+    _, a, b = (disjoint_slack if monotone else overlapping_slack)(values, asked.budget)
+    return asked.witness((a, b), values)
+
+
+def _second_order(asked: _Question) -> Violation | NotFound | None:
+    values, n = asked.table(), asked.f.n
+    if values is None:
+        return asked.sampled()
+    if n < 2:
         return None
     from ratt_opt.setfunctions.lattice import second_differences
 
-    values = finite_values(f.table())
-    slack = second_differences(values, f.n)
-    if rule == "modular":
-        slack = np.minimum(slack, second_differences(-values, f.n))
+    try:
+        slack = second_differences(values, n, asked.budget)
+        if asked.rule == "modular":
+            slack = np.minimum(slack, second_differences(-values, n, asked.budget))
+    except OutOfBudget as out:
+        return NotFound(rule=asked.rule, trials=0, smallest_slack=np.inf, tolerance=0.0, stop=out.stop)
     i, j = (int(k) for k in np.unravel_index(int(slack.argmin()), slack.shape))
     if i == j:  # every slack of a pair is positive
         return None
-    return _witness(f, rule, _worst_pair(values, i, j, rule), values, tolerance)
+    return asked.witness(_worst_pair(values, i, j, asked.rule), values)
 
 
 def _worst_pair(values: FloatArray, i: int, j: int, rule: str) -> tuple[int, int]:
@@ -170,16 +275,3 @@ def mask_without(position: int, bit: int) -> int:
     """The ``position``-th mask among those without one bit."""
     low = position & ((1 << bit) - 1)
     return (position ^ low) << 1 | low
-
-
-def _witness(
-    f: SetFunction, rule: str, masks: tuple[int, int], values: FloatArray, tolerance: float
-) -> Violation | None:
-    """Return the pair of sets as a violation, its slack recomputed from the table."""
-    first, second = (np.array([mask]) for mask in masks)
-    slack = float(slack_of(values.take, rule, first, second)[0])
-    limit = tolerance * max(float(values.max()), -float(values.min()))
-    if slack >= -limit:
-        return None
-    members = [tuple(e for e in range(f.n) if mask >> e & 1) for mask in masks]
-    return Violation(rule=rule, a=members[0], b=members[1], slack=slack, tolerance=limit)

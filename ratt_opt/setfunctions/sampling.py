@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ratt_opt._validation import check_integer
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.setfunctions.metered import Metered
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,12 +71,16 @@ class Violation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotFound:
-    """No violation found in ``trials`` pairs of sets; not a proof. ``smallest_slack``: the closest any came. False."""
+    """No violation found in ``trials`` pairs of sets; not a proof. False.
+
+    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` where all pairs asked for were tried.
+    """
 
     rule: str
     trials: int
     smallest_slack: float
     tolerance: float
+    stop: Stop = Stop.HEURISTIC
 
     def __bool__(self) -> bool:
         """``False``: nothing was found."""
@@ -95,29 +102,51 @@ def slack_of(value: Callable[[Sets], FloatArray], rule: str, a: Sets, b: Sets) -
     return np.asarray(-np.abs(slack) if rule == "modular" else slack)
 
 
-def sample(f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: int) -> Violation | NotFound:
+@dataclass(slots=True)
+class _Worst:
+    """The pair (2, n) with the smallest slack so far, how many were tried, and the largest value among them."""
+
+    pair: BoolArray
+    slack: float = np.inf
+    scale: float = 0.0
+    tried: int = 0
+
+    def offer(self, a: BoolArray, b: BoolArray, slack: FloatArray) -> bool:
+        """Keep the worst of some pairs if it is worse; return whether it is."""
+        self.tried += len(a)
+        k = int(slack.argmin())
+        if better := bool(slack[k] < self.slack):
+            self.slack, self.pair = float(slack[k]), np.stack([a[k], b[k]])
+        return better
+
+
+def sample(
+    f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: int, budget: Budget | None = None
+) -> Violation | NotFound:
     """Try random pairs of sets of every size, then climb from the worst one by adding or removing elements.
 
-    ``tolerance`` is relative to the largest absolute value seen.
+    ``tolerance`` is relative to the largest absolute value seen. A spent ``budget`` ends it early.
     """
     trials = check_integer("trials", trials, low=1)
-    rng = np.random.default_rng(seed)
-    worst, scale, seen = np.inf, 0.0, 0
-    pair = np.zeros((2, f.n), dtype=np.bool_)
-    while seen < trials:
-        a, b = _random_pairs(rng, rule, f.n, min(BATCH, trials - seen))
-        slack = slack_of(f.evaluate, rule, a, b)
-        scale = max(scale, float(np.abs(f.evaluate(a | b)).max()))
-        seen += len(a)
-        k = int(slack.argmin())
-        if slack[k] < worst:
-            worst, pair = float(slack[k]), np.stack([a[k], b[k]])
-    worst, pair, climbed = _climb(f, rule, worst, pair)
-    limit = tolerance * scale
-    alone = float(slack_of(f.evaluate, rule, pair[:1], pair[1:])[0])  # afresh: a batch may round in another way
+    own, worst, stop = budget or Budget(), _Worst(np.zeros((2, f.n), dtype=np.bool_)), Stop.HEURISTIC
+    metered, rng = Metered(f, own), np.random.default_rng(seed)
+    try:
+        batch = 1 if own.seconds_left < np.inf else BATCH  # a first few pairs before time is up
+        while worst.tried < trials:
+            a, b = _random_pairs(rng, rule, f.n, min(batch, trials - worst.tried))
+            worst.offer(a, b, slack_of(metered.evaluate, rule, a, b))
+            worst.scale = max(worst.scale, float(np.abs(metered.evaluate(a | b)).max()))
+            batch = min(2 * batch, BATCH)
+        _climb(metered, rule, worst)
+    except OutOfBudget as out:
+        stop = out.stop
+    if not worst.tried:
+        return NotFound(rule=rule, trials=0, smallest_slack=np.inf, tolerance=0.0, stop=stop)
+    limit = tolerance * worst.scale
+    alone = float(slack_of(f.evaluate, rule, *worst.pair[:, None])[0])  # afresh: a batch may round in another way
     if alone >= -limit:
-        return NotFound(rule=rule, trials=seen + climbed, smallest_slack=worst, tolerance=limit)
-    first, second = (tuple(np.flatnonzero(members).tolist()) for members in pair)
+        return NotFound(rule=rule, trials=worst.tried, smallest_slack=worst.slack, tolerance=limit, stop=stop)
+    first, second = (tuple(np.flatnonzero(members).tolist()) for members in worst.pair)
     return Violation(rule=rule, a=first, b=second, slack=alone, tolerance=limit)
 
 
@@ -137,17 +166,15 @@ def _random_pairs(rng: np.random.Generator, rule: str, n: int, count: int) -> tu
     return a, b
 
 
-def _climb(f: SetFunction, rule: str, worst: float, pair: BoolArray) -> tuple[float, BoolArray, int]:
+def _climb(f: SetFunction, rule: str, worst: _Worst) -> None:
     """Flip one element in both sets at a time while that lowers the slack."""
-    same = np.flatnonzero(pair[0] == pair[1])
-    tried = 0
-    for _ in range(CLIMBS if len(same) else 0):
-        flips = np.zeros((len(same), f.n), dtype=np.bool_)
-        flips[np.arange(len(same)), same] = True
-        slack = slack_of(f.evaluate, rule, pair[0] ^ flips, pair[1] ^ flips)
-        tried += len(same)
-        k = int(slack.argmin())
-        if slack[k] >= worst:
-            break
-        worst, pair = float(slack[k]), pair ^ flips[k]
-    return worst, pair, tried
+    same = np.flatnonzero(worst.pair[0] == worst.pair[1])
+    better, left = bool(len(same)), CLIMBS
+    while better and left:
+        better, left, pair = False, left - 1, worst.pair
+        for start in range(0, len(same), BATCH):
+            some = same[start : start + BATCH]
+            flips = np.zeros((len(some), f.n), dtype=np.bool_)
+            flips[np.arange(len(some)), some] = True
+            a, b = pair[0] ^ flips, pair[1] ^ flips
+            better = worst.offer(a, b, slack_of(f.evaluate, rule, a, b)) or better

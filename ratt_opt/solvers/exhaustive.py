@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.progress import Step
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.metered import Metered
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -24,14 +28,24 @@ LARGEST_SEARCH = 5_000_000
 """Most plans that are enumerated (12**6 is about 3 million)."""
 
 
-def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> MaxMinResult:
+@Step("all plans")
+def exhaustive_optimum(
+    problem: Problem,
+    *,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
+) -> MaxMinResult:
     """Return the best plan by evaluating every plan against every non-dominated outcome.
 
     Relies on a non-decreasing objective (not checked). Among equal plans the one with the lowest elements, robot by
-    robot, is returned. A spent budget or an interrupt returns the bracket that the outcomes evaluated by then prove.
+    robot, is returned. A spent budget or an interrupt returns the bracket that the outcomes evaluated by then prove:
+    the best plan under these, and what is known at once of its worst case.
 
     Parameters
     ----------
+    time_limit : seconds; unlimited by default
+    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -41,11 +55,12 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
     shape = _shape(problem, range(problem.n_robots))
-    n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
+    with np.errstate(over="ignore"):
+        n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
     if n_plans > LARGEST_SEARCH:
         rule = f"must have at most {LARGEST_SEARCH:,} plans for an exhaustive search (use solve_maxmin)"
         raise InputError("problem", rule, f"{n_plans:.3g} plans")
-    own, stop = Budget.inside(budget), Stop.EXHAUSTED
+    own, stop = Budget.inside(budget, time_limit, max_evaluations=max_evaluations), Stop.EXHAUSTED
     worst = np.full(shape, np.inf)
     group_values: dict[frozenset[int], FloatArray] = {}
     try:
@@ -54,6 +69,7 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
             team = np.full((1,) * len(shape), -np.inf)
             for group in outcome:
                 if group not in group_values:
+                    own.check()
                     group_values[group] = _plan_values(problem, group, own)
                 team = np.maximum(team, group_values[group])
             worst = np.minimum(worst, team)
@@ -66,7 +82,8 @@ def exhaustive_optimum(problem: Problem, *, budget: Budget | None = None) -> Max
     elements = np.array([choice[next(picks) if len(choice) > 1 else 0] for choice in problem.choices])
     lower = upper = float(worst[best])
     if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
-        lower, upper = problem.objective([]), min(upper, problem.objective(range(problem.objective.n)))
+        upper = min(upper, problem.objective(range(problem.objective.n)))
+        lower = min(worst_case_attack(problem, elements, time_limit=0, budget=own).lower, upper)
     count = sum(values.size for values in group_values.values())
     return MaxMinResult(
         elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size
@@ -86,13 +103,15 @@ def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> Floa
     places = iter(np.indices([len(choice) for choice in varied]).reshape(len(varied), len(picks)))
     for k, choice in enumerate(problem.choices[i] for i in members):
         picks[:, k] = choice[next(places)] if len(choice) > 1 else choice[0]
-    values = np.empty(len(picks))
+    values, f = np.empty(len(picks)), problem.objective
+    if not isinstance(f, InformationObjective):
+        f = Metered(f, budget)
     for start in range(0, len(picks), 8192):
         budget.check()
         block = picks[start : start + 8192]
         membership = np.zeros((len(block), problem.objective.n), dtype=np.bool_)
         membership[np.arange(len(block))[:, None], block] = True
-        values[start : start + 8192] = problem.objective.evaluate(membership)
+        values[start : start + 8192] = f.evaluate(membership)
     return values.reshape(shape)
 
 

@@ -7,9 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.largest_group.counting import counting_bound
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.separable_groups import LARGEST_MASK
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "greedy", "myopic", "random_plan", "ratt"]
@@ -32,13 +36,15 @@ def equivalent_sensing_attacks(problem: Problem) -> int:
     """
     if problem.threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
+    if problem.n_robots > LARGEST_MASK:  # nothing but the bound is known of larger teams
+        return problem.n_robots - counting_bound(problem.threat)
     found = smallest_largest_group(
         problem.communication, problem.alpha_c, protected_links=problem.protected_links, max_nodes=MILP_NODES
     )
     return problem.n_robots - (found.lower if found.n_max is None else found.n_max)
 
 
-def ratt(problem: Problem, *, alpha_cs: int | None = None) -> Plan:
+def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None = None) -> Plan:
     """Plan against ``alpha = alpha_s + alpha_cs`` sensing attacks.
 
     The ``alpha`` robots with the largest individual values get their individually best
@@ -48,6 +54,7 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None) -> Plan:
     Parameters
     ----------
     alpha_cs : sensing attacks that the link attacks are worth, where known; else asked for
+    budget : an outer search's budget: once it is spent, the robots left get their individually best element too
 
     Returns
     -------
@@ -56,11 +63,12 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None) -> Plan:
     Source: ratt.tex, Algorithm 1 (RATT); guarantee in Theorem 1, evaluations in Theorem 2.
     """
     known = equivalent_sensing_attacks(problem) if alpha_cs is None else alpha_cs
-    return replace(bait_and_greedy(problem, problem.alpha_s + known), alpha_cs=known)
+    return replace(bait_and_greedy(problem, problem.alpha_s + known, budget), alpha_cs=known)
 
 
-def bait_and_greedy(problem: Problem, alpha: int) -> Plan:
-    """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18)."""
+@Step("planning")
+def bait_and_greedy(problem: Problem, alpha: int, budget: Budget | None = None) -> Plan:
+    """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts."""
     single = problem.objective.singletons()
     best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
     # A stable sort of the negated values keeps the lowest robot first among equals.
@@ -68,11 +76,11 @@ def bait_and_greedy(problem: Problem, alpha: int) -> Plan:
     bait = np.sort(order[:alpha])
     elements = best.copy()
     greedy_robots = np.setdiff1d(np.arange(problem.n_robots), bait)
-    evaluations = problem.objective.n + _greedy(problem, greedy_robots, single, elements)
+    evaluations = problem.objective.n + _greedy(problem, greedy_robots, single, elements, budget or Budget())
     return Plan(elements=readonly(elements), evaluations=evaluations, bait=tuple(int(i) for i in bait))
 
 
-def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: IntArray) -> int:
+def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: IntArray, budget: Budget) -> int:
     """Fill ``elements`` of ``robots`` by the standard greedy algorithm; return the evaluations it took.
 
     The first round needs no evaluation: its values are the individual ones.
@@ -82,12 +90,15 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
     if isinstance(objective, InformationObjective) and objective.compiled_code is not None and objective.dimension == 2:
         rounds = len(robots) - 1
         if rounds * len(candidates) / 2 * objective.n_targets > PLAIN_WORK:
-            return _lazy_greedy(problem, objective, candidates, elements)
+            return _lazy_greedy(problem, objective, candidates, elements, budget)
     chosen = np.array([], dtype=np.int64)
     evaluations = 0
-    while len(candidates):
+    while len(candidates) and not budget.is_over:
         if len(chosen):
-            values = objective.extensions(chosen, candidates)
+            try:
+                values = objective.extensions(chosen, candidates)
+            except OutOfBudget:  # of the values of the function
+                break
             evaluations += len(candidates)
         else:
             values = single[candidates]
@@ -98,14 +109,16 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
     return evaluations
 
 
-def _lazy_greedy(problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray) -> int:
+def _lazy_greedy(
+    problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray, budget: Budget
+) -> int:
     """The same choices with few evaluations; the number is that of the algorithm as it stands."""
     from ratt_opt.solvers.lazy_greedy import LazyGreedy  # compiles
 
     is_open = np.zeros(objective.n, dtype=np.bool_)
     is_open[candidates] = True
     greedy, evaluations = LazyGreedy(objective, is_open), -len(candidates)
-    while (left := int(is_open.sum())) > 0:
+    while (left := int(is_open.sum())) > 0 and not budget.is_over:
         evaluations += left
         pick = greedy.choose()
         elements[problem.robot[pick]] = pick
@@ -113,17 +126,17 @@ def _lazy_greedy(problem: Problem, objective: InformationObjective, candidates: 
     return evaluations
 
 
-def greedy(problem: Problem) -> Plan:
-    """Standard greedy plan that ignores attacks: RATT with ``alpha = 0``.
+def greedy(problem: Problem, *, budget: Budget | None = None) -> Plan:
+    """Standard greedy plan that ignores attacks: RATT with ``alpha = 0`` (``budget`` : as for :func:`ratt`).
 
     Source: Fisher, Nemhauser, Wolsey 1978; the algorithm Greedy of ratt.tex, Section VI.
     """
-    return bait_and_greedy(problem, 0)
+    return bait_and_greedy(problem, 0, budget)
 
 
-def myopic(problem: Problem) -> Plan:
+def myopic(problem: Problem, *, budget: Budget | None = None) -> Plan:
     """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
-    return bait_and_greedy(problem, problem.n_robots)
+    return bait_and_greedy(problem, problem.n_robots, budget)
 
 
 def random_plan(problem: Problem, *, seed: int) -> Plan:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, Shown, plain, shown
+from ratt_opt.problem import Plan
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -14,7 +15,16 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.stopping import Stop
 
-__all__ = ["MaxMinResult"]
+__all__ = ["MaxMinResult", "NonrobustPlan"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class NonrobustPlan(Plan):
+    """A plan for a team that nobody attacks; ``lower <= best value <= upper``, and why the search stopped."""
+
+    lower: float
+    upper: float
+    stop: Stop
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -320,10 +320,12 @@ def test_bad_tables_are_refused(values, text):
         ro.TableFunction(values)
 
 
-def test_domains_too_large_say_the_memory_before_allocating():
+def test_domains_too_large_for_a_table_have_a_bracket_and_no_table():
     f = ro.reference("modular", 30, np.random.default_rng(0)).function
-    with pytest.raises(InputError, match="8 GiB"):
-        ro.total_curvature(f)
+    found = ro.total_curvature(f)
+    assert found.lower <= 1e-12  # it has none
+    assert found.upper >= 0
+    assert found.stop is ro.Stop.HEURISTIC
     with pytest.raises(InputError, match="8 GiB"):
         f.table()
     with pytest.raises(InputError, match="must not repeat"):

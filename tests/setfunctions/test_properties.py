@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SetFunction, TableFunction
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
@@ -202,4 +203,4 @@ def test_second_differences_at_every_block_size(n):
         for j in range(i + 1, n):
             f = np.moveaxis(table, (n - 1 - i, n - 1 - j), (0, 1))
             expected[i, j] = ((f[1, 0] - f[1, 1]) - (f[0, 0] - f[0, 1])).min()
-    np.testing.assert_array_equal(second_differences(values, n), expected)
+    np.testing.assert_array_equal(second_differences(values, n, Budget()), expected)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.graph.threshold import ThresholdTest
+from ratt_opt.setfunctions.metered import Metered, table_within
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ def threshold_search(task: AttackTask) -> Stop:
     """
     bracket = task.bracket
     task.budget.check()
-    table = task.values.table()
+    is_metered = isinstance(task.problem.objective, Metered)
+    table = task.values.table() if is_metered else table_within(task.values, task.budget)
     levels = np.unique(table)
     test: ThresholdTest | CompiledThresholdTest
     if task.problem.n_robots <= LARGEST_PLAIN:

@@ -24,6 +24,8 @@ __all__ = ["GroupExchanges"]
 STRENGTH = 3
 """Random exchanges of one shake: one is often undone, many leave nothing of the family."""
 SEED = 0
+AT_ONCE = 20_000_000
+"""Pairs of robots times targets that compiled loops go through between two looks at the clock (a fifth of a second)."""
 SHARE = 1e-3
 """Weight of the two groups' sum beside the largest value."""
 
@@ -45,14 +47,26 @@ class GroupExchanges:
         self.value = np.inf
         """Of the best group."""
 
-    def weakest(self) -> None:
-        """Start from the individually weakest robots, the weakest in the largest group."""
+    def weakest(self, budget: Budget) -> None:
+        """Start from the individually weakest robots, the weakest in the largest group; as far as time allows."""
         rising = np.argsort(self._team.single, kind="stable")
         # Those that cannot be blinded see in any case.
         seeing = np.concatenate([rising[self._must[rising]], rising[~self._must[rising]]])[: sum(self.sizes)]
         home = np.zeros_like(self._home)
         home[rising[np.isin(rising, seeing)]] = np.repeat(np.arange(1, len(self.sizes) + 1), self.sizes)
-        self._improve(home)
+        self._improve(home, budget)
+
+    def around(self, largest: frozenset[int], budget: Budget) -> None:
+        """Start from a largest group, and the individually weakest others."""
+        rising = np.argsort(self._team.single, kind="stable")
+        others = rising[~np.isin(rising, list(largest))]
+        others = np.concatenate([others[self._must[others]], others[~self._must[others]]])
+        home = np.zeros_like(self._home)
+        home[list(largest)] = 1
+        places = np.repeat(np.arange(2, len(self.sizes) + 1), self.sizes[1:])
+        home[others[: len(places)]] = places
+        if not (self._must & (home == 0)).any():
+            self._improve(home, budget)
 
     def shake(self, rounds: int, budget: Budget) -> None:
         """Exchange a few random robots of the best family and improve it again, so often.
@@ -67,23 +81,29 @@ class GroupExchanges:
             for one, other in self._rng.integers(0, len(home), (STRENGTH, 2)).tolist():
                 if (home[one] and home[other]) or not (self._must[one] or self._must[other]):
                     home[one], home[other] = home[other], home[one]
-            self._improve(home)
+            self._improve(home, budget)
 
     def groups(self) -> tuple[frozenset[int], ...]:
         """The best family found."""
         return tuple(frozenset(np.flatnonzero(self._home == g).tolist()) for g in range(1, len(self.sizes) + 1))
 
-    def _improve(self, home: IntArray) -> None:
-        team = self._team
+    def _improve(self, home: IntArray, budget: Budget) -> None:
+        team, (n_robots, n_targets) = self._team, self._team.information.shape[:2]
         criterion = team.code, team.weights, team.baseline, team.prior, team.information
-        value = float(_exchange(criterion, home, len(self.sizes), self._must))
+        steps, finished, value = max(4 * AT_ONCE // (n_robots**2 * n_targets), 1), False, np.inf
+        while not finished:
+            value, finished = _exchange(criterion, home, len(self.sizes), self._must, steps)
+            finished = finished or budget.is_over
         if value < self.value:
             self.value, self._home = value, home
 
 
 @numba.njit(cache=True)
-def _exchange(criterion: Any, home: Any, n_groups: int, must: Any) -> float:
-    """Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens."""
+def _exchange(criterion: Any, home: Any, n_groups: int, must: Any, steps: int) -> Any:
+    """Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens.
+
+    Returns its value, and whether that was before ``steps`` exchanges.
+    """
     code, weights, baseline, prior, information = criterion
     n_robots, n_targets = information.shape[0], information.shape[1]
     sums, values = np.zeros((n_groups + 1, n_targets, 3)), np.full(n_groups + 1, -np.inf)
@@ -93,11 +113,11 @@ def _exchange(criterion: Any, home: Any, n_groups: int, must: Any) -> float:
         sums[home[i]] += information[i]
     for g in range(1, n_groups + 1):
         values[g] = baseline - team_criterion(code, weights, sums[g])
-    while True:
+    for _ in range(steps):
         top = int(np.argmax(values))
         leaves, enters = _best_pair(criterion, (home, must), (sums, values), top)
         if leaves < 0:
-            return float(values[top])
+            return float(values[top]), True
         other = home[enters]
         for j in range(n_targets):
             for t in range(3):
@@ -108,6 +128,7 @@ def _exchange(criterion: Any, home: Any, n_groups: int, must: Any) -> float:
         for g in (top, other):
             if g > 0:
                 values[g] = baseline - team_criterion(code, weights, sums[g])
+    return float(values.max()), False
 
 
 @numba.njit(cache=True)

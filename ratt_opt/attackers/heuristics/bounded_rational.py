@@ -19,6 +19,20 @@ if TYPE_CHECKING:
 __all__ = ["bounded_rational_attack"]
 
 
+def _on_complete_graph(problem: Problem, order: list[int], blinded: frozenset[int]) -> Attack:
+    """The same without going through the links: the next robot to be cut off has one link to each robot not yet so."""
+    n_robots, left, alone = problem.n_robots, problem.alpha_c, list[int]()
+    for robot in order:
+        if robot in blinded:
+            continue
+        left -= n_robots - 1 - len(alone)
+        if left < 0:
+            break
+        alone.append(robot)
+    links = frozenset((min(i, j), max(i, j)) for i in alone for j in range(n_robots) if i != j)
+    return Attack(blinded, links)
+
+
 def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResult:
     """Blind the strongest robots, then cut off the next strongest while the link budget lasts.
 
@@ -35,6 +49,8 @@ def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResu
     values = PlanValues(problem, elements)
     order = np.argsort(-values.singletons(), kind="stable").tolist()
     free = [i for i in order if i not in problem.protected_robots]
+    if problem.threat.links_alike:
+        return heuristic_result(problem, values, _on_complete_graph(problem, order, frozenset(free[: problem.alpha_s])))
     attack = PartialAttack.of(problem, frozenset(free[: problem.alpha_s]))
     locked = {i for link in problem.protected_links for i in link}
     for robot in order:

@@ -196,7 +196,7 @@ class WeakestSetSearch:
         found = bound_family(self.team.family(robots, size, node.inside), self.threshold, node.minorant)
         bound = self._in_hand = max(node.bound, found.bound)
         if found.suggested is not None:
-            yield from self._try(node, robots[found.suggested])
+            yield from self._try(node, robots[found.suggested], budget)
         if bound >= self.threshold:
             return
         yield None
@@ -210,10 +210,10 @@ class WeakestSetSearch:
                 heapq.heappush(self._open, child)
             self._serial += 2
 
-    def _try(self, node: SetNode, others: IntArray) -> Found:
+    def _try(self, node: SetNode, others: IntArray, budget: Budget) -> Found:
         """The set that the bound suggests, and as improved by exchanges."""
         candidate = node.inside | frozenset(others.tolist())
-        for one in (candidate, exchanged(self.team, candidate, among=self._among, fixed=self._inside)):
+        for one in (candidate, exchanged(self.team, candidate, among=self._among, fixed=self._inside, budget=budget)):
             if self.team.value(one) < self.threshold:
                 yield one
 

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 
+from ratt_opt.budget import Budget
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from ratt_opt._validation import IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 
 __all__ = ["exchanged", "weak_sets_of_size"]
@@ -31,16 +32,24 @@ FEWEST_STARTS = 4
 """Starts that every team gets, whatever they cost."""
 SEED = 0
 """Of the random starts: the same for every call, so that attacks are reproducible."""
+AT_ONCE = 20_000_000
+"""Pairs of robots times targets that compiled loops go through between two looks at the clock (a fifth of a second)."""
 BARRED, INSIDE, OUTSIDE = 0, 1, 2
 """Where a robot is; a barred one takes part in no exchange."""
 
 
 def exchanged(
-    team: PlanarTeam, start: Iterable[int], *, among: Iterable[int] | None = None, fixed: Iterable[int] = ()
+    team: PlanarTeam,
+    start: Iterable[int],
+    *,
+    among: Iterable[int] | None = None,
+    fixed: Iterable[int] = (),
+    budget: Budget | None = None,
 ) -> frozenset[int]:
     """Make the best exchange again and again while that lowers the value; ties to the lowest robots.
 
     ``among`` : robots that may be in the set (all by default); ``fixed`` : robots that stay in it
+    ``budget`` : once it is spent the set is left as it is
     """
     start, fixed = frozenset(start), frozenset(fixed)
     where = np.full(len(team.single), OUTSIDE if among is None else BARRED, dtype=np.int8)
@@ -48,12 +57,12 @@ def exchanged(
     where[list(start)] = INSIDE
     where[list(fixed)] = BARRED
     kept = fixed & start
-    _exchange(team.code, team.weights, team.sums(kept), team.information, where)
+    _settle(team, team.sums(kept), where, budget or Budget())
     return kept.union(np.flatnonzero(where == INSIDE).tolist())
 
 
-def weak_sets_of_size(team: PlanarTeam, size: int) -> list[frozenset[int]]:
-    """Sets of ``size`` robots that no exchange lowers, lowest value first.
+def weak_sets_of_size(team: PlanarTeam, size: int, budget: Budget | None = None) -> list[frozenset[int]]:
+    """Sets of ``size`` robots that no exchange lowers, lowest value first; fewer, and rougher, once time is up.
 
     Deterministic. Starts: the robots of least individual value, those of least information about each target, and
     seeded random ones.
@@ -61,13 +70,16 @@ def weak_sets_of_size(team: PlanarTeam, size: int) -> list[frozenset[int]]:
     n_robots, n_targets = team.information.shape[:2]
     step = max(size * (n_robots - size) * n_targets, 1)
     found: dict[frozenset[int], float] = {}
+    own = budget or Budget()
     for _, start in zip(range(max(WORK // step, FEWEST_STARTS)), _starts(team, size), strict=False):
         where = np.full(n_robots, OUTSIDE, dtype=np.int8)
         where[start] = INSIDE
-        _exchange(team.code, team.weights, team.prior, team.information, where)
+        _settle(team, team.prior, where, own)
         robots = frozenset(np.flatnonzero(where == INSIDE).tolist())
         if robots not in found:
             found[robots] = team.value(robots)
+        if own.is_over:
+            break
     return sorted(found, key=found.__getitem__)
 
 
@@ -82,12 +94,23 @@ def _starts(team: PlanarTeam, size: int) -> Iterator[IntArray]:
         yield rng.permutation(len(traces))[:size]
 
 
+def _settle(team: PlanarTeam, kept: FloatArray, where: Any, budget: Budget) -> None:
+    """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
+    inside, outside = int((where == INSIDE).sum()), int((where == OUTSIDE).sum())
+    steps = max(AT_ONCE // max(inside * outside * len(team.weights), 1), 1)
+    while not _exchange(team.code, team.weights, kept, (team.information, where), steps):
+        if budget.is_over:
+            return
+
+
 @numba.njit(cache=True)
-def _exchange(code: int, weights: Any, kept: Any, information: Any, where: Any) -> None:
+def _exchange(code: int, weights: Any, kept: Any, robots: Any, steps: int) -> bool:
     """Exchange one robot inside for one outside, the best pair each time, while that lowers the value.
 
-    ``kept`` : (M, 3) information without the robots inside; ``where`` : (N,) changed in place
+    ``kept`` : (M, 3) information without the robots inside; ``robots`` : information, and where each is (N,), which
+    is changed in place. Returns whether nothing was left before ``steps`` exchanges.
     """
+    information, where = robots
     n_robots = len(where)
     sums = kept.copy()
     for i in range(n_robots):
@@ -95,7 +118,7 @@ def _exchange(code: int, weights: Any, kept: Any, information: Any, where: Any) 
             sums += information[i]
     value = team_criterion(code, weights, sums)  # of what is left to the team: the attacker wants it large
     changed = np.empty_like(sums)
-    while True:
+    for _ in range(steps):
         best, leaves, enters = value + 1e-12 * abs(value), -1, -1
         for i in range(n_robots):
             for e in range(n_robots):
@@ -106,11 +129,12 @@ def _exchange(code: int, weights: Any, kept: Any, information: Any, where: Any) 
                 if other > best:
                     best, leaves, enters = other, i, e
         if leaves < 0:
-            return
+            return True
         where[leaves], where[enters] = OUTSIDE, INSIDE
         _replace(sums, information[leaves], information[enters], changed)
         sums[:] = changed
         value = best
+    return False
 
 
 @numba.njit(cache=True)

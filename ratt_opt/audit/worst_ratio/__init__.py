@@ -2,5 +2,5 @@
 
 ``search.py`` lists the planner's comparisons and the attacks, and branches on what saves the optimal plan;
 ``class_rows.py`` has the linear rows of the class. ``program.py`` proves each node's bound in rationals;
-``witness.py`` replays an instance exactly, and holds two families of instances that attain the bounds.
+``witness.py`` replays an instance exactly, and with ``families.py`` holds families of instances that attain bounds.
 """

@@ -8,13 +8,13 @@ from math import comb
 from typing import TYPE_CHECKING
 
 from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import caa, links_within
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
-    import networkx as nx
-
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
 
@@ -25,7 +25,6 @@ __all__ = [
     "by_counting",
     "by_integer_partitions",
     "counting_bound",
-    "heuristic_cut",
     "largest_left",
     "split_result",
 ]
@@ -83,9 +82,9 @@ COUNTED = "the links left, and the protected ones, do not fit into smaller group
 """The reason for :func:`counting_bound`."""
 
 
-def by_counting(threat: Threat) -> LargestGroup:
+def by_counting(threat: Threat, budget: Budget) -> LargestGroup:
     """The bracket between :func:`counting_bound` and what :func:`heuristic_cut` leaves."""
-    return split_result(threat, heuristic_cut(threat), counting_bound(threat), "counting", COUNTED)
+    return split_result(threat, heuristic_cut(threat, budget), counting_bound(threat), "counting", COUNTED)
 
 
 def counting_bound(threat: Threat) -> int:
@@ -97,33 +96,6 @@ def counting_bound(threat: Threat) -> int:
     counted = next(p for p in range(1, n_robots + 1) if rest <= links_within(n_robots, p))
     held = CommunicationGraph(n_robots, threat.protected_links)
     return max(counted, *(len(group) for group in held.groups()))
-
-
-def heuristic_cut(threat: Threat, *, ignoring: Collection[int] = ()) -> frozenset[Link]:
-    """Split the largest group by its cheapest cut, or cut its cheapest robot off, while the budget lasts.
-
-    ``ignoring`` : robots that do not count for a group's size; a group with one that counts is not split
-    """
-    import networkx as nx
-
-    locked = len(threat.graph.links) + 1
-    rest: nx.Graph = nx.Graph()
-    rest.add_nodes_from(range(threat.graph.n_robots))
-    for i, j in sorted(threat.graph.links):
-        rest.add_edge(i, j, weight=locked if (i, j) in threat.protected_links else 1)
-    cut: set[Link] = set()
-    while True:
-        largest = min(nx.connected_components(rest), key=lambda group: (-len(group.difference(ignoring)), min(group)))
-        part = rest.subgraph(sorted(largest))
-        if len(largest) == 1 or len(largest.difference(ignoring)) <= 1:
-            return frozenset(cut)
-        cost, (side, _) = nx.stoer_wagner(part)
-        if len(cut) + cost > threat.alpha_c:
-            return frozenset(cut)
-        inside = set(side)
-        lost = [(min(i, j), max(i, j)) for i, j in part.edges if (i in inside) != (j in inside)]
-        cut.update(lost)
-        rest.remove_edges_from(lost)
 
 
 def by_caa(threat: Threat) -> LargestGroup:

@@ -18,14 +18,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.largest_group.counting import (
     COUNTED,
     LargestGroup,
     counting_bound,
-    heuristic_cut,
     largest_left,
     split_result,
 )
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
@@ -44,23 +45,28 @@ LARGEST_ROUND = 400
 
 def by_integer_program(threat: Threat, budget: Budget) -> LargestGroup:
     """Smallest largest group of any graph; the incumbent is recomputed on the graph, the bound from the multipliers."""
-    model = _Model(threat)
-    best = heuristic_cut(threat)
+    best = heuristic_cut(threat, budget)
     bound, reason = counting_bound(threat), COUNTED
-    relaxed = ceil(_relax(model, budget) - 1e-6)
-    if relaxed > bound:
-        bound, reason = relaxed, "linear relaxation, recomputed from its multipliers"
     claimed = bound
-    if bound < largest_left(threat.graph, best):
-        best, claimed = _solve(model, best, bound, budget)
+    try:
+        budget.check()
+        model = _Model(threat, budget)
+        relaxed = ceil(_relax(model, budget) - 1e-6)
+        if relaxed > bound:
+            bound, reason = relaxed, "linear relaxation, recomputed from its multipliers"
+        claimed = bound
+        if bound < largest_left(threat.graph, best):
+            best, claimed = _solve(model, best, bound, budget)
+    except OutOfBudget:
+        pass  # what is known so far
     return split_result(threat, best, bound, "milp", reason, claimed_lower=claimed)
 
 
 class _Model:
     """Rows ``lower <= row x``, each a few columns with +-1. Columns are the pairs ``i < j`` in order, then n."""
 
-    def __init__(self, threat: Threat) -> None:
-        self.threat = threat
+    def __init__(self, threat: Threat, budget: Budget) -> None:
+        self.threat, self.budget = threat, budget
         self.links = sorted(threat.graph.links)
         n_robots = threat.graph.n_robots
         first, second = np.triu_indices(n_robots, 1)
@@ -74,6 +80,7 @@ class _Model:
         self.rows: list[tuple[list[int], list[float]]] = []
         self.sides: list[float] = []
         for i in range(n_robots):
+            budget.check()
             others = [int(self.column[i, j]) for j in range(n_robots) if j != i]
             self._add([*others, self.n_pairs], [-1.0] * len(others) + [1.0], 1.0)
         kept = [int(self.column[i, j]) for i, j in self.links]
@@ -90,6 +97,8 @@ class _Model:
         np.fill_diagonal(matrix, 1.0)
         found = []
         for i, j in self.links:
+            if self.budget.is_over:
+                break
             for a, b in ((i, j), (j, i)):
                 excess = x[self.column[i, j]] + matrix[b] - 1 - matrix[a]
                 excess[[a, b]] = 0.0

@@ -22,13 +22,14 @@ from ratt_opt.graph.largest_group.counting import (
     by_counting,
     by_integer_partitions,
     counting_bound,
-    heuristic_cut,
     largest_left,
     split_result,
 )
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
+from ratt_opt.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,6 +48,7 @@ LARGEST_AUTOMATIC_PROGRAM = 40
 METHODS = ("auto", "milp", "caa", "partitions", "enumeration", "counting")
 
 
+@Step("the smallest largest group")
 def smallest_largest_group(
     graph: nx.Graph | CommunicationGraph,
     alpha_c: int,
@@ -93,7 +95,9 @@ def smallest_largest_group(
         return _by_enumeration(threat, own)
     if method == "milp":
         return by_integer_program(threat, own)
-    return {"caa": by_caa, "partitions": by_integer_partitions, "counting": by_counting}[method](threat)
+    if method == "counting":
+        return by_counting(threat, own)
+    return by_caa(threat) if method == "caa" else by_integer_partitions(threat)
 
 
 def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
@@ -101,19 +105,21 @@ def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
     if threat.links_alike:
         return by_caa(threat)
     if n_robots <= LARGEST_LATTICE:
-        return by_subsets(threat)
+        return by_subsets(threat, budget)
     found = by_separable_groups(threat, budget.part(max_nodes=AUTOMATIC_NODES))
-    if found is not None and found.is_exact:
+    if found is not None and (found.is_exact or budget.is_over):
         return found
     if n_robots <= LARGEST_AUTOMATIC_PROGRAM:
         return by_integer_program(threat, budget)
-    return found or by_counting(threat)
+    return found or by_counting(threat, budget)
 
 
 def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
     if threat.graph.n_robots <= LARGEST_LATTICE:
-        return by_subsets(threat)
+        return by_subsets(threat, budget)
     found = by_separable_groups(threat, budget)
+    if found is None and budget.is_over:
+        return by_counting(threat, budget)
     if found is None:
         rule = 'must be "milp" (or "caa" on a complete graph) for more than 60 robots, or a graph'
         value = f"enumeration of {threat.graph.n_robots} robots"
@@ -123,29 +129,37 @@ def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
 
 MOST_GROUPS = 300_000
 """Groups listed before this way is given up: their masks take a second to list and a few megabytes."""
-NODES_AT_ONCE = 1_000_000
-"""Nodes between two looks at the clock (about a second)."""
+NODES_AT_ONCE = 100_000
+"""Nodes between two looks at the clock (about a tenth of a second)."""
 
 
-def by_subsets(threat: Threat) -> LargestGroup:
+def by_subsets(threat: Threat, budget: Budget) -> LargestGroup:
     """Fewest links that split the graph into connected groups of at most p robots, over all set partitions."""
     n_robots = threat.graph.n_robots
+    lower, reason = counting_bound(threat), COUNTED
+    if budget.is_over:
+        return split_result(threat, heuristic_cut(threat, budget), lower, "enumeration", reason)
     test = ThresholdTest(threat, np.bitwise_count(np.arange(2**n_robots)).astype(np.float64))
-    largest, split = next((p, s) for p in range(1, n_robots + 1) if (s := test.split(float(p))) is not None)
-    return split_result(
-        threat, threat.graph.links_between(split.members()), largest, "enumeration", _none_smaller(largest)
-    )
+    while not budget.is_over:
+        split = test.split(float(lower))
+        if split is not None:
+            cut = threat.graph.links_between(split.members())
+            return split_result(threat, cut, lower, "enumeration", _none_smaller(lower))
+        lower += 1
+        reason = _none_smaller(lower)
+    return split_result(threat, heuristic_cut(threat, budget), lower, "enumeration", reason)
 
 
 def by_separable_groups(threat: Threat, budget: Budget) -> LargestGroup | None:
     """Smallest largest group, or the bracket that the budget allows; ``None`` where the groups are too many to list."""
     from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups  # compiles
 
-    groups = separable_groups(threat, MOST_GROUPS)
+    most = min(MOST_GROUPS, int(MOST_GROUPS * min(budget.seconds_left, 1.0)))
+    groups = separable_groups(threat, most) if most and not budget.is_over else None
     if groups is None:
         return None
     sizes = np.bitwise_count(groups.masks)
-    lower, reason, cut = counting_bound(threat), COUNTED, heuristic_cut(threat)
+    lower, reason, cut = counting_bound(threat), COUNTED, heuristic_cut(threat, budget)
     while lower < largest_left(threat.graph, cut):
         search = PartitionSearch(groups, np.where(sizes <= lower, 0, IMPOSSIBLE))
         chosen = _first_partition(search, budget)

@@ -35,8 +35,8 @@ class LastingAttacks:
     as much, and their groups can be closed once and for all.
     """
 
-    def __init__(self, problem: Problem) -> None:
-        self._problem = problem
+    def __init__(self, problem: Problem, budget: Budget) -> None:
+        self._problem, self._budget = problem, budget
         self._team = _at_their_best(problem) if problem.threat.is_symmetric else None
         self._known: dict[tuple[frozenset[int], tuple[int, ...]], Attack] = {}
 
@@ -45,7 +45,7 @@ class LastingAttacks:
 
         The attack itself where robots or links differ to the adversary.
         """
-        if self._team is None:
+        if self._team is None or self._budget.is_over:
             return attack
         groups = sorted(self._problem.groups_left(attack), key=lambda g: (-len(g), min(g, default=0)))
         sizes = tuple(len(group) for group in groups[1:] if group)
@@ -67,7 +67,9 @@ class LastingAttacks:
         groups = []
         for size in sizes:
             among = replace(team, information=team.information[left], single=team.single[left])
-            chosen = sorted(weak_sets_of_size(among, size)[0]) if size > 1 else [int(among.single.argmin())]
+            chosen = (
+                sorted(weak_sets_of_size(among, size, self._budget)[0]) if size > 1 else [int(among.single.argmin())]
+            )
             groups.append(frozenset(left[chosen].tolist()))
             left = np.delete(left, chosen)
         return groups
@@ -106,7 +108,7 @@ class Adversary:
 
     def __init__(self, problem: Problem, pool: OutcomePool, budget: Budget) -> None:
         self.problem, self.pool, self.budget = problem, pool, budget
-        self._lasting = LastingAttacks(problem)
+        self._lasting = LastingAttacks(problem, budget)
 
     @property
     def is_exact_cheaply(self) -> bool:
@@ -115,21 +117,21 @@ class Adversary:
 
     def learn(self, plan: IntArray) -> bool:
         """Attack a plan quickly, unless all outcomes are known; whether that found a new outcome."""
-        known = len(self.pool.attacks)
+        known = len(self.pool)
         if not self.pool.complete:
             self._remember(self.problem, plan, self._quick_attack(self.problem, plan))
-        return len(self.pool.attacks) > known
+        return len(self.pool) > known
 
     def learn_relaxed(self, of_robot: FloatArray) -> bool:
         """The same for a relaxed plan, as if it were one: its robots contribute ``of_robot`` (N, M, d, d)."""
-        known = len(self.pool.attacks)
+        known = len(self.pool)
         owners = np.arange(self.problem.n_robots)
         objective = self.pool.objective.with_information(of_robot)
         relaxed = replace(self.problem, objective=objective, robot=owners)
         if len(owners) <= SEARCHED_BY_SIZE:
             self.pool.add(greedy_attack(relaxed, owners).attack)
         self._remember(relaxed, owners, self._quick_attack(relaxed, owners))
-        return len(self.pool.attacks) > known
+        return len(self.pool) > known
 
     def attack(self, plan: IntArray, budget: Budget) -> AttackResult:
         """Exact worst case of a plan within a part of the budget."""
@@ -154,7 +156,7 @@ class Adversary:
         if problem.n_robots <= SEARCHED_BY_SIZE:
             return bounded_rational_attack(problem, plan).attack
         if not problem.threat.links_alike:
-            return greedy_attack(problem, plan).attack
+            return greedy_attack(problem, plan, budget=self.budget).attack
         found = worst_case_attack(problem, plan, max_nodes=0, budget=self.budget)
         self.heed(found)
         return found.attack

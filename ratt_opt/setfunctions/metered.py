@@ -1,0 +1,112 @@
+"""Another function's values, checked one by one, counted, and asked for only while a budget lasts."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.budget import OutOfBudget
+from ratt_opt.setfunctions.base import SetFunction, TableFunction, check_table_size, checked_values
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray
+    from ratt_opt.budget import Budget
+
+__all__ = ["Metered", "metered", "table_within", "unmetered"]
+
+AT_ONCE = 0.02
+"""Seconds of values that are asked for at once: the clock is looked at, and an interrupt heard, about so often."""
+MOST_AT_ONCE = 2**14
+"""Sets that are asked for at once, however fast: their memberships stay in cache."""
+MOST_KEPT_AT_ONCE, MOST_KEPT = 2**12, 2**17
+"""Sets whose values are kept: of larger batches, which enumerate, none comes twice; all keep within some megabytes."""
+
+
+class Metered(SetFunction):
+    """``f`` within ``budget``; raises ``OutOfBudget`` instead of asking for a value that it does not allow.
+
+    However slow ``f`` is, few sets are asked for at once, so that the clock is looked at in between.
+    """
+
+    __slots__ = ("_at_once", "_budget", "_known", "f")
+
+    def __init__(self, f: SetFunction, budget: Budget, known: dict[bytes, float] | None = None) -> None:
+        self.f, self._budget, self._at_once = f, budget, 1
+        self._known: dict[bytes, float] = {} if known is None else known
+
+    def within(self, budget: Budget) -> Metered:
+        """The same in another budget; what is known already costs it nothing."""
+        return Metered(self.f, budget, self._known)
+
+    @property
+    def n(self) -> int:
+        """Size of the ground set."""
+        return self.f.n
+
+    @property
+    def rounding(self) -> float:
+        """As of the function itself."""
+        return self.f.rounding
+
+    @property
+    def most_total_curvature(self) -> float:
+        """As of the function itself."""
+        return self.f.most_total_curvature
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        if len(membership) > MOST_KEPT_AT_ONCE or len(self._known) > MOST_KEPT:
+            return self._asked(membership)
+        keys = [row.tobytes() for row in np.packbits(membership, axis=1)]
+        new = {key: k for k, key in enumerate(keys) if key not in self._known}
+        values = self._asked(membership[list(new.values())]) if new else np.empty(0)
+        self._known.update(zip(new, values.tolist(), strict=True))
+        return np.array([self._known[key] for key in keys])
+
+    def _asked(self, membership: BoolArray) -> FloatArray:
+        values, done = np.empty(len(membership)), 0
+        while done < len(values):
+            self._budget.check()
+            rows = int(min(self._at_once, len(values) - done, self._budget.evaluations_left))
+            began = monotonic()
+            values[done : done + rows] = checked_values(self.f, membership[done : done + rows])
+            self._budget.evaluate(rows)
+            seconds, done = monotonic() - began, done + rows
+            if seconds > AT_ONCE:
+                self._at_once = max(self._at_once // 2, 1)
+            elif rows == self._at_once and 2 * seconds < AT_ONCE:
+                self._at_once = min(2 * self._at_once, MOST_AT_ONCE)
+        return values
+
+
+def metered(f: SetFunction, budget: Budget) -> Metered:
+    """``f`` within a budget; what an earlier one has asked for is known."""
+    return f.within(budget) if isinstance(f, Metered) else Metered(f, budget)
+
+
+def unmetered(f: SetFunction) -> SetFunction:
+    """The function itself."""
+    return f.f if isinstance(f, Metered) else f
+
+
+def table_within(f: SetFunction, budget: Budget) -> FloatArray:
+    """The full table of ``f``, as fast as it makes it itself; raises ``OutOfBudget`` where the budget is too small."""
+    check_table_size(f.n)
+    if isinstance(f, TableFunction):
+        return f.values
+    budget.check()
+    if 2.0**f.n > budget.evaluations_left:
+        raise OutOfBudget(Stop.EVALUATIONS)
+    is_fast = type(f).table_blocks is not SetFunction.table_blocks  # it knows better than one set after the other
+    done, values = 0, np.empty(2**f.n)
+    for block in (f if is_fast else Metered(f, budget)).table_blocks():
+        values[done : done + len(block)] = block
+        done += len(block)
+        if is_fast:
+            budget.evaluate(len(block))
+            if done < len(values):
+                budget.check()
+    return values

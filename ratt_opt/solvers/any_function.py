@@ -1,0 +1,239 @@
+"""Plans for any set function, known by its values alone: a bracket of any size, within any number of values.
+
+Small problems are enumerated (``exhaustive.py``). Beyond: plans improved element by element against the attacks known
+so far, which are attacked in turn. No plan is worth more than
+
+- what the worst attack found leaves of a team in which every robot holds all its elements (monotonicity), or, where
+  theory proves the function submodular, of the sum of the robots' largest individual values;
+- RATT's plan under any attack, divided by the share of the optimum that RATT keeps (``1 - k`` of a submodular
+  function, ``(1 - c)^2`` of one that states a bound on its total curvature).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import readonly
+from ratt_opt.attackers.any_function import metered_problem
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.bounds.guarantees import pattern_free_bound
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.curvatures.domains import domain_of
+from ratt_opt.curvatures.marginals import enumerate_marginals
+from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.base import SetFunction, TableFunction, checked_values
+from ratt_opt.setfunctions.metered import unmetered
+from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.result import MaxMinResult
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.problem import Attack, Problem
+
+__all__ = ["check_small_monotone", "search_any"]
+
+CHECKED_SETS, CHECKED_TABLE = 2**12, 2**18
+"""Feasible sets up to which a function, and one given as a table, is checked to be non-decreasing: milliseconds."""
+ENUMERATION_SHARE, PLAN_SHARE, ATTACK_SHARE = 0.5, 0.3, 0.2
+"""Shares of the seconds and values left: for the enumeration of a small problem, for RATT's plan, and for each attack
+on a plan. Not measured."""
+ROUNDS = 50
+"""Plans that are climbed to and attacked, where no limit ends it before."""
+DONE = {Stop.EXHAUSTED, Stop.CLOSED}
+
+
+def check_small_monotone(problem: Problem, budget: Budget) -> None:
+    """Refuse a small function that falls, showing where; what cannot be looked at in time is relied on.
+
+    Raises
+    ------
+    InputError : the objective is not non-decreasing over feasible sets.
+    """
+    f = unmetered(problem.objective)
+    domain = domain_of(f, problem.robot, None)
+    if f.is_non_decreasing or domain.count > (CHECKED_TABLE if isinstance(f, TableFunction) else CHECKED_SETS):
+        return
+    try:
+        enumerate_marginals(domain, budget.part(ATTACK_SHARE))
+    except OutOfBudget:
+        return
+
+
+def search_any(problem: Problem, budget: Budget, gap: float = 1e-9) -> MaxMinResult:
+    """Bracket the optimum of any non-decreasing function.
+
+    Relies on that (checked where it is small). A spent budget or an interrupt returns the bracket.
+
+    Raises
+    ------
+    InputError : the function falls, where that is checked, or a value is no finite number.
+    """
+    search = None
+    try:
+        check_small_monotone(problem, budget)
+        found = _enumerated(problem, budget)
+        if found is not None and found.stop in DONE:
+            return found
+        search = _Search(problem, budget, found)
+        stop = search.run(gap)
+    except OutOfBudget as out:
+        stop = out.stop
+    except KeyboardInterrupt:
+        stop = budget.interrupt()
+    return (search or _Search(problem, budget, None)).result(stop)
+
+
+def _enumerated(problem: Problem, budget: Budget) -> MaxMinResult | None:
+    """What the enumeration of plans and outcomes says within its share; ``None`` where there are too many."""
+    try:
+        return exhaustive_optimum(problem, budget=budget.part(ENUMERATION_SHARE))
+    except InputError as error:
+        if error.argument in {"problem", "graph"}:
+            return None
+        raise
+
+
+class _Search:
+    """The bracket, valid at any moment, and the attacks known so far."""
+
+    def __init__(self, problem: Problem, budget: Budget, known: MaxMinResult | None) -> None:
+        self._given, self._budget = problem, budget
+        self._problem = metered_problem(problem, budget)
+        self.elements = np.array([choice[0] for choice in problem.choices]) if known is None else known.elements
+        empty, full = np.zeros((2, problem.objective.n), dtype=np.bool_)
+        full[:] = True
+        ends = checked_values(unmetered(problem.objective), np.array([empty, full]))  # whatever the limits
+        self.lower, self.upper = float(ends[0]), float(ends[1])
+        if known is not None:
+            self.lower, self.upper = max(self.lower, known.lower), min(self.upper, known.upper)
+        self.worst_case: AttackResult | None = None
+        self._attacks: dict[Attack, list[frozenset[int]]] = {}
+        self._known: dict[frozenset[int], float] = {}
+
+    def run(self, gap: float) -> Stop:
+        """RATT's plan first, then bounds on all plans, then climbing and attacking in turn."""
+        planned = self._planned()
+        first = self._attack(self.elements if planned is None else planned)
+        self._bound_by_pooling()
+        if planned is not None:
+            self._bound_by_guarantee(first)
+        current = self.elements
+        for _ in range(ROUNDS):
+            if self.upper - self.lower <= gap * abs(self.upper):
+                return Stop.CLOSED
+            current = self._climbed(current)
+            known = len(self._attacks)
+            self._attack(current)
+            if len(self._attacks) == known:
+                break
+        return self._budget.stop() or Stop.HEURISTIC
+
+    def _planned(self) -> IntArray | None:
+        """RATT's plan; ``None`` where its share of the budget does not do for it."""
+        part = self._budget.part(PLAN_SHARE)
+        try:
+            plan = ratt(metered_problem(self._problem, part), budget=part).elements
+        except OutOfBudget as out:
+            if out.stop is Stop.INTERRUPTED:
+                raise
+            return None
+        self.elements = plan  # as far as it came, it is a plan
+        return None if part.is_over else plan
+
+    def result(self, stop: Stop) -> MaxMinResult:
+        """What is known."""
+        return MaxMinResult(
+            elements=readonly(np.asarray(self.elements)),
+            lower=self.lower,
+            upper=max(self.upper, self.lower),
+            stop=stop,
+            evaluations=self._budget.evaluations,
+            worst_case=self.worst_case,
+        )
+
+    def _attack(self, elements: IntArray) -> AttackResult:
+        """Attack a plan; keep it where more is proved of it than of the one kept."""
+        result = worst_case_attack(self._problem, elements, budget=self._budget.part(ATTACK_SHARE))
+        self._attacks.setdefault(result.attack, self._given.groups_left(result.attack))
+        if self.worst_case is None or result.lower > self.lower:
+            self.elements, self.lower, self.worst_case = elements.copy(), max(result.lower, self.lower), result
+        if result.stop is Stop.INTERRUPTED:
+            raise OutOfBudget(result.stop)
+        return result
+
+    def _climbed(self, elements: IntArray) -> IntArray:
+        """Change one robot's element at a time while the known attacks leave more."""
+        current, value = elements.copy(), self._value(elements)
+        unchanged = i = 0
+        while unchanged < len(current):
+            unchanged += 1
+            for e in self._given.choices[i]:
+                other = current.copy()
+                other[i] = e
+                if e != current[i] and (better := self._value(other)) > value:
+                    current, value, unchanged = other, better, 0
+            i = (i + 1) % len(current)
+        return current
+
+    def _value(self, elements: IntArray) -> float:
+        """What the known attacks leave of a plan."""
+        return min(max(self._worth(elements, group) for group in groups) for groups in self._attacks.values())
+
+    def _worth(self, elements: IntArray, group: frozenset[int]) -> float:
+        chosen = frozenset(elements[sorted(group)].tolist())
+        if chosen not in self._known:
+            self._known[chosen] = self._problem.objective(chosen)
+        return self._known[chosen]
+
+    def _bound_by_pooling(self) -> None:
+        """What the worst attack found leaves of robots that hold all their elements."""
+        everyone = np.arange(self._given.n_robots)
+        team = replace(self._given, objective=_Pooled(self._given, self._singles()), robot=everyone)
+        worst = worst_case_attack(team, everyone, budget=self._budget.part(ATTACK_SHARE)).attack
+        team = metered_problem(team, self._budget)
+        for attack in [*self._attacks, worst]:
+            self.upper = min(self.upper, team.team_value(everyone, attack))
+
+    def _singles(self) -> FloatArray | None:
+        """(E,) individual values where theory proves the function submodular."""
+        return self._problem.objective.singletons() if unmetered(self._given.objective).is_submodular else None
+
+    def _bound_by_guarantee(self, first: AttackResult) -> None:
+        """RATT's plan keeps a share of the optimum, so the optimum is at most its value over that share."""
+        f, share = unmetered(self._given.objective), 0.0
+        if (single := self._singles()) is not None:
+            metered = self._problem.objective
+            top = np.maximum(metered(range(f.n)) - metered.evaluate(~np.eye(f.n, dtype=np.bool_)), 0.0)
+            share = float((top[single > 0] / single[single > 0]).min(initial=1.0))
+            share = float(pattern_free_bound(k=min(max(1.0 - share, 0.0), 1.0)))
+        elif f.most_total_curvature < 1:
+            share = float(pattern_free_bound(c=f.most_total_curvature))
+        if share > 0 and not self._budget.is_over:
+            self.upper = min(self.upper, first.upper / share)
+
+
+class _Pooled(SetFunction):
+    """Of robots: no plan's elements of them are worth more. The value of all their elements; of a submodular function
+    also the sum of the largest individual values, where that is less."""
+
+    __slots__ = ("_best", "_f", "_owners")
+
+    def __init__(self, problem: Problem, single: FloatArray | None) -> None:
+        self._f, self._owners = unmetered(problem.objective), problem.robot
+        self._best = None if single is None else np.array([single[choice].max() for choice in problem.choices])
+
+    @property
+    def n(self) -> int:
+        """Number of robots."""
+        return int(self._owners.max()) + 1
+
+    def evaluate(self, membership: BoolArray) -> FloatArray:
+        """(K,) values of the sets of robots in the rows of ``membership`` (K, N)."""
+        values = checked_values(self._f, membership[:, self._owners])
+        return values if self._best is None else np.minimum(values, membership @ self._best)
