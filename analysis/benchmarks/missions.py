@@ -1,6 +1,6 @@
 """How long one step of a mission takes, by team and horizon.
 
-Run as ``python -m analysis.benchmarks.missions [--steps 20]``: medians over the steps of a mission under the exact attacker
+Run as ``python -m analysis.benchmarks.missions [--steps 20]``: medians over the steps of a mission under random attacks
 (building the problem is part of a step), and brackets of the optimum of the first step several steps ahead.
 """
 
@@ -36,7 +36,7 @@ def first_step(world: World, sequences: Sequences) -> Problem:
     return world.problem(criterion, kept.owner, scenario.poses, threatened)
 
 
-def flown(steps: int) -> list[tuple[object, ...]]:
+def flown(steps: int) -> list[dict[str, object]]:
     """Median planning seconds of whole missions."""
     rows = []
     for n, m, alpha_s, alpha_c in TEAMS:
@@ -47,11 +47,11 @@ def flown(steps: int) -> list[tuple[object, ...]]:
                 continue
             run_mission(scenario, steps=1, planner=planner, attacker="random")  # compiles
             mission = run_mission(scenario, steps=steps, planner=planner, attacker="random")
-            rows.append((f"N={n} M={m}", 1, name, f"{np.median(mission.seconds):.3f}", ""))
+            rows.append(_row(f"N={n} M={m}", 1, name, float(np.median(mission.seconds))))
     return rows
 
 
-def ahead() -> list[tuple[object, ...]]:
+def ahead() -> list[dict[str, object]]:
     """Seconds and gaps of the first step, two and three steps ahead."""
     rows = []
     n, m, alpha_s, alpha_c = TEAMS[0]
@@ -67,17 +67,21 @@ def ahead() -> list[tuple[object, ...]]:
         ratt(problem)
         seconds = perf_counter() - began
         label = f"N={n} M={m}, {motion}" + (f", beam of {beam}" if beam else "")
-        rows.append((label, horizon, "ratt", f"{seconds:.3f}", ""))
+        rows.append(_row(label, horizon, "ratt", seconds))
         began = perf_counter()
         if beam is None:
             found = solve_maxmin(problem, gap=0.01, time_limit=30.0)
         else:
             whole = first_step_of_all(world)
-            start = best_alone(whole.objective.singletons(), whole.robot, beam)
+            start = best_alone(whole.objective.singletons(), whole.robot, BEAM)
             found = solve_by_columns(whole, start, gap=0.01, time_limit=60.0)
-        gap = 100 * (found.upper - found.lower) / found.upper
-        rows.append((label, horizon, "maxmin to 1 %", f"{perf_counter() - began:.3f}", f"{gap:.2f} %"))
+        gap = (found.upper - found.lower) / found.upper
+        rows.append(_row(label, horizon, "maxmin to 1 %", perf_counter() - began, f"{gap:.2%}"))
     return rows
+
+
+def _row(team: str, horizon: int, planner: str, seconds: float, gap: str = "") -> dict[str, object]:
+    return {"team": team, "H": horizon, "planner": planner, "seconds": seconds, "gap": gap}
 
 
 def first_step_of_all(world: World) -> Problem:
@@ -93,7 +97,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=20)
     options = parser.parse_args()
-    print_table(("team", "H", "planner", "seconds", "gap"), [*flown(options.steps), *ahead()])
+    print_table("One step of a mission", [*flown(options.steps), *ahead()])
 
 
 if __name__ == "__main__":
