@@ -9,6 +9,7 @@ from __future__ import annotations
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as LateError
 from dataclasses import replace
+from functools import partial
 from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -118,16 +119,17 @@ class Tracker:
         began = monotonic()
         state = self._measured(list(measurements), now, poses)
         offered = offered_sequences(self.world, state.belief, state.poses, state.time)
-        elements = self._elements(self._problem(state, offered), began)
+        rest = _nearest(offered, state.controls)
+        elements = self._elements(self._problem(state, offered), rest, began)
         late = elements is None
         if elements is None:
-            elements = _nearest(offered, state.controls)
+            elements = rest
         chosen = offered.only(elements)
-        rest = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
+        left = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
         self.state = replace(
             state,
             poses=readonly(chosen.poses[:, 0]),
-            controls=readonly(rest),
+            controls=readonly(left),
             steps=state.steps + 1,
             missed=state.missed + late,
         )
@@ -202,16 +204,18 @@ class Tracker:
         budgets = Threatened(Attack(), self.scenario.alpha_s, self.scenario.alpha_c)
         return self.world.problem(objective, offered.owner, state.poses, budgets)
 
-    def _elements(self, problem: Problem, began: float) -> IntArray | None:
-        """The planner's elements, or ``None`` where they come too late."""
+    def _elements(self, problem: Problem, rest: IntArray, began: float) -> IntArray | None:
+        """The planner's elements, or ``None`` where they are late; a search starts from the last plan's ``rest``."""
+        plan = self._plan
+        if isinstance(plan, MaxMinPlanner):
+            plan = partial(plan, start=rest)
         if self.time_limit is None:
-            return elements_of(self._plan(problem), problem)
+            return elements_of(plan(problem), problem)
         if self._running is not None and not self._running.done():
             return None  # a thread is still busy with a plan that nobody waits for
         left = max(self.time_limit - (monotonic() - began), 0.0)
-        plan = self._plan
-        if isinstance(plan, MaxMinPlanner):
-            plan = replace(plan, time_limit=SEARCH_SHARE * left, max_nodes=None)
+        if isinstance(self._plan, MaxMinPlanner):
+            plan = partial(replace(self._plan, time_limit=SEARCH_SHARE * left, max_nodes=None), start=rest)
         self._running = _in_thread(lambda: elements_of(plan(problem), problem))
         try:
             return self._running.result(timeout=left)
