@@ -114,8 +114,8 @@ def draw(points: Sequence[Point]) -> Figure:
     return figure
 
 
-COLOURS = [PLANNERS[name].colour for name in ("maxmin", "ratt", "greedy", "nonrobust", "random")]
-"""Dark to light, as the cases are drawn: widest and darkest first, so that equal curves lie inside one another."""
+COLOURS = [PLANNERS[name].colour for name in ("maxmin", "ratt", "greedy", "nonrobust", "myopic")]
+"""As the cases are drawn: each narrower than the one before, so that equal curves lie inside one another."""
 
 
 def _panel(axis: Axes, points: Sequence[Point]) -> None:
