@@ -139,7 +139,7 @@ def draw(out: Path) -> Path:
     figure, axes = plt.subplots(figsize=(11, 0.42 * (len(layers) + 2)), constrained_layout=True)
     _draw(axes, layers)
     path = out / "architecture.png"
-    figure.savefig(path, dpi=130)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
     return path
 
