@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def team(network: str, n_robots: int, budget: int, objective: str, seed: int) -> tuple[str, Problem]:
-    """Budgets in words, and the problem: the paper's, or another network with N/10 robots blinded and N/5 links cut."""
+    """Budgets in words, and the problem: the paper's, or another network with N/10 robots blinded, N/5 links cut."""
     n_targets, budgets = SETTINGS[n_robots]
     alpha_s, alpha_c = budgets[budget] if network == "complete" else (n_robots // 10, n_robots // 5)
     if network == "complete":
