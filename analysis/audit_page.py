@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from analysis.worst_ratio import theorem1
 from ratt_opt import caa, worst_case_ratio
+from ratt_opt.audit.report.chains import chain_lines
 from ratt_opt.audit.report.findings import (
     BY_ATTACK,
     BY_READING,
@@ -67,6 +68,7 @@ without them: from RATT's choices, one robot at a time.
 
 This page is written by commands:
 
+<!-- slow -->
 ```bash
 ratt-opt audit --out ledger
 python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/
@@ -94,6 +96,9 @@ def page(document: LedgerDocument, ratios: Finding, figure: str = "") -> str:
     lines = [opening(document), f"The ledger has {len(document['entries'])} entries: {counts}.", ""]
     for finding in (*findings(document), realistic_table(document), ratios):
         lines += finding_lines(finding)
+    lines += ["## The lines themselves", ""]
+    for chain in chain_lines(document):
+        lines += finding_lines(chain, level=3)
     if figure:
         lines += [f"![Exact worst ratios against curvature, beside the bounds]({figure})", ""]
     return "\n".join(lines)

@@ -26,10 +26,10 @@ __all__ = ["Entry", "main"]
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A study and what to make of its rows: ``draw(rows, folder)`` writes figures into ``folder``."""
+    """A study and what to make of its rows: ``draw(rows, folder)`` writes figures into ``folder``, if anything."""
 
     study: Study
-    draw: Draw
+    draw: Draw | None = None
 
 
 def main(
@@ -50,7 +50,8 @@ def main(
                 trials_wanted = study.fixed_trials or options.trials
                 old = options.accept_old_rows
                 run(study, folder, executor, trials=trials_wanted, progress=Progress(), accept_old_rows=old)
-                entry.draw(read_table(folder), folder)
+                if entry.draw is not None:
+                    entry.draw(read_table(folder), folder)
         if after is not None and len(chosen) == len(entries):
             after(options.out)
     except InputError as error:

@@ -11,6 +11,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
 from ratt_opt.attackers.task import PlanValues
 from ratt_opt.budget import Budget
+from ratt_opt.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -38,6 +39,7 @@ class Criticality:
     gain_upper: float
 
 
+@Step("what to protect")
 def criticality_ranking(
     problem: Problem,
     elements: ArrayLike,
@@ -113,6 +115,7 @@ class BreakingBudget:
     is_proved: bool
 
 
+@Step("the smallest budgets that break the plan")
 def breaking_budgets(
     problem: Problem,
     elements: ArrayLike,

@@ -28,6 +28,7 @@ from ratt_opt.audit.report.pages import html_report, markdown_report, per_chain
 from ratt_opt.audit.report.records import begun, claim_record, factor_record, real_record
 from ratt_opt.budget import Budget
 from ratt_opt.problem import Problem
+from ratt_opt.progress import Step
 from ratt_opt.solvers.ratt import bait_and_greedy
 
 if TYPE_CHECKING:
@@ -195,10 +196,12 @@ def run_audit(
     entries = list(all_entries())
     records: list[EntryRecord] = []
     try:
-        for number, entry in enumerate(entries):
-            if progress is not None:
-                progress(number, len(entries), entry.label)
-            records.append(decide_entry(entry, quick=quick))
+        with Step("the audit") as step:
+            for number, entry in enumerate(entries):
+                step.say(f"{number + 1}/{len(entries)} {entry.label}")
+                if progress is not None:
+                    progress(number, len(entries), entry.label)
+                records.append(decide_entry(entry, quick=quick))
     except KeyboardInterrupt:
         budget.interrupt()
     _add_other_verdicts(entries[: len(records)], records)

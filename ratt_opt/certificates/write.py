@@ -17,6 +17,7 @@ from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.errors import InputError, ProofError, UndecidedError
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
 
@@ -157,6 +158,7 @@ def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certifi
     )
 
 
+@Step("certificate, written and checked")
 def write_certificate(
     problem: Problem,
     elements: IntArray,

@@ -64,7 +64,7 @@ def run_program(arguments: list[str]) -> int:
     if word := next((word for word in arguments if "\0" in word), None):  # no path can; the system's words never do
         return fail(f"a word must not hold a null character; got {word}", BAD_INPUT)
     try:
-        code = app(arguments, standalone_mode=False)
+        code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
         flush()
     except typer.Abort:
         raise KeyboardInterrupt from None

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ratt_opt.cli.options import JsonFlag, OutFolder
-from ratt_opt.cli.terminal import print_json, print_lines, progress
+from ratt_opt.cli.terminal import print_json, print_lines
 from ratt_opt.errors import InputError, printable
+from ratt_opt.progress import Step
 
 if TYPE_CHECKING:
     from ratt_opt.missions.result import Mission
@@ -64,13 +65,12 @@ def track(
     model = MissionModel(motion=motion, linearisation=linearisation)
     chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
     missions = []
-    with progress() as tell:
+    with Step("flying") as shown:
         for k in range(seeds):
             journal = folder / (JOURNAL if k == 0 else f"{k}.{JOURNAL}")
 
             def say(step: int, of: int, number: int = k) -> None:
-                if step % max(of // 10, 1) == 0:
-                    tell(f"mission {number + 1} of {seeds}: step {step} of {of}")
+                shown.say(f"mission {number + 1} of {seeds}, step {step} of {of}")
 
             mission = run_mission(
                 scenario,

@@ -22,6 +22,7 @@ from ratt_opt.errors import InputError, ProofError
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
@@ -47,6 +48,7 @@ class Steps:
     """``tell`` : called with one line of text, or ``None``; ``seconds`` : wall time of each step that has ended."""
 
     tell: Callable[[str], None] | None
+    shown: Step = field(default_factory=lambda: Step("planning"))
     seconds: dict[str, float] = field(default_factory=dict)
     _last_line: float = -SECONDS_BETWEEN_LINES
 
@@ -55,14 +57,17 @@ class Steps:
         """Tell that a step begins, and keep how long it takes."""
         self._say(step)
         began = monotonic()
-        yield
+        with Step(step) as self.shown:
+            yield
         self.seconds[step] = monotonic() - began
 
     def search_line(self, nodes: int, lower: float, upper: float) -> None:
         """Tell where a search stands, unless that was told just now."""
         if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
             self._last_line = monotonic()
-            self._say(f"  {nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}")
+            line = f"{nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}"
+            self.shown.say(line)
+            self._say(f"  {line}")
 
     def _say(self, line: str) -> None:
         if self.tell is not None:

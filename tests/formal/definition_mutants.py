@@ -1,7 +1,7 @@
 """Change one definition of ``formal/`` at a time and see whether the proofs, examples included, still go through.
 
-``python -m tests.formal.definition_mutants [START [STOP]]`` needs coqc and up to a minute for each change; it prints the
-changes that nothing notices and how many there are of each kind. No such change may be left.
+``python -m tests.formal.definition_mutants [START [STOP]]`` needs coqc and up to a minute for each change; it prints
+where each is noticed, the changes that nothing notices, and how many there are of each kind.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from ratt_opt.audit.worst_ratio.search import RatioSearch, Skeleton, skeleton
 from ratt_opt.audit.worst_ratio.witness import FAMILIES, PLANNERS, RatioQuestion, RatioWitness, replay
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
+from ratt_opt.progress import Step
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ class WorstCaseRatio:
     programs: int
 
 
+@Step("the worst ratio")
 def worst_case_ratio(
     n_robots: int,
     alpha_s: int,
