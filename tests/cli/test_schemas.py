@@ -93,7 +93,7 @@ def test_the_pages_name_every_schema_and_exit_code() -> None:
     for name in OUTPUTS:
         assert f"`ratt-opt schema {name}`" in page
         about = output_schema(name)["properties"]["format"]["const"]
-        assert f"| `{about}` |" in page
+        assert f'| `"{about}"` |' in page
     with_json = {str(command.callback.__name__) for command in app.registered_commands if _takes_json(command.callback)}
     assert with_json >= {"bound", "track", "verify"}
     assert all(re.search(rf"^\|[^|]*`{name}`[^|]*\| `ratt-opt schema", page, re.MULTILINE) for name in with_json)
