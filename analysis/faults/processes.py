@@ -24,15 +24,22 @@ if TYPE_CHECKING:
 
 __all__ = ["PROCESSES", "sweep"]
 
-PROGRAM = [sys.executable, "-c", "print(flush=True); from ratt_opt.cli import main; main()"]
-"""Tells by an empty line when Python itself is ready: what comes before is not ours to guard."""
+_TELLING = """
+import ratt_opt.cli as cli
+def told(arguments, run=cli.run):
+    print(flush=True)
+    return run(arguments)
+cli.run = told
+cli.main()
+"""
+PROGRAM = [sys.executable, "-c", _TELLING]
+"""Tells by an empty line when the program's own guards stand: before, an interrupt is Python's to show."""
 SWEEP_PROGRAM = [sys.executable, "-c", "import sys; from analysis.faults.processes import sweep; sys.exit(sweep())"]
 TRIALS = 20
 
 
 def sweep() -> int:
     """Run the sweep that cases disturb, as its own command line says."""
-    print(flush=True)  # interrupts of imports are the system's to show
     return main("A sweep to be disturbed.", [Entry(SWEEP, lambda *_: None)], trials=TRIALS)
 
 
@@ -105,7 +112,7 @@ def _disturbed_sweep(campaign: Campaign, rng: np.random.Generator, place: Path) 
     del campaign
     words = [*SWEEP_PROGRAM, "--out", str(place), "--workers", "2"]
     for _ in range(2):
-        _disturb(words, rng, place / SWEEP.name)
+        _disturb(words, rng)
         with open_journal(SWEEP, place / SWEEP.name) as journal:
             done = journal.done
         lines = (place / SWEEP.name / "journal.csv").read_bytes().count(b"\n")
@@ -119,15 +126,13 @@ def _disturbed_sweep(campaign: Campaign, rng: np.random.Generator, place: Path) 
     return "done"
 
 
-def _disturb(words: list[str], rng: np.random.Generator, folder: Path) -> None:
-    """Start a sweep, and kill a worker, kill it or interrupt it once its journal is open."""
+def _disturb(words: list[str], rng: np.random.Generator) -> None:
+    """Start a sweep, and kill a worker, kill it or interrupt it once it has workers."""
     way = str(rng.choice(["worker", "kill", "interrupt"]))
     start_clock()
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        process.stdout.readline()
+    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         began = monotonic()
-        while process.poll() is None and not (folder / "journal.csv").exists() and monotonic() - began < LONGEST:
+        while process.poll() is None and not _workers(process.pid) and monotonic() - began < LONGEST:
             sleep(0.01)
         sleep(float(rng.uniform(0, 1.5)))
         if way == "kill":
@@ -146,8 +151,11 @@ def _disturb(words: list[str], rng: np.random.Generator, folder: Path) -> None:
 
 def _workers(parent: int) -> list[int]:
     """The processes that run the trials of a sweep, by the system's own list."""
-    text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
-    return [int(child) for child in text.split() if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    try:
+        text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
+        return [int(child) for child in text.split() if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    except OSError:  # one of them has ended meanwhile
+        return []
 
 
 PROCESSES: dict[str, tuple[float, Kind]] = {
