@@ -20,7 +20,7 @@ __all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "str
 
 SOURCE = "group-size bound (this library)"
 IN_COQ = {"k": "group_size_submodular", "c": "group_size_total_curvature"}
-"""For complete graphs without protected parts."""
+"""For complete graphs without protected parts, where a bait always survives."""
 
 
 LARGEST_EXACT = 12
@@ -69,7 +69,8 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
     needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
-    proof = f"group_size_bound; in Coq {IN_COQ[kind] if g > 1 else 'ratt_optimal'}"
+    in_coq = f"; in Coq {IN_COQ[kind] if g > 1 else 'ratt_optimal'} (complete graphs)" if baits_survive else ""
+    proof = f"group_size_bound{in_coq}"
     return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
 
 
