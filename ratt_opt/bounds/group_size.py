@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
 
 SOURCE = "group-size bound (this library)"
-IN_COQ = {"k": "group_size_submodular", "c": "group_size_total_curvature"}
-"""For complete graphs without protected parts, where a bait always survives."""
+IN_COQ = {"k": "paper_group_size_submodular", "c": "paper_group_size_total_curvature"}
 
 
 LARGEST_EXACT = 12
@@ -69,8 +68,8 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
     needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
-    in_coq = f"; in Coq {IN_COQ[kind] if g > 1 else 'ratt_optimal'} (complete graphs)" if baits_survive else ""
-    proof = f"group_size_bound{in_coq}"
+    theorem = IN_COQ[kind] if g > 1 else "paper_optimal" if baits_survive else None
+    proof = f"group_size_bound; in Coq {theorem}" if theorem else "group_size_bound"
     return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
 
 
