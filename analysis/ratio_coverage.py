@@ -1,8 +1,9 @@
 """Print a table of ``docs/ratios.md``, on RATT's exact worst ratio: ``python -m analysis.ratio_coverage TABLE``.
 
 TABLE is ``coverage`` (budgets settled by proof and by computation), ``values`` (their ratios beside the formulas),
-``others`` (values that no conjecture was made from), ``threes`` (submodular, three robots left) or ``planners`` (the
-best of three planners). One to two minutes each; all but the first in seconds with ``--quick``.
+``others`` (values that no conjecture was made from), ``threes`` (submodular, three robots left), ``large`` (submodular,
+six and seven robots), ``planners`` (the best of three planners, bracketed) or ``best`` (exactly). Minutes each; with
+``--quick`` the first rows only.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ratt_opt import WorstCaseRatio, worst_case_ratio
+from ratt_opt.audit.worst_ratio.best_of import best_of_three
 from ratt_opt.audit.worst_ratio.closed_form import KnownRatio, known_ratio
+from ratt_opt.audit.worst_ratio.coverage_program import coverage_instance
 from ratt_opt.audit.worst_ratio.shared_plan import shared_plan_ratio
 from ratt_opt.audit.worst_ratio.witness import RatioQuestion
 from ratt_opt.bounds.survivors import survivor_share
@@ -42,6 +45,13 @@ SINGLE = (
 THREES = tuple(
     Fraction(n, d) for n, d in ((1, 8), (1, 4), (3, 8), (2, 5), (1, 2), (3, 5), (2, 3), (3, 4), (4, 5), (7, 8))
 )
+LARGE = tuple(
+    (size, swapped, Fraction(k))
+    for size, swapped in ((5, 1), (4, 2), (3, 3), (6, 1), (5, 2), (4, 3), (3, 4))
+    for k in ("1/4", "2/5", "1/2", "3/4")
+)
+BEST = ((3, 0), (3, 1), (3, 2), (4, 0), (4, 1))
+"""Robots, robots blinded."""
 SHARED = ((3, 1, "nondecreasing"), (4, 1, "nondecreasing"), (4, 2, "nondecreasing"), (5, 2, "nondecreasing"),
           (5, 3, "nondecreasing"), (3, 1, "submodular"), (4, 2, "submodular"))  # fmt: skip
 
@@ -169,12 +179,32 @@ def _threes(*, quick: bool) -> Iterator[tuple[str, ...]]:
         yield (str(k), str(found.exact_upper), str(known.lower), str(known.conjectured or "none"))
 
 
+def _large(*, quick: bool) -> Iterator[tuple[str, ...]]:
+    """Submodular teams of six and seven robots: a coverage function's ratio beside the proved share."""
+    for size, swapped, k in LARGE[:1] if quick else LARGE:
+        n = size + swapped
+        lower = known_ratio(_question("submodular", n, swapped, 0, k)).lower
+        # Smaller teams with as many robots left are in this one: the rest is blinded bait.
+        found = (coverage_instance(size, bait, k) for bait in range(1, min(size, swapped) + 1))
+        upper = min((ratio for ratio, _ in filter(None, found)), default=Fraction(1))
+        yield (str(n), str(swapped), str(k), str(upper), str(lower), "exact" if lower == upper else "bracket")
+
+
 def _planners(*, quick: bool) -> Iterator[tuple[str, ...]]:
     for n, alpha_s, family in SHARED[:1] if quick else SHARED:
         found = shared_plan_ratio(_question(family, n, alpha_s, 0, CURVATURE), range(n), time_limit=SECONDS)
         alone = worst_case_ratio(n, alpha_s, 0, curvature=CURVATURE, family=family, time_limit=SECONDS).exact_lower
         answer = "no better" if alone == found.upper else "open"
         yield (family, str(n), str(alpha_s), str(alone), str(found.upper), answer)
+
+
+def _best(*, quick: bool) -> Iterator[tuple[str, ...]]:
+    """Non-decreasing functions: the best of three planners exactly, beside RATT alone; four robots take minutes."""
+    for n, alpha_s in BEST[:1] if quick else BEST:
+        found = best_of_three(n, alpha_s, CURVATURE)
+        alone = worst_case_ratio(n, alpha_s, 0, curvature=CURVATURE, family="nondecreasing").exact_lower
+        best = str(found.lower) if found.lower == found.upper else f"[{found.lower}, {found.upper}]"
+        yield (str(n), str(alpha_s), str(alone), best, "better" if found.lower > alone else "no better")
 
 
 TABLES: dict[str, tuple[tuple[str, ...], Callable[..., Iterator[tuple[str, ...]]]]] = {
@@ -185,6 +215,8 @@ TABLES: dict[str, tuple[tuple[str, ...], Callable[..., Iterator[tuple[str, ...]]
     ),
     "others": (("class", "robots", "blinded, cut", "curvature", "ratio", "formula"), _others),
     "threes": (("k", "ratio", "proved share", "formula"), _threes),
+    "large": (("robots", "blinded", "k", "attained", "proved share", "together"), _large),
+    "best": (("robots", "blinded", "RATT alone", "best of three", "so it is"), _best),
     "planners": (("class", "robots", "blinded", "RATT alone", "one plan of all three", "best of three"), _planners),
 }
 

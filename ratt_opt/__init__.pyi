@@ -66,9 +66,16 @@ from .missions.models.targets import (
     TargetMotion as TargetMotion,
 )
 from .missions.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
+from .missions.replay.fit_sensor import FittedSensor as FittedSensor, fit_sensor as fit_sensor
+from .missions.replay.replay import (
+    Replay as Replay,
+    ReplaySettings as ReplaySettings,
+    replay_mrclam as replay_mrclam,
+)
 from .missions.result import Mission as Mission, MissionStep as MissionStep
 from .missions.run import run_mission as run_mission
-from .missions.tracker import Measurement as Measurement, Tracker as Tracker, TrackerState as TrackerState
+from .missions.tracker import Tracker as Tracker
+from .missions.tracker_state import Measurement as Measurement, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
 
 # == Guarantees and bounds

@@ -35,8 +35,9 @@ class Entry:
 def main(
     description: str, entries: Sequence[Entry], *, trials: int, after: Callable[[Path], object] | None = None
 ) -> int:
-    """Run studies from the command line and return the exit code: 2 for bad input, 1 for a lost sweep, 130 interrupted.
+    """Run studies from the command line and return the exit code.
 
+    2 for bad input, 1 for a lost sweep or where the system refuses, 130 interrupted.
     ``after(out)`` runs when all results are there.
     """
     options = _parse(description, entries, trials)
@@ -57,6 +58,8 @@ def main(
         return _say(error, 2)
     except SweepError as error:
         return _say(error, 1)
+    except OSError as error:  # no processes, no room, no folder to be in
+        return _say(f"the system refuses: {error}; finished rows are kept", 1)
     except KeyboardInterrupt:
         return _say("interrupted; finished rows are kept, run the same command to resume", 130)
     return 0

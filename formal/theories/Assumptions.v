@@ -1,5 +1,6 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete Families Approached Quadratic Criteria Logdet Certificate Examples.
+From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Families Approached
+  Quadratic Criteria Logdet Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -13,6 +14,9 @@ Print Assumptions group_size_total_curvature_any.
 Print Assumptions ratt_optimal_any.
 Print Assumptions group_size_submodular_unsplit.
 Print Assumptions group_size_total_curvature_unsplit.
+Print Assumptions paper_group_size_submodular.
+Print Assumptions paper_group_size_total_curvature.
+Print Assumptions paper_optimal.
 Print Assumptions group_size_submodular.
 Print Assumptions group_size_total_curvature.
 Print Assumptions ratt_optimal.
@@ -41,3 +45,8 @@ Print Assumptions safe_exact.
 Print Assumptions safe_groups.
 Print Assumptions split_exact.
 Print Assumptions split_groups.
+Print Assumptions n_max_values.
+Print Assumptions ties_ratt.
+Print Assumptions pairs_ratt.
+Print Assumptions covered_curvature.
+Print Assumptions bonus_total_curvature.

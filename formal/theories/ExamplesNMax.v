@@ -1,6 +1,6 @@
 (** The smallest possible largest group on the networks of [Examples]; tests/formal/test_definitions.py compares. *)
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Teams Graph NMax Examples.
+From Ratt Require Import Teams Graph NMax Sublists Examples.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -9,16 +9,8 @@ Section Lists.
 Variable w : network.
 Hypothesis ok : network_ok w.
 
-Fixpoint parts (T : Type) (s : seq T) : seq (seq T) :=
-  if s is x :: s' then parts s' ++ [seq x :: r | r <- parts s'] else [:: [::]].
 Definition component (ls : seq link) (i : nat) : seq nat :=
   [seq j <- iota 0 (robots w) | j \in reach (fun k => nth [::] (left_near w ([::], ls)) k) (robots w) [::] i].
-
-Lemma filter_parts (T : eqType) (P : pred T) s : [seq x <- s | P x] \in parts s.
-Proof.
-elim: s => [//|x s IH] /=; rewrite mem_cat; case: (P x); last by rewrite IH.
-by rewrite (map_f (cons x) IH) orbT.
-Qed.
 
 Lemma card_component ls i : attack_ok w ([::], ls) -> (i < robots w)%N ->
   #|group (team_of w) (set0, links_of w ls) (robot_of w i)| = size (component ls i).

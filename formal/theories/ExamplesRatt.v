@@ -126,3 +126,24 @@ rewrite pE filter_map (eq_filter (a2 := fun e => owner table_team e == i)); last
 by case: [seq x <- picks | _] => [|x s] //; apply: map_best.
 Qed.
 End Lists.
+
+(** ** Weighted coverage with ties: which element, which robot and what greedy adds all matter *)
+Definition ties_owners : seq nat := [:: 0; 1; 1; 2; 2].
+Definition ties_table : seq nat :=
+  [:: 0; 6; 6; 7; 6; 6; 7; 7; 1; 7; 6; 7; 7; 7; 7; 7; 1; 6; 7; 7; 6; 6; 7; 7; 2; 7; 7; 7; 7; 7; 7; 7].
+Definition ties_alpha : nat := 1.
+Definition ties_plan : seq nat := [:: 0; 1; 4].
+
+Theorem ties_ratt default : [seq val (ratt (table_team 2 4 ties_owners) (table_value ties_table) default ties_alpha i)
+  | i <- enum [finType of 'I_3]] = ties_plan.
+Proof. by rewrite listed_rattE; vm_compute. Qed.
+
+Definition pairs_owners : seq nat := [:: 0; 0; 1; 1; 2].
+Definition pairs_table : seq nat :=
+  [:: 0; 0; 2; 2; 0; 0; 2; 2; 1; 1; 3; 3; 1; 1; 3; 3; 2; 2; 4; 4; 2; 2; 4; 4; 2; 2; 4; 4; 2; 2; 4; 4].
+Definition pairs_alpha : nat := 1.
+Definition pairs_plan : seq nat := [:: 1; 2; 4].
+
+Theorem pairs_ratt default : [seq val (ratt (table_team 2 4 pairs_owners) (table_value pairs_table) default pairs_alpha i)
+  | i <- enum [finType of 'I_3]] = pairs_plan.
+Proof. by rewrite listed_rattE; vm_compute. Qed.

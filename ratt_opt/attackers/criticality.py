@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt._validation import check_finite
+from ratt_opt._validation import check_number
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
 from ratt_opt.attackers.task import PlanValues
@@ -141,7 +141,7 @@ def breaking_budgets(
     InputError : the plan is not one element per robot, ``value`` is not finite, or a budget is not a number >= 0.
     """
     plan = problem.check_plan(elements)
-    goal = float(check_finite("value", value, ndim=0))
+    goal = check_number("value", value)
     whole = Budget.inside(budget)
     attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
     found: list[BreakingBudget] = []

@@ -41,7 +41,8 @@ class Guarantee(float):
     """A share of the optimum that is guaranteed, with what it needs, where it comes from and where it is proved.
 
     ``proof`` : the function of this library whose documentation has the proof, and the theorem in ``formal/`` where
-    there is one; empty where the source has to be believed. A number wherever one is wanted: equal, as numbers are, to what has its ``value``.
+    there is one; empty where the source has to be believed. A number wherever one is wanted: equal, as numbers are, to
+    what has its ``value``.
     """
 
     value: float

@@ -16,7 +16,7 @@ from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
-from ratt_opt.errors import InputError, ProofError
+from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
@@ -121,7 +121,7 @@ def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path
 
     Raises
     ------
-    ProofError : the result's proof has a fault.
+    ProofError : the result's proof has a fault. One that is not decided within the verifier's limits is a reason.
     """
     if path is None:
         return Certification(why_not="not asked for")
@@ -131,10 +131,9 @@ def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path
         return Certification(why_not="the search stopped before it proved a bound")
     try:
         return Certification(certificate=certify(problem, result, path))
-    except InputError as error:
-        return Certification(why_not=f"could not be made: {error}", final=False)
-    except MemoryError:
-        return Certification(why_not="could not be made: not enough memory", final=False)
+    except (InputError, UndecidedError, MemoryError) as error:
+        reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
+        return Certification(why_not=f"could not be made: {reason}", final=False)
 
 
 def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:

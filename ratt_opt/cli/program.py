@@ -61,6 +61,8 @@ def run_program(arguments: list[str]) -> int:
     Everything else is raised.
     """
     encode_anything()
+    if word := next((word for word in arguments if "\0" in word), None):  # no path can; the system's words never do
+        return fail(f"a word must not hold a null character; got {word}", BAD_INPUT)
     try:
         code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
         flush()

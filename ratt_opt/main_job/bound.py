@@ -15,10 +15,10 @@ from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
+from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
-from ratt_opt.errors import InputError
+from ratt_opt.errors import InputError, ProofError
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
 
@@ -121,7 +122,7 @@ def bound(
     Raises
     ------
     InputError : an argument breaks its rule. A certificate that cannot be written is a reason in the report.
-    ProofError : the verifier finds a fault in the search's own proof.
+    ProofError : the verifier finds a fault in the search's own proof; its ``report`` holds what was found.
     """
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
@@ -148,8 +149,8 @@ def bound(
         guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
         interrupted = budget.stop() is Stop.INTERRUPTED
-        proof = INTERRUPTED if interrupted else certify_if_possible(problem, optimum, certificate)
-    return BoundReport(
+        proof, failure = (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate)
+    report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
         ratt=robust,
@@ -168,6 +169,20 @@ def bound(
         seeds={"random": RANDOM_SEED},
         interrupted=interrupted,
     )
+    if failure is not None:
+        failure.report = report
+        raise failure
+    return report
+
+
+def _certified(
+    problem: Problem, optimum: MaxMinResult, path: str | Path | None
+) -> tuple[Certification, ProofError | None]:
+    """The certificate or why there is none, and the fault that the verifier found in our own proof."""
+    try:
+        return certify_if_possible(problem, optimum, path), None
+    except ProofError as failure:
+        return Certification(why_not=f"the proof has a fault: {failure}", final=False), failure
 
 
 def _kept(budget: Budget, step: Callable[[], T]) -> T:

@@ -138,7 +138,7 @@ def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dic
         for f in own:
             if f in by:
                 continue
-            for e in _nearly_dominated(entries, f, own):
+            for e in _nearly_dominated(entries, int(f), own):
                 if e != f and e not in by and _dominates(entries[:, f], entries[:, e], first=bool(f < e)):
                     by[int(e)] = int(f)
     kept = np.array([e for e in range(len(owner)) if e not in by], dtype=np.int64)

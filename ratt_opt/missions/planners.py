@@ -31,9 +31,9 @@ class MaxMinPlanner:
     time_limit: float | None = None
     max_nodes: int | None = 30
 
-    def __call__(self, problem: Problem) -> MaxMinResult:
-        """Search until closed to the gap or out of limits."""
-        return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes)
+    def __call__(self, problem: Problem, start: IntArray | None = None) -> MaxMinResult:
+        """Search until closed to the gap or out of limits, from a plan ``start`` where one is known."""
+        return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes, start=start)
 
 
 @dataclass(frozen=True, slots=True)

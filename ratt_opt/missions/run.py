@@ -6,6 +6,7 @@ mission is the same to the bit on every run, targets move alike under every plan
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -94,9 +95,9 @@ def run_mission(
     world = World(scenario, model or MissionModel(), horizon)
     players = _Players(planner_called(planner), attacker_called(attacker), attack_model(attacks))
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
-    settings = {name: value if isinstance(value, str) else repr(value) for name, value in named.items()}
+    settings = {name: value if isinstance(value, str) else _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
-    log = Journal.open(journal, scenario, settings | {"model": repr(world.model)})
+    log = Journal.open(journal, scenario, settings | {"model": _described(world.model)})
     flight = _Flight(world, players, sharing, seed)
     for step in range(steps):
         flight.advance(step, log)
@@ -214,13 +215,18 @@ class _Flight:
     ) -> tuple[Pieces, Innovation]:
         """A group's new pieces, linearised at what its ``robot`` predicts."""
         predicted = self.memory.belief(robot).predicted(self.world.motion, self.world.period, step * self.world.period)
-        return group_pieces(self.world, predicted, self.poses, readings, see)
+        return group_pieces(self.world, predicted, dict(enumerate(self.poses)), readings, see)
 
     def _rng(self, step: int, stream: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(step, stream)))
 
     def _word(self, step: int, stream: int) -> int:
         return int(np.random.SeedSequence(self.seed, spawn_key=(step, stream)).generate_state(1)[0])
+
+
+def _described(value: object) -> str:
+    """A value as text, the same in every process: without the addresses of functions and objects."""
+    return re.sub(r" at 0x[0-9a-f]+", "", repr(value))
 
 
 def _drawn(rng: np.random.Generator, covariance: FloatArray) -> FloatArray:

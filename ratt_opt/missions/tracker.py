@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as LateError
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -16,96 +17,31 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_finite, check_integer, check_number, readonly
-from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
-from ratt_opt.missions.belief import Belief
 from ratt_opt.missions.planners import MaxMinPlanner, elements_of, planner_called
 from ratt_opt.missions.planning import offered_sequences
 from ratt_opt.missions.sensing import Reading, group_pieces
+from ratt_opt.missions.tracker_state import Measurement, TrackerState
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Plan
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike
 
+    from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.horizon import Sequences
     from ratt_opt.missions.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["Measurement", "Tracker", "TrackerState"]
+__all__ = ["Tracker"]
 
 SEARCH_SHARE = 0.7
 """Of a step's time left, for the max-min search: it looks at the clock between nodes, which take a while themselves."""
 ON_TIME = 1e-6
 """Clocks whose steps differ by less than this share of the period count as one period."""
-
-
-@dataclass(frozen=True, slots=True)
-class Measurement:
-    """What ``robot`` measured of ``target``: range [m] and bearing [rad], or what its own sensor gives."""
-
-    robot: int
-    target: int
-    values: tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TrackerState(ByValue, Shown):
-    """All that a tracker knows: ``time`` [s] since it began, and the caller's clock ``now`` [s] if there was one.
-
-    ``poses`` : (N, 3) expected at the next measurements; ``belief`` : of the targets at ``time``; ``controls`` :
-    (N, H, 2) what is left of the last plan; ``steps``, ``missed`` : how many there were, and whose plans were late.
-    """
-
-    time: float
-    now: float | None
-    poses: FloatArray
-    belief: Belief
-    controls: FloatArray
-    steps: int = 0
-    missed: int = 0
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data for strict JSON; floats at full precision."""
-        return {
-            "format": "ratt-opt tracker",
-            "version": 1,
-            "time": self.time,
-            "now": self.now,
-            "poses": self.poses.tolist(),
-            "mean": self.belief.mean.tolist(),
-            "covariance": self.belief.covariance.tolist(),
-            "controls": self.controls.tolist(),
-            "steps": self.steps,
-            "missed": self.missed,
-        }
-
-    @classmethod
-    def from_dict(cls, document: Mapping[str, Any]) -> TrackerState:
-        """The state that :meth:`to_dict` wrote.
-
-        Raises
-        ------
-        InputError : a field is missing or breaks its rule, as a covariance that is singular.
-        """
-        for name, known in (("format", "ratt-opt tracker"), ("version", 1)):
-            if document.get(name) != known:
-                raise InputError(name, f"must be {known}", document.get(name))
-        missing = sorted({"time", "now", "poses", "mean", "covariance", "controls", "steps", "missed"} - set(document))
-        if missing:
-            raise InputError(missing[0], "is missing", "nothing")
-        return cls(
-            time=check_number("time", document["time"], low=0.0),
-            now=None if document["now"] is None else check_number("now", document["now"]),
-            poses=check_finite("poses", document["poses"], ndim=2),
-            belief=Belief.of(document["mean"], document["covariance"]),
-            controls=check_finite("controls", document["controls"], ndim=3),
-            steps=check_integer("steps", document["steps"], low=0),
-            missed=check_integer("missed", document["missed"], low=0),
-        )
 
 
 class Tracker:
@@ -183,16 +119,17 @@ class Tracker:
         began = monotonic()
         state = self._measured(list(measurements), now, poses)
         offered = offered_sequences(self.world, state.belief, state.poses, state.time)
-        elements = self._elements(self._problem(state, offered), began)
+        rest = _nearest(offered, state.controls)
+        elements = self._elements(self._problem(state, offered), rest, began)
         late = elements is None
         if elements is None:
-            elements = _nearest(offered, state.controls)
+            elements = rest
         chosen = offered.only(elements)
-        rest = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
+        left = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
         self.state = replace(
             state,
             poses=readonly(chosen.poses[:, 0]),
-            controls=readonly(rest),
+            controls=readonly(left),
             steps=state.steps + 1,
             missed=state.missed + late,
         )
@@ -227,7 +164,7 @@ class Tracker:
             raise InputError("poses", f"must have shape {state.poses.shape}", f"shape {places.shape}")
         readings = self._readings(measurements)
         if readings:
-            pieces, _ = group_pieces(self.world, belief, places, readings, readings)
+            pieces, _ = group_pieces(self.world, belief, dict(enumerate(places)), readings, readings)
             belief = belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
         clock = now if now is not None else None if state.now is None else state.now + passed
         return replace(state, time=time, now=clock, poses=places, belief=belief)
@@ -267,16 +204,18 @@ class Tracker:
         budgets = Threatened(Attack(), self.scenario.alpha_s, self.scenario.alpha_c)
         return self.world.problem(objective, offered.owner, state.poses, budgets)
 
-    def _elements(self, problem: Problem, began: float) -> IntArray | None:
-        """The planner's elements, or ``None`` where they come too late."""
+    def _elements(self, problem: Problem, rest: IntArray, began: float) -> IntArray | None:
+        """The planner's elements, or ``None`` where they are late; a search starts from the last plan's ``rest``."""
+        plan = self._plan
+        if isinstance(plan, MaxMinPlanner):
+            plan = partial(plan, start=rest)
         if self.time_limit is None:
-            return elements_of(self._plan(problem), problem)
+            return elements_of(plan(problem), problem)
         if self._running is not None and not self._running.done():
             return None  # a thread is still busy with a plan that nobody waits for
         left = max(self.time_limit - (monotonic() - began), 0.0)
-        plan = self._plan
-        if isinstance(plan, MaxMinPlanner):
-            plan = replace(plan, time_limit=SEARCH_SHARE * left, max_nodes=None)
+        if isinstance(self._plan, MaxMinPlanner):
+            plan = partial(replace(self._plan, time_limit=SEARCH_SHARE * left, max_nodes=None), start=rest)
         self._running = _in_thread(lambda: elements_of(plan(problem), problem))
         try:
             return self._running.result(timeout=left)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["MissionModel", "Threatened", "World"]
+__all__ = ["Linearisation", "MissionModel", "Threatened", "World"]
 
 Linearisation = Literal["first order", "second order", "iterated"]
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from copy import deepcopy
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import jsonschema
@@ -13,13 +15,14 @@ from ratt_opt import Problem, TableFunction, bound
 from ratt_opt.audit import ledger
 from ratt_opt.audit.ledger import all_entries
 from ratt_opt.certificates.lower import ENUMERATED
-from ratt_opt.cli import run
+from ratt_opt.cli import FAULT, run
+from ratt_opt.cli.program import ERRORS
+from ratt_opt.cli.proofs import UPPER_ONLY
 from ratt_opt.main_job import bound as main_job
 from ratt_opt.report.schemas import OUTPUTS, output_schema
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 VALIDATOR = jsonschema.Draft202012Validator
 
@@ -75,6 +78,16 @@ def test_schemas_are_schemas_and_say_what_every_field_is(name: str, capsys: pyte
     assert all(field.get("description") or "$ref" in field for field in fields)
     assert run(["schema", name]) == 0
     assert json.loads(capsys.readouterr().out) == schema
+
+
+def test_the_page_about_files_names_every_schema_and_exit_code() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
+    for name in OUTPUTS:
+        assert f"`ratt-opt schema {name}`" in page
+        about = output_schema(name)["properties"]["format"]["const"]
+        assert f"| `{about}` |" in page
+    codes = {0, UPPER_ONLY, FAULT, *ERRORS.values()}
+    assert {int(code) for code in re.findall(r"^\| (\d+) \| ", page, re.MULTILINE)} == codes
 
 
 @pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])

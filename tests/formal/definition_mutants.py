@@ -1,7 +1,7 @@
 """Change one definition of ``formal/`` at a time and see whether the proofs, examples included, still go through.
 
-``python -m tests.formal.definition_mutants [START [STOP]]`` needs coqc and up to a minute for each change; it prints the
-changes that nothing notices and how many there are of each kind. No such change may be left.
+``python -m tests.formal.definition_mutants [START [STOP]]`` needs coqc and up to a minute for each change; it prints
+where each is noticed, the changes that nothing notices, and how many there are of each kind.
 """
 
 from __future__ import annotations
@@ -90,7 +90,11 @@ CHANGES = (
     ("Criteria", "\\sum_j weight j * \\tr (prior j).", "\\sum_j \\tr (prior j)."),
     ("Criteria", "largest (fun j => weight j * lmax (invmx (L j)))", "largest (fun j => lmax (invmx (L j)))"),
     ("Criteria", "trace_base - trace_penalty (posterior S)", "trace_penalty (posterior S) - trace_base"),
-    ("Quadratic", "Definition psd A : Prop := forall v, 0 <= form A v v.", "Definition psd A : Prop := forall v, 0 < form A v v."),
+    (
+        "Quadratic",
+        "Definition psd A : Prop := forall v, 0 <= form A v v.",
+        "Definition psd A : Prop := forall v, 0 < form A v v.",
+    ),
     ("Quadratic", "(lmax A <= x) <-> psd (x%:M - A)", "(lmax A <= x) <-> psd (A - x%:M)"),
     ("Logdet", "(forall x, 0 < x -> ln x <= x - 1)", "(forall x, 0 < x -> x - 1 <= ln x)"),
     ("Logdet", "\\sum_j weight j * - ln (\\det (L j))", "\\sum_j - ln (\\det (L j))"),
@@ -121,7 +125,9 @@ def noticed(number: int) -> bool:
 
 def main() -> None:
     """Try the changes of a range."""
-    start, stop = (int(x) for x in [*sys.argv[1:], "0", str(len(CHANGES))][:2]) if len(sys.argv) > 2 else (0, len(CHANGES))
+    start, stop = (
+        (int(x) for x in [*sys.argv[1:], "0", str(len(CHANGES))][:2]) if len(sys.argv) > 2 else (0, len(CHANGES))
+    )
     left = [k for k in range(start, min(stop, len(CHANGES))) if not noticed(k)]
     for k in left:
         print(f"{k} not noticed: {CHANGES[k]}")

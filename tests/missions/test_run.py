@@ -77,6 +77,17 @@ def test_the_same_to_the_bit_and_resumed(attacks: str, sharing: str, tmp_path) -
     assert run_mission(scenario, **(arguments | {"seed": 5})) != whole
 
 
+def test_a_callables_mission_resumes_in_another_process(tmp_path) -> None:
+    def own():
+        return lambda problem: np.array([choice[0] for choice in problem.choices])
+
+    scenario, journal = scenario_of(), tmp_path / "journal.jsonl"
+    first, again = own(), own()
+    assert repr(first) != repr(again)
+    run_mission(scenario, steps=2, planner=first, journal=journal)
+    assert len(run_mission(scenario, steps=4, planner=again, journal=journal).steps) == 4
+
+
 def test_targets_move_alike_under_every_player() -> None:
     scenario = scenario_of()
     first = run_mission(scenario, steps=4)

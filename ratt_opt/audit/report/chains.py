@@ -30,7 +30,7 @@ def chain_lines(document: LedgerDocument) -> tuple[Finding, ...]:
             chains.setdefault(record["chain"], {}).setdefault(record["label"], record)
         elif record["kind"] == EntryKind.AS_WRITTEN:
             written.add(record["label"])
-    found = []
+    found: list[Finding] = []
     for chain, lines in chains.items():
         rows = [(label, _states(record, equal=label in written), _read(record)) for label, record in lines.items()]
         if len(rows) > 1:

@@ -14,7 +14,7 @@ from ratt_opt.graph.survivor_sizes import forced_group_size, non_dominated_sizes
 if TYPE_CHECKING:
     from ratt_opt.audit.worst_ratio.witness import RatioQuestion
 
-__all__ = ["KnownRatio", "known_ratio", "pattern_free_ratio", "proved_ratio", "sensing_ratio"]
+__all__ = ["KnownRatio", "known_ratio", "pattern_free_ratio", "proved_ratio", "sensing_ratio", "three_left_ratio"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,11 +73,24 @@ def _unsplit(question: RatioQuestion, lower: Fraction, kept: Fraction, *, submod
     if submodular:
         if not swapped:
             return KnownRatio(lower=max(lower, 1 / (1 + question.curvature)), attained=False)
-        guess = (2 + kept + 3 * kept**2) / 6 if size == 3 and kept <= Fraction(1, 3) else None
+        guess = three_left_ratio(kept) if size == 3 else None
         return KnownRatio(lower=lower, attained=size == 2, conjectured=guess)
     found = sensing_ratio(size, swapped, kept)
     by_family = swapped > 0 and kept > 0 and is_attained(size, swapped, kept)
     return KnownRatio(lower=max(lower, found), attained=by_family or found == 1, conjectured=found)
+
+
+def three_left_ratio(kept: Fraction) -> Fraction:
+    """The submodular ratio with three robots left and at least one blinded, unsplit team, ``t = kept``: conjectured.
+
+    ``(2 + t + 3 t^2) / 6`` up to ``t = 1/3``; beyond it the smaller one of ``(1+t) (1+2t) / (4+3t)`` and
+    ``(1 + t^2 + t^3) / (2 + t)``, but at least t. Read off from coverage functions that attain it at four robots; the
+    computed values agree (``docs/ratios.md``). From ``t + t^2 = 1`` on it is t, the pattern-free bound.
+    """
+    t = kept
+    if 3 * t <= 1:
+        return (2 + t + 3 * t**2) / 6
+    return max(t, min((1 + t) * (1 + 2 * t) / (4 + 3 * t), (1 + t**2 + t**3) / (2 + t)))
 
 
 def sensing_ratio(size: int, swapped: int, kept: Fraction) -> Fraction:

@@ -5,8 +5,8 @@ of them return the same plan. The smallest such ratio is the optimum of RATT's o
 the two agree, the best of the planners is provably no better than RATT alone at these budgets. With several attacks
 that are equally bad for the plan, an exchange of a few robots' elements leaves one of them as bad as it was.
 
-Plans that no exchange improves, wherever they come from, can keep nothing: where ``j`` of ``j + 1`` robots may be
-blinded the worst case is the weakest robot's value, and a plan of useless elements stays at 0 while j are exchanged.
+Plans that no exchange of ``j`` elements improves, wherever they come from, can keep nothing once ``j`` robots may be
+blinded: a plan of useless elements stays at 0, as the attack blinds the robots whose elements were exchanged.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, Problem, ProofError, TableFunction, exhaustive_optimum, ratt, worst_case_attack
-from ratt_opt.audit.worst_ratio.closed_form import known_ratio, proved_ratio, sensing_ratio
+from ratt_opt.audit.worst_ratio.closed_form import known_ratio, proved_ratio, sensing_ratio, three_left_ratio
 from ratt_opt.audit.worst_ratio.families import is_attained, link_only_instance, pair_instance, sensing_instance
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import attaining_instance, replay
@@ -98,6 +98,12 @@ def test_what_is_known_agrees_with_what_is_computed() -> None:
             if known.attained:
                 assert known.lower == found.exact_upper
             assert known.conjectured in (None, found.exact_upper)
+
+
+@pytest.mark.parametrize("k", ["3/10", "5/12", "5/8", "9/10", "9/20"])
+def test_the_conjecture_for_three_left_meets_values_it_was_not_made_from(k) -> None:
+    found = worst_case_ratio(4, 1, 0, curvature=k, family="submodular")
+    assert found.exact_lower == found.exact_upper == three_left_ratio(1 - Fraction(k))
 
 
 def test_more_blinded_bait_than_robots_left_changes_nothing() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -45,17 +46,18 @@ def test_nor_is_exchanging_one_robot():
         assert exchange_gain(found.witness.problem(), plan(found.witness.problem()).elements) == 0
 
 
-@pytest.mark.parametrize("exchanged", [1, 2])
-def test_a_plan_that_no_exchange_mends_can_keep_nothing(exchanged):
-    """``exchanged`` robots of one more may be blinded; every robot has a useless and a useful control."""
-    n = exchanged + 1
+@pytest.mark.parametrize(("n", "exchanged"), [(2, 1), (4, 1), (5, 1), (3, 2), (4, 2)])
+def test_a_plan_that_no_exchange_mends_can_keep_nothing(n, exchanged):
+    """As many robots may be blinded as are exchanged; every robot has a useless and a useful control."""
     table = np.bitwise_count(np.arange(1 << 2 * n) >> n).astype(float)
     problem = Problem(TableFunction(table), np.tile(np.arange(n), 2), None, exchanged, 0)
     useless = np.arange(n)
     assert worst_case_attack(problem, useless).upper == exchange_gain(problem, useless) == 0
-    changed = np.where(np.arange(n) < exchanged, useless + n, useless)
-    assert worst_case_attack(problem, changed).upper == 0
-    assert exhaustive_optimum(problem).lower == 1
+    for changed in combinations(range(n), exchanged):
+        plan = useless.copy()
+        plan[list(changed)] += n
+        assert worst_case_attack(problem, plan).upper == 0
+    assert exhaustive_optimum(problem).lower == n - exchanged
 
 
 def test_an_exchange_that_helps_is_found():
