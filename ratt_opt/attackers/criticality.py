@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["BreakingBudget", "Criticality", "breaking_budgets", "criticality_ranking"]
 
+CERTAIN = 1e-12
+"""Gains below this share of the value are rounding, not gains."""
 BASE_SHARE = 0.3
 """Of the time, for the plan's own worst attack: which gains are searched for hangs on it. Not measured."""
 ATTACK_SHARE = 0.1
@@ -78,6 +80,7 @@ def criticality_ranking(
     targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
     used = [t for t in targets if t in (base.attack.sensing if isinstance(t, int) else base.attack.links)]
     whole = max(values(group) for group in problem.communication.groups())
+    noise = 2 * problem.objective.rounding + CERTAIN * abs(base.upper)
     losses, rows = _losses(problem, values, targets), []
     after = {}
     for done, target in enumerate(used):
@@ -87,7 +90,8 @@ def criticality_ranking(
     for target, loss in zip(targets, losses, strict=True):
         gain_lower = gain_upper = 0.0
         if target in after:
-            gain_lower = max(after[target].lower - base.upper, 0.0)
+            certain = after[target].lower - base.upper
+            gain_lower = certain if certain > noise else 0.0
             gain_upper = max(after[target].upper - base.lower, 0.0)
         elif target in set(used):  # no time for it: no attack leaves more than none does
             gain_upper = max(whole - base.lower, 0.0)
