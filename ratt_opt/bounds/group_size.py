@@ -14,6 +14,7 @@ from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 
 if TYPE_CHECKING:
+    from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
 __all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
@@ -79,13 +80,13 @@ def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:
     return one if g <= 1 else one / g if submodular else kept / (g - 1 + kept)
 
 
-def achievable_group_size(problem: Problem) -> int:
+def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int:
     """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
     The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
     on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
     largest group small and one that makes the most seeing robots few: the number returned is achievable, and a larger
-    one only weakens the guarantee.
+    one only weakens the guarantee, as a spent ``budget`` does.
     """
     threat = problem.threat
     if threat.links_alike:
@@ -97,7 +98,7 @@ def achievable_group_size(problem: Problem) -> int:
         counts = np.bitwise_count(np.arange(2**problem.n_robots) & seeing).astype(np.float64)
         test = ThresholdTest(cuts_only, counts)
         return next(g for g in range(problem.n_robots + 1) if test.split(float(g)) is not None)
-    cuts = (heuristic_cut(cuts_only), heuristic_cut(cuts_only, ignoring=blinded))
+    cuts = (heuristic_cut(cuts_only, budget), heuristic_cut(cuts_only, budget, ignoring=blinded))
     return min(max(len(group - blinded) for group in graph.groups(cut)) for cut in cuts)
 
 
