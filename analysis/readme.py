@@ -1,9 +1,10 @@
 """Refresh the README and the guides: run each command they name and put its real output and figures in place.
 
-Run as ``python -m analysis.readme``. A block is ``<!-- output: COMMAND -->`` (or ``<!-- output of the last
-N lines: COMMAND -->``) followed by a ``text`` code fence; commands that use a ``$VARIABLE`` which is not set, or a
-file that such a command would have written, are left as they are. ``<!-- table: COMMAND -->`` is followed by a
-Markdown table that the command prints. ``<!-- figure: FILE -->`` before an image copies ``FILE`` to the image's path.
+Run as ``python -m analysis.readme [PAGE ...]``, for all pages or those named. A block is
+``<!-- output: COMMAND -->`` (or ``<!-- output of the last N lines: COMMAND -->``) followed by a ``text`` code fence;
+commands that use a ``$VARIABLE`` which is not set, or a file that such a command would have written, are left as they
+are. ``<!-- table: COMMAND -->`` is followed by a Markdown table that the command prints. ``<!-- figure: FILE -->``
+before an image copies ``FILE`` to the image's path.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ __all__ = ["main", "refreshed"]
 ROOT = Path(__file__).parents[1]
 OUTPUT = re.compile(r"<!-- output(?: of the last (?P<last>\d+) lines)?: (?P<command>.*?) -->\n```text\n.*?```\n", re.S)
 TABLE = re.compile(r"<!-- table: (?P<command>.*?) -->\n(?:\|.*\n)*")
-PAGES = ("docs/guide.md", "docs/evaluation.md", "README.md")
+PAGES = ("docs/guides/reading_a_report.md", "docs/commands.md", "docs/evaluation.md", "docs/ratios.md", "README.md")
 """In this order, and in one folder: a page may show what an earlier one's commands have written."""
 FIGURE = re.compile(r"<!-- figure: (?P<file>\S+) -->\n!\[.*?\]\((?P<path>\S+?)\)", re.S)
 
@@ -31,7 +32,7 @@ FIGURE = re.compile(r"<!-- figure: (?P<file>\S+) -->\n!\[.*?\]\((?P<path>\S+?)\)
 def main() -> None:
     """Rewrite the pages and the figures beside them."""
     with tempfile.TemporaryDirectory() as folder:
-        for page in (ROOT / name for name in PAGES):
+        for page in (ROOT / name for name in sys.argv[1:] or PAGES):
             text = refreshed(page.read_text(encoding="utf-8"), Path(folder))
             for figure in FIGURE.finditer(text):
                 source = Path(folder) / os.path.expandvars(figure["file"])

@@ -45,6 +45,39 @@ from .attackers.criticality import (
     BreakingBudget as BreakingBudget,
 )
 
+# == Missions
+from .missions.attack_models import (
+    AttackModel as AttackModel,
+    PermanentFailures as PermanentFailures,
+    PersistentAttacks as PersistentAttacks,
+)
+from .missions.belief import Belief as Belief
+from .missions.models.sensors import (
+    BearingOnly as BearingOnly,
+    PositionSensor as PositionSensor,
+    RangeBearing as RangeBearing,
+    RangeOnly as RangeOnly,
+    SensorModel as SensorModel,
+)
+from .missions.models.targets import (
+    ConstantVelocity as ConstantVelocity,
+    CoordinatedTurn as CoordinatedTurn,
+    KnownVelocity as KnownVelocity,
+    TargetMotion as TargetMotion,
+)
+from .missions.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
+from .missions.replay.fit_sensor import FittedSensor as FittedSensor, fit_sensor as fit_sensor
+from .missions.replay.replay import (
+    Replay as Replay,
+    ReplaySettings as ReplaySettings,
+    replay_mrclam as replay_mrclam,
+)
+from .missions.result import Mission as Mission, MissionStep as MissionStep
+from .missions.run import run_mission as run_mission
+from .missions.tracker import Tracker as Tracker
+from .missions.tracker_state import Measurement as Measurement, TrackerState as TrackerState
+from .missions.world import MissionModel as MissionModel
+
 # == Guarantees and bounds
 from .bounds.guarantees import (
     Guarantee as Guarantee,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +18,16 @@ __all__ = [
     "BoolArray",
     "FloatArray",
     "IntArray",
+    "check_distinct",
     "check_finite",
     "check_integer",
+    "check_link",
     "check_number",
     "check_subset",
     "readonly",
 ]
+
+T = TypeVar("T")
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -51,12 +55,34 @@ def check_integer(argument: str, value: object, *, low: int, high: int | None = 
     return number
 
 
+def check_link(argument: str, link: Any) -> tuple[int, int]:
+    """Return a pair of robots as ``int``; a negative number, boolean, fraction or anything but a pair is refused."""
+    try:
+        i, j = link
+    except (TypeError, ValueError):
+        raise InputError(argument, "must be a pair of robots", link) from None
+    if type(i) is int and type(j) is int and i >= 0 and j >= 0:  # as nearly always, and there may be thousands
+        return i, j
+    return check_integer(argument, i, low=0), check_integer(argument, j, low=0)
+
+
+def check_distinct(argument: str, items: Iterable[T]) -> frozenset[T]:
+    """Return the items as a set; one that is given twice is refused."""
+    listed = list(items)
+    found = frozenset(listed)
+    if len(found) < len(listed):
+        raise InputError(argument, "must not be repeated", next(x for k, x in enumerate(listed) if x in listed[:k]))
+    return found
+
+
 def check_number(argument: str, value: object, *, low: float = -np.inf) -> float:
-    """Return ``value`` as a finite ``float`` that is at least ``low``."""
+    """Return ``value`` as a finite ``float`` that is at least ``low``; booleans and text are refused."""
     rule = "must be a finite number" if low == -np.inf else f"must be a finite number >= {low:g}"
+    if isinstance(value, (bool, np.bool_, str, bytes)):
+        raise InputError(argument, rule, value)
     try:
         number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(argument, rule, value) from None
     if not low <= number < np.inf:
         raise InputError(argument, rule, value)

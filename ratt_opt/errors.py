@@ -45,7 +45,12 @@ class FileFormatError(InputError):
 
 
 class ProofError(Exception):
-    """A certificate does not prove its claim; the text names the first fault."""
+    """A certificate does not prove its claim; the text names the first fault.
+
+    ``report`` : what ``ratt_opt.bound`` had found when its own proof failed, a ``BoundReport``; otherwise ``None``.
+    """
+
+    report: object = None
 
 
 class UndecidedError(ProofError):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt._validation import IntArray, check_integer, readonly
+from ratt_opt._validation import IntArray, check_distinct, check_integer, check_link, readonly
 from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
@@ -33,8 +33,10 @@ class Attack(Shown):
     links: frozenset[tuple[int, int]] = frozenset()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sensing", frozenset(int(i) for i in self.sensing))
-        object.__setattr__(self, "links", frozenset((int(i), int(j)) for i, j in self.links))
+        robots = (i if type(i) is int else check_integer("attack robot", i, low=0) for i in self.sensing)
+        object.__setattr__(self, "sensing", check_distinct("attack robot", robots))
+        links = (check_link("attack link", link) for link in self.links)
+        object.__setattr__(self, "links", check_distinct("attack link", links))
         for link in self.links:
             if not link[0] < link[1]:
                 raise InputError("attack link", "must be (i, j) with i < j", link)
@@ -115,11 +117,13 @@ class Problem:
             if graph is None
             else CommunicationGraph.from_networkx(graph, n_robots)
         )
+        robots = check_distinct("protected robot", protected_robots)
+        links = check_distinct("protected link", (check_link("protected link", link) for link in protected_links))
         fields = {
             "objective": objective,
             "robot": owners,
             "graph": graph,
-            "threat": Threat(communication, alpha_s, alpha_c, frozenset(protected_robots), frozenset(protected_links)),
+            "threat": Threat(communication, alpha_s, alpha_c, robots, links),
             "choices": tuple(readonly(np.flatnonzero(owners == i)) for i in range(n_robots)),
         }
         for name, value in fields.items():

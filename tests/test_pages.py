@@ -6,12 +6,17 @@ import re
 import subprocess
 import sys
 import tarfile
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+from tests.documents import ROOT, documents
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PAGES = [ROOT / "CHANGELOG.md", *documents()]
+TOCTREE = re.compile(r"^```{toctree}\n(?P<entries>.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)(?:#[^)]*)?\)")
 
 
@@ -21,15 +26,23 @@ def test_no_link_is_broken(page: Path) -> None:
     assert broken == []
 
 
+def links_of(page: Path) -> list[Path]:
+    """Where the links of a page lead, and the pages that its tables of contents list."""
+    text = page.read_text(encoding="utf-8")
+    entries = [line for toctree in TOCTREE.finditer(text) for line in toctree["entries"].split("\n")]
+    listed = [f"{entry}.md" for entry in entries if entry and not entry.startswith(":")]
+    return [(page.parent / link).resolve() for link in (*LINK.findall(text), *listed)]
+
+
 def test_every_document_is_reached_from_the_readme() -> None:
     seen, ahead = set(), [ROOT / "README.md"]
     while ahead:
         page = ahead.pop()
         seen.add(page.resolve())
-        if page.suffix == ".md":
-            found = ((page.parent / link).resolve() for link in LINK.findall(page.read_text(encoding="utf-8")))
-            ahead += [path for path in found if path not in seen]
-    assert {path.resolve() for path in (ROOT / "docs").rglob("*") if path.suffix in {".md", ".png"}} <= seen
+        if page.suffix == ".md" and page.exists():
+            ahead += [path for path in links_of(page) if path not in seen]
+    pictures = [path.resolve() for path in (ROOT / "docs").rglob("*.png") if "gallery" not in path.parts]
+    assert {path.resolve() for path in documents()} | set(pictures) <= seen
 
 
 def test_the_readme_is_short() -> None:
@@ -50,7 +63,14 @@ def test_the_source_distribution_holds_docs_licence_and_builds_the_same_wheel(tm
     with tarfile.open(source) as archive:
         archive.extractall(tmp_path / "unpacked", filter="data")
     (unpacked,) = (tmp_path / "unpacked").iterdir()
-    for name in ("LICENSE", "CITATION.cff", "docs/guide.md", "docs/audit.md", "tests/conftest.py"):
+    for name in (
+        "LICENSE",
+        "CITATION.cff",
+        "docs/first_hour.md",
+        "docs/guides/own_graph.md",
+        "docs/audit.md",
+        "tests/conftest.py",
+    ):
         assert (unpacked / name).exists(), name
     here, again = build("wheel", ROOT), build("wheel", unpacked)
     assert here.name == again.name

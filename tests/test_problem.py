@@ -10,7 +10,8 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, InputError, Plan, Problem, TableFunction
+from ratt_opt import Attack, InputError, Plan, Problem, TableFunction, TraceObjective
+from ratt_opt.graph.communication import CommunicationGraph
 
 MODULAR = TableFunction([bin(mask).count("1") for mask in range(16)])
 WEIGHTED = TableFunction([sum(10.0**i for i in range(4) if mask >> i & 1) for mask in range(16)])
@@ -145,3 +146,53 @@ def test_plans_are_values() -> None:
 def test_groups_left_are_the_non_blinded_robots_of_each_component() -> None:
     problem = Problem(MODULAR, [0, 0, 1, 2], nx.path_graph(3), 1, 1)
     assert problem.groups_left(Attack(frozenset({0}), frozenset({(0, 1)}))) == [frozenset(), frozenset({1, 2})]
+
+
+def test_robots_and_links_are_integers_of_any_kind_given_once() -> None:
+    one, three = np.int32(1), np.uint8(3)
+    assert Attack([one, 2], [(one, three)]) == Attack({1, 2}, {(1, 3)})  # type: ignore[arg-type]
+    for wrong in (True, np.True_, 1.0, "1", None):
+        with pytest.raises(InputError, match="attack robot must be an integer"):
+            Attack([wrong])  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="attack link must be an integer"):
+            Attack(links=[(wrong, 3)])  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="protected link must be an integer"):
+            Problem(MODULAR, range(4), None, 1, 1, protected_links=[(wrong, 3)])  # type: ignore[arg-type]
+    for pair in ((1,), (1, 2, 3), 1):
+        with pytest.raises(InputError, match="attack link must be a pair of robots"):
+            Attack(links=[pair])  # type: ignore[arg-type, list-item]
+    with pytest.raises(InputError, match="attack robot must not be repeated; got 2"):
+        Attack([1, 2, np.int64(2)])  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"attack link must not be repeated; got \(0, 1\)"):
+        Attack(links=[(0, 1), (0, 1)])  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="protected robot must not be repeated; got 1"):
+        Problem(MODULAR, range(4), None, 1, 1, protected_robots=[1, 1])  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"protected link must not be repeated; got \(0, 1\)"):
+        Problem(MODULAR, range(4), None, 1, 1, protected_links=[(0, 1), (1, 0)])  # type: ignore[arg-type]
+
+
+def test_graphs_may_have_numpy_nodes_but_no_booleans() -> None:
+    many = nx.Graph((np.int64(i), np.int64(i + 1)) for i in range(69))
+    graph = CommunicationGraph.from_networkx(many, 70)
+    assert graph.groups(cut=[(34, 35)]) == (frozenset(range(35)), frozenset(range(35, 70)))
+    with pytest.raises(InputError, match="graph must have the nodes"):
+        CommunicationGraph.from_networkx(nx.Graph([(False, True)]), 2)
+
+
+@pytest.mark.parametrize(
+    ("prior", "information", "text"),
+    [
+        ([[1e-200]], [[1.0]], r"prior\[0\] must have eigenvalues of at least 1e-100"),
+        ([[1e200]], [[1.0]], r"prior must have entries of size at most 1e\+100"),
+        ([[1.0]], [[1e300]], r"information must have entries of size at most 1e\+100"),
+        ([[1e7]], [[3e7]], r"information\[0, 0\] must be at most 2e\+14 times the inverse of prior\[0\]"),
+        ([[1e9, 0.0], [0.0, 1.0]], [[1.0, 1.0], [1.0, 1 - 1e-9]], "must not be negative anywhere by more than 0.01"),
+    ],
+)
+def test_numbers_that_floating_point_loses_beside_each_other_are_refused(
+    prior: list[list[float]], information: list[list[float]], text: str
+) -> None:
+    with pytest.raises(InputError, match=text):
+        TraceObjective([prior], [[information]])
+    with pytest.raises(InputError, match=r"weights must be in \[1e-100, 1e\+100\]"):
+        TraceObjective([[[1.0]]], [[[[1.0]]]], [1e-200])

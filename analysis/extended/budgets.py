@@ -15,6 +15,7 @@ from analysis.studies.plots import LABELS, LOOKS, bands, new_figure, save
 from analysis.studies.statistics import column, estimate, select
 from analysis.studies.study import Case, Cell, Seeds, Study
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.report.palette import look_of
 from ratt_opt.solvers.ratt import greedy, ratt
 
 if TYPE_CHECKING:
@@ -73,7 +74,9 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         kept = select(rows, case=case.name)
         curve = excess(kept, "ratt")
         bands(axes, range(LEVELS), curve, look=LOOKS["ratt"], label=LABELS["ratt"])
-        bands(axes, range(LEVELS), excess(kept, "clairvoyant"), look=LOOKS["nonrobust_optimum"], label=CLAIRVOYANT)
+        bands(
+            axes, range(LEVELS), excess(kept, "clairvoyant"), look=look_of(CLAIRVOYANT), label=CLAIRVOYANT, dashed=True
+        )
         axes.axhline(0, color=LOOKS["greedy"].colour, linestyle="--", linewidth=1.4, label=LABELS["greedy"])
         axes.axvline(case.alpha_s, color="black", linestyle=":", linewidth=1, label="attack planned for")
         title = f"planned for $\\alpha_s$={case.alpha_s}, $\\alpha_c$={case.alpha_c}"

@@ -63,7 +63,7 @@ STUDY = Study(
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One panel per attacker: how much larger the trace of Greedy and Random is than RATT's, per cent."""
     figure = new_figure(11, 6.4)
-    for axes, attacker in zip(figure.subplots(2, 1, sharex=True), STUDY.attackers, strict=True):
+    for axes, attacker in zip(figure.subplots(2, 1, sharex=True), STUDY.attacker_names, strict=True):
         kept = [select(rows, case=case.name) for case in CASES.values()]
         own = [column(k, f"ratt/{attacker}/trace") for k in kept]
         series = {

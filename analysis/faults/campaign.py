@@ -24,12 +24,23 @@ from ratt_opt.cli import run
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["LONGEST", "STUDY", "SWEEP", "Campaign", "Kind", "command", "hang", "measure", "measure_slowly"]
+__all__ = [
+    "LONGEST",
+    "STUDY",
+    "SWEEP",
+    "Campaign",
+    "Kind",
+    "command",
+    "hang",
+    "measure",
+    "measure_slowly",
+    "start_clock",
+]
 
 CODES = {0, 1, 2, 3, 4, 74, 130}
 """All exit codes that the command line documents but 70, which is a fault of the program."""
 LONGEST = 20.0
-"""Seconds that a case may take."""
+"""Seconds that a case, or each run in one of several runs, may take."""
 STUDY = Study(
     name="faults",
     cases=tuple(Case(n_robots=n, n_targets=1, alpha_s=0, alpha_c=0) for n in (1, 2)),
@@ -113,7 +124,7 @@ class Campaign:
         names = list(kinds)
         kind = names[int(rng.choice(len(names), p=np.array([kinds[name][0] for name in names])))]
         before = signal.signal(signal.SIGALRM, hang)
-        signal.setitimer(signal.ITIMER_REAL, LONGEST)
+        start_clock()
         try:
             with tempfile.TemporaryDirectory(dir=self.folder) as place:
                 outcome = kinds[kind][1](self, rng, Path(place))
@@ -137,6 +148,11 @@ class Campaign:
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(self.files[name] if content is None else content)
         return path
+
+
+def start_clock() -> None:
+    """Let the alarm clock start anew, in a case of several runs."""
+    signal.setitimer(signal.ITIMER_REAL, LONGEST)
 
 
 def hang(*_: object) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from time import monotonic, sleep
 from typing import TYPE_CHECKING
 
-from analysis.faults.campaign import LONGEST, SWEEP, Campaign, command
+from analysis.faults.campaign import LONGEST, SWEEP, Campaign, command, start_clock
 from analysis.faults.results import check_results, earlier_results
 from analysis.studies.command import Entry, main
 from analysis.studies.store import open_journal, read_table
@@ -32,6 +32,7 @@ TRIALS = 20
 
 def sweep() -> int:
     """Run the sweep that cases disturb, as its own command line says."""
+    print(flush=True)  # interrupts of imports are the system's to show
     return main("A sweep to be disturbed.", [Entry(SWEEP, lambda *_: None)], trials=TRIALS)
 
 
@@ -58,6 +59,7 @@ def _killed(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
         process.kill()
     check_results(campaign, out)
     if rng.random() < 0.2:
+        start_clock()
         assert command(words)[0] == 0, "a killed run cannot be repeated"
         check_results(campaign, out)
     return "done" if process.returncode == 0 else "interrupted"
@@ -108,6 +110,7 @@ def _disturbed_sweep(campaign: Campaign, rng: np.random.Generator, place: Path) 
             done = journal.done
         lines = (place / SWEEP.name / "journal.csv").read_bytes().count(b"\n")
         assert lines == len(done) + bool(lines), "a row was repeated"
+    start_clock()
     last = subprocess.run(words, capture_output=True, text=True, timeout=LONGEST, check=False)
     assert last.returncode == 0, f"the sweep cannot be resumed: {last.stderr!a}"
     expected = [run_trial(SWEEP, case, trial) for case in range(len(SWEEP.cases)) for trial in range(TRIALS)]
@@ -119,7 +122,10 @@ def _disturbed_sweep(campaign: Campaign, rng: np.random.Generator, place: Path) 
 def _disturb(words: list[str], rng: np.random.Generator, folder: Path) -> None:
     """Start a sweep, and kill a worker, kill it or interrupt it once its journal is open."""
     way = str(rng.choice(["worker", "kill", "interrupt"]))
-    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+    start_clock()
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
         began = monotonic()
         while process.poll() is None and not (folder / "journal.csv").exists() and monotonic() - began < LONGEST:
             sleep(0.01)
@@ -145,9 +151,9 @@ def _workers(parent: int) -> list[int]:
 
 
 PROCESSES: dict[str, tuple[float, Kind]] = {
-    "kill": (0.003, _killed),
-    "interrupt of a process": (0.005, _interrupted),
-    "streams of a process": (0.002, _streams),
-    "disturbed sweep": (0.001, _disturbed_sweep),
+    "kill": (0.001, _killed),
+    "interrupt of a process": (0.002, _interrupted),
+    "streams of a process": (0.001, _streams),
+    "disturbed sweep": (0.0005, _disturbed_sweep),
 }
 """Each kind of case, how often it comes, and what it does."""

@@ -26,17 +26,18 @@ __all__ = ["Entry", "main"]
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A study and what to make of its rows: ``draw(rows, folder)`` writes figures into ``folder``."""
+    """A study and what to make of its rows: ``draw(rows, folder)`` writes figures into ``folder``, if anything."""
 
     study: Study
-    draw: Draw
+    draw: Draw | None = None
 
 
 def main(
     description: str, entries: Sequence[Entry], *, trials: int, after: Callable[[Path], object] | None = None
 ) -> int:
-    """Run studies from the command line and return the exit code: 2 for bad input, 1 for a lost sweep, 130 interrupted.
+    """Run studies from the command line and return the exit code.
 
+    2 for bad input, 1 for a lost sweep or where the system refuses, 130 interrupted.
     ``after(out)`` runs when all results are there.
     """
     options = _parse(description, entries, trials)
@@ -49,13 +50,16 @@ def main(
                 trials_wanted = study.fixed_trials or options.trials
                 old = options.accept_old_rows
                 run(study, folder, executor, trials=trials_wanted, progress=Progress(), accept_old_rows=old)
-                entry.draw(read_table(folder), folder)
+                if entry.draw is not None:
+                    entry.draw(read_table(folder), folder)
         if after is not None and len(chosen) == len(entries):
             after(options.out)
     except InputError as error:
         return _say(error, 2)
     except SweepError as error:
         return _say(error, 1)
+    except OSError as error:  # no processes, no room, no folder to be in
+        return _say(f"the system refuses: {error}; finished rows are kept", 1)
     except KeyboardInterrupt:
         return _say("interrupted; finished rows are kept, run the same command to resume", 130)
     return 0

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.report.palette import Look
 
-__all__ = ["LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save"]
+__all__ = ["LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save", "use_palette"]
 
 LOOKS = {
     "optimum": PLANNERS["maxmin"],
@@ -35,6 +35,18 @@ LABELS = {
     "random": "Random",
     "myopic": "Myopic",
 }
+
+
+IN_TURN = ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")
+"""Whose colours plain curves and bars take, one after the other: neighbours differ in lightness too."""
+
+
+def use_palette() -> None:
+    """Let plain matplotlib calls take the library's colours, which stay apart for colour-blind readers and in grey."""
+    import matplotlib as mpl
+    from matplotlib.rcsetup import cycler
+
+    mpl.rcParams["axes.prop_cycle"] = cycler(color=[PLANNERS[name].colour for name in IN_TURN])
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -85,10 +97,14 @@ def _side_by_side(
         yield at, width, planner, means, spread
 
 
-def bands(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, look: Look, label: str) -> None:
-    """Draw a curve of means with its confidence band."""
+def bands(
+    axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, look: Look, label: str, dashed: bool = False
+) -> None:
+    """Draw a curve of means with its confidence band; ``dashed`` where it may run along one drawn before."""
     colour = look.colour
-    axes.plot(x, [e.mean for e in estimates], color=colour, label=label, marker=look.marker, markersize=4.5)
+    style: dict[str, Any] = {"linestyle": (0, (3, 3)), "markerfacecolor": "none"} if dashed else {}
+    means = [e.mean for e in estimates]
+    axes.plot(x, means, color=colour, label=label, marker=look.marker, markersize=7 if dashed else 4.5, **style)
     low, high = ([getattr(e, side) for e in estimates] for side in ("low", "high"))
     if np.isfinite([*low, *high]).all():
         axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)

@@ -1,5 +1,5 @@
 (* ratt-check FILE ...: decide certificates with the checker extracted from its Coq proof.
-   Exit status of the worst file: 0 both ends proved, 3 only the upper end, 1 a fault, 2 no certificate (or log-det). *)
+   Exit status of the worst file: 0 both ends proved, 3 only the upper end, 1 a fault, 2 no certificate. *)
 
 let largest_file = 32 * 1024 * 1024
 

@@ -89,7 +89,7 @@ let exacts where value = List.map (exact where) (array where value)
 let objective = function
   | String "trace" -> Trace
   | String "maxeig" -> MaxEigenvalue
-  | String "logdet" -> format "objective" "is log-det, which the verified checker does not cover"
+  | String "logdet" -> LogDet
   | _ -> raise (Fault "the objective must be trace, logdet or maxeig")
 
 let problem value =
@@ -214,7 +214,7 @@ let exacts_of_length where length value =
 
 let point kind d value =
   match (kind, value) with
-  | Trace, _ -> TracePoint (List.map (exacts_of_length "point Y" (d * (d + 1) / 2)) (array "point" value))
+  | (Trace | LogDet), _ -> TracePoint (List.map (exacts_of_length "point Y" (d * (d + 1) / 2)) (array "point" value))
   | MaxEigenvalue, List [ target; size; direction ] ->
       EigenPoint (nat "point target" target, exact "point t" size, exacts_of_length "point v" d direction)
   | _ -> format "point" "must be a list of 3 entries"
@@ -235,9 +235,9 @@ let proofs pb prior_range upper lower =
       let zero = { man = Big.zero; sc = Big.zero } in
       let low, high =
         match (pb.objective, exacts "prior_eigenvalue" prior_range) with
-        | Trace, [] -> (zero, zero)
+        | (Trace | LogDet), [] -> (zero, zero)
         | MaxEigenvalue, [ low; high ] -> (low, high)
-        | _ -> format "prior_eigenvalue" "must be a list of two entries, of none for trace" in
+        | _ -> format "prior_eigenvalue" "must be a list of two entries, of none but for maxeig" in
       { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
         upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups next 0);

@@ -1,5 +1,6 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete Families Approached Quadratic Criteria Certificate Examples.
+From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Families Approached
+  Quadratic Criteria Logdet Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -13,6 +14,9 @@ Print Assumptions group_size_total_curvature_any.
 Print Assumptions ratt_optimal_any.
 Print Assumptions group_size_submodular_unsplit.
 Print Assumptions group_size_total_curvature_unsplit.
+Print Assumptions paper_group_size_submodular.
+Print Assumptions paper_group_size_total_curvature.
+Print Assumptions paper_optimal.
 Print Assumptions group_size_submodular.
 Print Assumptions group_size_total_curvature.
 Print Assumptions ratt_optimal.
@@ -26,9 +30,14 @@ Print Assumptions trace_value0.
 Print Assumptions trace_value_mono.
 Print Assumptions maxeig_value0.
 Print Assumptions maxeig_value_mono.
+Print Assumptions logdet_fenchel.
+Print Assumptions logdet_fenchel_tight.
+Print Assumptions logdet_value0.
+Print Assumptions logdet_value_mono.
 Print Assumptions certificate_upper.
 Print Assumptions certificate_sound.
 Print Assumptions trace_certificate_sound.
+Print Assumptions logdet_certificate_sound.
 Print Assumptions certificate_bracket.
 Print Assumptions relay_exact.
 Print Assumptions relay_groups.
@@ -36,3 +45,8 @@ Print Assumptions safe_exact.
 Print Assumptions safe_groups.
 Print Assumptions split_exact.
 Print Assumptions split_groups.
+Print Assumptions n_max_values.
+Print Assumptions ties_ratt.
+Print Assumptions pairs_ratt.
+Print Assumptions covered_curvature.
+Print Assumptions bonus_total_curvature.

@@ -1,6 +1,6 @@
 (** The theorem about [ratt-check], in the words of the definitions. *)
 From mathcomp Require Import all_ssreflect all_algebra.
-From Ratt Require Import Extrema Teams Quadratic Criteria Dyadic DyadicMatrix Graph UpperTree LowerTree Forced Checker Soundness.
+From Ratt Require Import Extrema Teams Quadratic Criteria Logdet Dyadic DyadicMatrix Graph UpperTree LowerTree Forced Checker Soundness.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -9,12 +9,14 @@ Local Open Scope ring_scope.
 
 Section Certificate.
 (** Any ordered field that has what the numbers need; for the largest-eigenvalue criterion any function that is the
-    largest eigenvalue there. *)
-Variables (F : realFieldType) (pb : problem) (cl : claim) (pr : proofs) (lmax : 'M[F]_(dimension pb) -> F).
+    largest eigenvalue there, for log-det any logarithm. *)
+Variables (F : realFieldType) (pb : problem) (cl : claim) (pr : proofs).
+Variables (lmax : 'M[F]_(dimension pb) -> F) (ln : F -> F).
 Hypothesis lmaxP : objective pb = MaxEigenvalue -> largest_eigenvalue lmax.
+Hypothesis lnP : objective pb = LogDet -> logarithm ln.
 
 Local Notation team := (team_of (net pb)).
-Local Notation phi := (value lmax).
+Local Notation phi := (value lmax ln).
 Local Notation given := (plan_of pb cl).
 
 (** No plan keeps more than [upper] under every attack. *)
@@ -32,23 +34,26 @@ rewrite /check; case: ifP => [/and5P[net_good shapes plan_good priors_good /andP
 case el: (all_some _) => [lows|//]; case eh: (all_some _) => [highs|//]; case ed: (all_some _) => [defects|//].
 case: ifP => // /andP[room up] _; split; first by split.
 split=> [p okp|].
-  by apply/(worst_case_leP team phi p); apply: (upper_sound lmaxP net_good shapes priors_good range el eh ed room up okp).
+  by apply/(worst_case_leP team phi p); apply: (upper_sound lmaxP lnP net_good shapes priors_good range el eh ed room up okp).
 case: ifP => // _; case: ifP => // lo _; split; first exact: (plan_ofP net_good plan_good).
-by apply: (lower_sound lmaxP net_good shapes plan_good priors_good range el ed room lo).
+by apply: (lower_sound lmaxP lnP net_good shapes plan_good priors_good range el ed room lo).
 Qed.
 End Certificate.
 
-Theorem certificate_upper (F : realFieldType) pb cl pr (lmax : 'M[F]_(dimension pb) -> F) :
-  (objective pb = MaxEigenvalue -> largest_eigenvalue lmax) -> check pb cl pr = UpperOnly ->
-  well_formed pb cl /\ upper_claim cl lmax.
-Proof. by move=> h e; have [|wf [up _]] := @check_parts F pb cl pr lmax h; rewrite ?e. Qed.
+Theorem certificate_upper (F : realFieldType) pb cl pr (lmax : 'M[F]_(dimension pb) -> F) (ln : F -> F) :
+  (objective pb = MaxEigenvalue -> largest_eigenvalue lmax) -> (objective pb = LogDet -> logarithm ln) ->
+  check pb cl pr = UpperOnly -> well_formed pb cl /\ upper_claim cl lmax ln.
+Proof. by move=> h1 h2 e; have [|wf [up _]] := @check_parts F pb cl pr lmax ln h1 h2; rewrite ?e. Qed.
 
-Theorem certificate_sound (F : realFieldType) pb cl pr (lmax : 'M[F]_(dimension pb) -> F) :
-  (objective pb = MaxEigenvalue -> largest_eigenvalue lmax) -> check pb cl pr = Proved ->
-  [/\ well_formed pb cl, upper_claim cl lmax & lower_claim cl lmax].
-Proof. by move=> h e; have [|wf [up lo]] := @check_parts F pb cl pr lmax h; rewrite ?e //; split=> //; apply: lo. Qed.
+Theorem certificate_sound (F : realFieldType) pb cl pr (lmax : 'M[F]_(dimension pb) -> F) (ln : F -> F) :
+  (objective pb = MaxEigenvalue -> largest_eigenvalue lmax) -> (objective pb = LogDet -> logarithm ln) ->
+  check pb cl pr = Proved -> [/\ well_formed pb cl, upper_claim cl lmax ln & lower_claim cl lmax ln].
+Proof.
+move=> h1 h2 e; have [|wf [up lo]] := @check_parts F pb cl pr lmax ln h1 h2; rewrite ?e //.
+by split=> //; apply: lo.
+Qed.
 
-(** The trace criterion needs no eigenvalue: over any ordered field, the rationals for one. *)
+(** The trace criterion needs no eigenvalue and no logarithm: over any ordered field, the rationals for one. *)
 Theorem trace_certificate_sound (F : realFieldType) pb cl pr : objective pb = Trace -> check pb cl pr = Proved ->
   let phi := trace_value (@prior_of F pb) (@info_of F pb) (@weight_of F pb) in let t := team_of (net pb) in
   [/\ well_formed pb cl,
@@ -56,17 +61,31 @@ Theorem trace_certificate_sound (F : realFieldType) pb cl pr : objective pb = Tr
       is_plan t (plan_of pb cl)
     & forall a, allowed t a -> val F (lower cl) <= team_value t phi (plan_of pb cl) a].
 Proof.
-move=> e h phi t; have [|wf up [pl lo]] := @certificate_sound F pb cl pr (fun _ => 0) _ h; first by rewrite e.
-have eq : value (pb := pb) (fun _ : 'M[F]_(dimension pb) => 0) = phi by rewrite /value e.
+move=> e h phi t; have [||wf up [pl lo]] := @certificate_sound F pb cl pr (fun _ => 0) (fun _ => 0) _ _ h; rewrite ?e //.
+have eq : value (pb := pb) (fun _ : 'M[F]_(dimension pb) => 0) (fun _ => 0) = phi by rewrite /value e.
+by rewrite /upper_claim /lower_claim eq in up lo.
+Qed.
+
+(** The same in full for log-det. *)
+Theorem logdet_certificate_sound (F : realFieldType) pb cl pr (ln : F -> F) : logarithm ln -> objective pb = LogDet ->
+  check pb cl pr = Proved ->
+  let phi := logdet_value ln (@prior_of F pb) (@info_of F pb) (@weight_of F pb) in let t := team_of (net pb) in
+  [/\ well_formed pb cl,
+      forall p, is_plan t p -> exists2 a, allowed t a & team_value t phi p a <= val F (upper cl),
+      is_plan t (plan_of pb cl)
+    & forall a, allowed t a -> val F (lower cl) <= team_value t phi (plan_of pb cl) a].
+Proof.
+move=> lnP e h phi t; have [||wf up [pl lo]] := @certificate_sound F pb cl pr (fun _ => 0) ln _ _ h; rewrite ?e //.
+have eq : value (pb := pb) (fun _ : 'M[F]_(dimension pb) => 0) ln = phi by rewrite /value e.
 by rewrite /upper_claim /lower_claim eq in up lo.
 Qed.
 
 (** The optimum lies between the claimed ends. *)
-Theorem certificate_bracket (F : realFieldType) pb cl pr (lmax : 'M[F]_(dimension pb) -> F) x :
-  (objective pb = MaxEigenvalue -> largest_eigenvalue lmax) -> check pb cl pr = Proved ->
-  is_optimum (team_of (net pb)) (value lmax) x -> val F (lower cl) <= x <= val F (upper cl).
+Theorem certificate_bracket (F : realFieldType) pb cl pr (lmax : 'M[F]_(dimension pb) -> F) (ln : F -> F) x :
+  (objective pb = MaxEigenvalue -> largest_eigenvalue lmax) -> (objective pb = LogDet -> logarithm ln) ->
+  check pb cl pr = Proved -> is_optimum (team_of (net pb)) (value lmax ln) x -> val F (lower cl) <= x <= val F (upper cl).
 Proof.
-move=> h e [[p okp <-] best]; have [wf up [pl lo]] := certificate_sound h e.
+move=> h1 h2 h [[p okp <-] best]; have [wf up [pl lo]] := certificate_sound h1 h2 h.
 apply/andP; split; last by apply/worst_case_leP; apply: up.
 by apply: le_trans (best _ pl); apply: le_worst_case.
 Qed.

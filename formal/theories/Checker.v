@@ -1,13 +1,13 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix Graph UpperTree LowerTree Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
 
 (** ** Data *)
-Inductive criterion := Trace | MaxEigenvalue.
+Inductive criterion := Trace | LogDet | MaxEigenvalue.
 
 (** Symmetric matrices are lower triangles, row by row. [informations]: by element, then by target. *)
 Record problem := Problem {
@@ -20,7 +20,7 @@ Record problem := Problem {
 }.
 Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
 
-(** Where a linear bound touches: one symmetric matrix per target, or a target, a length and a direction. *)
+(** Where a linear bound touches: one symmetric matrix per target (trace, log-det), or a target, a length and a direction. *)
 Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
 Inductive lower_proof := ForcedSize of nat & size_tree | AttackTree of attack_tree | NoLower.
 Record proofs := Proofs {
@@ -82,14 +82,17 @@ Definition trace_up (p : N) (s : seq dmat) : option dyadic :=
   if all_some [seq trace_inverse_up p d (nth [::] s j) | j <- iota 0 m] is Some ys then
     Some (dsum [seq dmul (nth d0 ws j) (nth d0 ys j) | j <- iota 0 m])
   else None.
+(** A logarithm's error is about [2^-k]; numbers are rounded to [2^-p]. *)
+Definition logdet_up (k : nat) (p : N) (s : seq dmat) : option dyadic :=
+  if all (fun j => is_pd d (nth [::] s j)) (iota 0 m) then
+    Some (dsum [seq dmul (nth d0 ws j) (log_quotient_up k p d1 (mdet d (nth [::] s j))) | j <- iota 0 m])
+  else None.
 Definition is_at_most (x : option dyadic) (y : dyadic) : bool := if x is Some z then dle z y else false.
 Definition eigen_enough (room : dyadic) (s : seq dmat) : bool :=
   dlt d0 room && all (fun j => is_pd d (nth [::] s j) &&
     is_psd d (msub d (mscale d room (nth [::] s j)) (mscalar d (nth d0 ws j)))) (iota 0 m).
 
 (** Hint for two rows: [w / lambda_min], a little more. *)
-Definition root_up (p : N) (x : dyadic) : dyadic :=
-  Dyadic (Z.add (Z.sqrt (Z.shiftr (Z.shiftl (man x) (Z.of_N (p + p))) (Z.of_N (sc x)))) 2) p.
 Definition eigen_hint (p : N) (w : dyadic) (A : dmat) : dyadic :=
   let t := dadd (get A 0 0) (get A 1 1) in
   let det := dsub (dmul (get A 0 0) (get A 1 1)) (dmul (get A 1 0) (get A 0 1)) in
@@ -102,10 +105,11 @@ Definition eigen_up (room : dyadic) (s : seq dmat) : option dyadic :=
   if eigen_enough y s then Some y else None.
 
 Definition penalty_up (room : dyadic) (s : seq dmat) : option dyadic :=
-  match kind with Trace => trace_up 160 s | MaxEigenvalue => eigen_up room s end.
+  match kind with Trace => trace_up 160 s | LogDet => logdet_up 110 400 s | MaxEigenvalue => eigen_up room s end.
 Definition penalty_within (room : dyadic) (s : seq dmat) : bool :=
   match kind with
   | Trace => is_at_most (trace_up 128 s) room || is_at_most (trace_up 1024 s) room
+  | LogDet => is_at_most (logdet_up 40 128 s) room || is_at_most (logdet_up 110 400 s) room
   | MaxEigenvalue => eigen_enough room s
   end.
 End Penalty.
@@ -150,6 +154,14 @@ Definition gradient (pt : point) : option (seq dmat * dyadic) :=
         let Ws := mkseq (fun j => mscale d (nth d0 ws j) (mmul d (nth [::] Ys j) (nth [::] Ys j))) m in
         let c := dsum [seq dmul (nth d0 ws j) (dsub (mtrace d (nth [::] ps j))
                    (dmul (dnat 2) (mtrace d (nth [::] Ys j)))) | j <- iota 0 m] in
+        Some (Ws, dadd c (dots Ws highs))
+      else None
+  | LogDet, TracePoint ys =>
+      let Ys := [seq unpack d y | y <- ys] in
+      if (size ys == m) && all (is_pd d) Ys then
+        let Ws := mkseq (fun j => mscale d (nth d0 ws j) (nth [::] Ys j)) m in
+        let c := dsum [seq dmul (nth d0 ws j) (dsub (log_quotient_up 110 400 (mdet d (nth [::] ps j)) (mdet d (nth [::] Ys j)))
+                   (dnat d)) | j <- iota 0 m] in
         Some (Ws, dadd c (dots Ws highs))
       else None
   | MaxEigenvalue, EigenPoint j t v =>
@@ -202,14 +214,17 @@ Definition room_ok (lows : seq dmat) (defects : seq (seq dyadic)) : bool :=
     (mscalar d (dmul (dnat (robots w).+1) (worst_defect defects j))))) (iota 0 m).
 Definition prior_range_ok : bool :=
   match objective pb with
-  | Trace => true
+  | Trace | LogDet => true
   | MaxEigenvalue =>
       all (fun j => is_psd d (msub d (mscalar d (prior_high pr)) (mscale d (nth d0 ws j) (nth [::] prior_matrices j)))) (iota 0 m)
       && has (fun j => ~~ is_pd d (msub d (mscalar d (prior_low pr)) (mscale d (nth d0 ws j) (nth [::] prior_matrices j))))
            (iota 0 m)
   end.
 Definition trace_total : dyadic := dsum [seq dmul (nth d0 ws j) (mtrace d (nth [::] prior_matrices j)) | j <- iota 0 m].
-Definition base_low : dyadic := match objective pb with Trace => trace_total | MaxEigenvalue => prior_low pr end.
+Definition logdet_total_low : dyadic :=
+  dopp (dsum [seq dmul (nth d0 ws j) (log_quotient_up 110 400 d1 (mdet d (nth [::] prior_matrices j))) | j <- iota 0 m]).
+Definition base_low : dyadic :=
+  match objective pb with Trace => trace_total | LogDet => logdet_total_low | MaxEigenvalue => prior_low pr end.
 
 Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : bool :=
   let rows := [seq nth [::] info_matrices e | e <- plan cl] in

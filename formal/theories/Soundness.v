@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Dyadic DyadicMatrix Graph UpperTree LowerTree Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -37,6 +37,13 @@ Proof.
 rewrite -[y + t + z]addrA [t + z]addrC; move: (z + t) => q; set u := a - q.
 rewrite [u + x + _ + _]addrACA; have -> : b - a + q = b - u by rewrite /u opprB addrA addrAC.
 by rewrite -[u + x + y]addrA [RHS]addrC [RHS]addrA subrK.
+Qed.
+
+Lemma logdet_shape (F : realFieldType) (p l y q n tr h s : F) : p - y <= q -> l + y <= tr - n -> tr <= h + s ->
+  p + l <= q - n + h + s.
+Proof.
+move=> h1 h2 h3; have := ler_add (ler_add h1 h2) h3; rewrite -subr_ge0 => h4; rewrite -subr_ge0.
+by apply: le_trans h4 _; rewrite le_eqVlt; apply/orP; left; apply/eqP; ring.
 Qed.
 
 Section Pieces.
@@ -123,18 +130,28 @@ Definition info_of (e : element) (j : target) : 'M[F]_d :=
 Definition weight_of (j : target) : F := val (nth d0 ws j).
 Definition plan_of : {ffun robot -> element} := [ffun i : robot => inord (nth 0%N (plan cl) i)].
 
-Variable lmax : 'M[F]_d -> F.
+Variables (lmax : 'M[F]_d -> F) (ln : F -> F).
 Definition value (S : {set element}) : F :=
   match objective pb with
   | Trace => trace_value prior_of info_of weight_of S
+  | LogDet => logdet_value ln prior_of info_of weight_of S
   | MaxEigenvalue => maxeig_value prior_of info_of weight_of lmax S
   end.
 Hypothesis lmaxP : objective pb = MaxEigenvalue -> largest_eigenvalue lmax.
+Hypothesis lnP : objective pb = LogDet -> logarithm ln.
 
 Definition penalty (L : target -> 'M[F]_d) : F :=
-  match objective pb with Trace => trace_penalty weight_of L | MaxEigenvalue => maxeig_penalty weight_of lmax L end.
+  match objective pb with
+  | Trace => trace_penalty weight_of L
+  | LogDet => logdet_penalty ln weight_of L
+  | MaxEigenvalue => maxeig_penalty weight_of lmax L
+  end.
 Definition base : F :=
-  match objective pb with Trace => trace_base prior_of weight_of | MaxEigenvalue => maxeig_base prior_of weight_of lmax end.
+  match objective pb with
+  | Trace => trace_base prior_of weight_of
+  | LogDet => logdet_base ln prior_of weight_of
+  | MaxEigenvalue => maxeig_base prior_of weight_of lmax
+  end.
 
 Lemma valueE S : value S = base - penalty (posterior prior_of info_of S).
 Proof. by rewrite /value /base /penalty; case: (objective pb). Qed.
@@ -183,13 +200,15 @@ Proof. exact: unpack_symmetrical. Qed.
 
 Lemma value0 : value set0 = 0.
 Proof.
-by rewrite /value; case: (objective pb); [apply: trace_value0 | apply: maxeig_value0].
+rewrite /value; case e: (objective pb); [exact: trace_value0 | | exact: maxeig_value0].
+by apply: (logdet_value0 (lnP e)) => j; apply: prior_good.
 Qed.
 
 Lemma penalty_antitone A B : good A -> (forall j, symmetrical (B j)) -> (forall j, psd (B j - A j)) ->
   penalty B <= penalty A.
 Proof.
 rewrite /penalty; case e: (objective pb) => gA sB AB; first exact: (trace_penalty_antitone weight_ge0).
+  exact: (logdet_penalty_antitone (lnP e) weight_ge0).
 exact: (maxeig_penalty_antitone weight_ge0 (lmaxP e)).
 Qed.
 
@@ -198,6 +217,7 @@ Lemma penalty_convex (I : eqType) (s : seq I) (A : I -> target -> 'M[F]_d) : s !
   penalty (fun j => (size s)%:R^-1 *: \sum_(i <- s) A i j) <= (size s)%:R^-1 * \sum_(i <- s) penalty (A i).
 Proof.
 rewrite /penalty; case e: (objective pb) => s0 gA; first exact: (trace_penalty_convex weight_ge0).
+  exact: (logdet_penalty_convex (lnP e) weight_ge0).
 exact: (maxeig_penalty_convex weight_ge0 (lmaxP e)).
 Qed.
 
@@ -352,6 +372,34 @@ rewrite /gradient; case e: (objective pb); case: pt => [ys|j t v] //; case: ifP 
     have := ph (Y j *m x); rewrite /form trmx_mul Ys !mulmxA //.
   rewrite -[X in _ <= X]addrA -addrA ler_add2l; apply: le_trans (_ : - (2%:R * \tr (Y j) - \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j)) <= _); first by rewrite ler_opp2.
   by rewrite opprB addrC ler_add2l.
+  move/andP: cond => [/eqP sz /allP defs].
+  rewrite size_mkseq; split=> // p G okp; set Ws := mkseq _ m.
+  have sW : size Ws = m by rewrite size_mkseq.
+  pose Y (j : target) := mx F d (unpack d (nth [::] ys j)).
+  have Ys j : symmetrical (Y j) := unpack_symmetrical F d _.
+  have nY (j : target) : nth [::] [seq unpack d y | y <- ys] j = unpack d (nth [::] ys j) by rewrite (nth_map [::]) ?sz.
+  have pY j : pd (Y j) by apply/(is_pdP (Ys j)); apply: defs; apply: map_f; rewrite mem_nth ?sz.
+  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: Y j.
+    by rewrite nth_mkseq // mx_scale nY linearZ /= Ys.
+  rewrite val_add dotsE ?highs_size // val_sum_iota.
+  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m info_of (p i) j))); last first.
+    move=> i _; rewrite dots_info //; apply: eq_bigr => j _.
+    by rewrite We -scalemxAl linearZ.
+  rewrite [X in _ <= _ + X]exchange_big /= -!big_split /value e /logdet_value /logdet_base /logdet_penalty -sumrB.
+  apply: ler_sum => j _ /=; have [sL pL] := posterior_pd G okp j; have [sP pP] := prior_good j.
+  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr opprK val_mul val_sub val_nat.
+  rewrite nth_prior // nY -!mulrDr; apply: ler_wpmul2l; first exact: weight_ge0.
+  have fen := logdet_fenchel (lnP e) sL pL (Ys j) (pY j).
+  have P0 : 0 < \det (prior_of j) := det_gt0 sP pP; have Y0 : 0 < \det (Y j) := det_gt0 (Ys j) (pY j).
+  have := @log_quotient_upP F ln (lnP e) 110 400 (mdet d (unpack d (nth [::] (priors pb) j))) (mdet d (unpack d (nth [::] ys j))).
+  rewrite !mdetE -/(prior_of j) -/(Y j) => /(_ P0 Y0); rewrite (lnM (lnP e)) ?invr_gt0 // (lnV (lnP e) Y0).
+  set q := val (log_quotient_up _ _ _ _) => lq.
+  have up : \tr (Y j *m posterior prior_of info_of (contributed p G) j) <=
+      \tr (Y j *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m info_of (p i) j).
+    rewrite /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /= -mulmxBr.
+    have [sH pH] := highP j; apply: trace_product_ge0 => //.
+    by rewrite /symmetrical linearB /= sH (symmetrical_inv sP).
+  exact: logdet_shape lq fen up.
 move/and3P: cond => [jm s0 bt]; set s := dsum _ in s0 bt; set b := quotient_up _ _ _ in bt *.
 rewrite size_mkseq; split=> // p G okp; set W := mkm _ _; set Ws := mkseq _ m.
 have sW : size Ws = m by rewrite size_mkseq.
@@ -511,8 +559,12 @@ Qed.
 Lemma base_lowP : val (base_low pb pr) <= base.
 Proof.
 rewrite /base_low /base; case e: (objective pb).
-  rewrite /trace_total val_sum_iota /trace_base; apply: ler_sum => j _.
+- rewrite /trace_total val_sum_iota /trace_base; apply: ler_sum => j _.
   by rewrite val_mul mx_trace nth_prior.
+- rewrite /logdet_total_low val_opp val_sum_iota /logdet_base -sumrN; apply: ler_sum => j _.
+  rewrite val_mul -mulrN; apply: ler_wpmul2l; first exact: weight_ge0.
+  have [s p] := prior_good j; have P0 := det_gt0 s p; rewrite nth_prior // ler_oppl -(lnV (lnP e)) // -[_^-1]mul1r.
+  rewrite -{1}(val1 F) -(mdetE F d (unpack d _)); apply: log_quotient_upP; rewrite ?val1 ?ltr01 ?mdetE //; exact: lnP.
 move: range_good; rewrite /prior_range_ok e => /andP[_ /hasP[j]]; rewrite mem_iota add0n => /andP[_ jm] npd.
 pose k : target := Ordinal jm; apply: le_trans (le_largest (fun j => weight_of j * lmax (prior_of j)) k).
 rewrite leNgt; apply: contra npd => lt.
@@ -553,6 +605,17 @@ rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l
 by case: (h j).
 Qed.
 
+Lemma logdet_upP k p s y : kind = LogDet -> logdet_up d m ws k p s = Some y -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ logdet_penalty ln weight_of (fam s) <= val y.
+Proof.
+move=> e; rewrite /logdet_up; case: ifP => // /allP defs [<-] sym.
+have pds j : pd (fam s j) by apply/(is_pdP (sym j)); apply: defs; rewrite mem_iota add0n ltn_ord.
+split=> [j|]; first by split.
+rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l; first exact: weight_ge0.
+have L0 := det_gt0 (sym j) (pds j); rewrite -(lnV (lnP e)) // -[_^-1]mul1r -{1}(val1 F) -(mdetE F d (nth [::] s j)).
+by apply: log_quotient_upP; rewrite ?val1 ?ltr01 ?mdetE //; apply: lnP.
+Qed.
+
 Lemma eigen_enoughP x s : eigen_enough d m ws x s -> (forall j, symmetrical (fam s j)) ->
   kind = MaxEigenvalue -> good (fam s) /\ maxeig_penalty weight_of lmax (fam s) <= val x.
 Proof.
@@ -578,14 +641,16 @@ Lemma withinP x s : penalty_within kind d m ws x s -> (forall j, symmetrical (fa
   good (fam s) /\ penalty (fam s) <= val x.
 Proof.
 rewrite /penalty_within /penalty -/kind; case e: kind => h sym; last exact: eigen_enoughP.
-case/orP: h; rewrite /is_at_most; case eu: (trace_up _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
-  by have [g h] := trace_upP eu sym; split=> //; apply: le_trans h le.
+  case/orP: h; rewrite /is_at_most; case eu: (trace_up _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
+    by have [g h] := trace_upP eu sym; split=> //; apply: le_trans h le.
+case/orP: h; rewrite /is_at_most; case eu: (logdet_up _ _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
+  by have [g h] := logdet_upP e eu sym; split=> //; apply: le_trans h le.
 Qed.
 
 Lemma penalty_upP x s y : penalty_up kind d m ws x s = Some y -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ penalty (fam s) <= val y.
 Proof.
-rewrite /penalty_up /penalty -/kind; case e: kind => h sym; first exact: trace_upP h sym.
+rewrite /penalty_up /penalty -/kind; case e: kind => h sym; [exact: trace_upP h sym | exact: logdet_upP e h sym |].
 move: h; rewrite /eigen_up; case: ifP => // h [<-]; exact: eigen_enoughP.
 Qed.
 

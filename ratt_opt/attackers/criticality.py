@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Self
 
-from ratt_opt._validation import check_finite
+from ratt_opt._validation import check_number
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
 from ratt_opt.attackers.task import PlanValues
 from ratt_opt.budget import Budget
+from ratt_opt.progress import Step
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class Criticality:
     gain_upper: float
 
 
+@Step("what to protect")
 def criticality_ranking(
     problem: Problem,
     elements: ArrayLike,
@@ -151,6 +153,7 @@ class BreakingBudgets(tuple[BreakingBudget, ...]):
         return tuple(self), self.stop
 
 
+@Step("the smallest budgets that break the plan")
 def breaking_budgets(
     problem: Problem,
     elements: ArrayLike,
@@ -177,7 +180,7 @@ def breaking_budgets(
     InputError : the plan is not one element per robot, ``value`` is not finite, or a budget is not a number >= 0.
     """
     plan = problem.check_plan(elements)
-    goal = float(check_finite("value", value, ndim=0))
+    goal = check_number("value", value)
     own = Budget.inside(budget, time_limit)
     found: list[BreakingBudget] = []
     most_links = len(problem.communication.links)

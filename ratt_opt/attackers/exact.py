@@ -19,6 +19,7 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.stopping import Stop
@@ -44,6 +45,7 @@ FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
 
 
+@Step("the worst attack")
 def worst_case_attack(
     problem: Problem,
     elements: ArrayLike,

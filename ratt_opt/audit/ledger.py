@@ -30,6 +30,7 @@ from ratt_opt.audit.report.pages import html_report, markdown_report, per_chain
 from ratt_opt.audit.report.records import begun, claim_record, factor_record, real_record
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.problem import Problem
+from ratt_opt.progress import Step
 from ratt_opt.solvers.ratt import bait_and_greedy
 
 if TYPE_CHECKING:
@@ -230,11 +231,13 @@ def _decide_all(
         for entry in all_entries():
             budget.check()
             entries.append(entry)
-        for number, entry in enumerate(entries):
-            budget.check()
-            if progress is not None:
-                progress(number, len(entries), entry.label)
-            records.append(decide_entry(entry, quick=quick))
+        with Step("the audit") as step:
+            for number, entry in enumerate(entries):
+                budget.check()
+                step.say(f"{number + 1}/{len(entries)} {entry.label}")
+                if progress is not None:
+                    progress(number, len(entries), entry.label)
+                records.append(decide_entry(entry, quick=quick))
     except KeyboardInterrupt:
         budget.interrupt()
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Problem
 
-__all__ = ["GroupCut", "combined_bound", "mixed_information", "tangent_cut", "uniform_selection"]
+__all__ = ["GroupCut", "combined_bound", "largest_of_each", "mixed_information", "tangent_cut", "uniform_selection"]
 
 ROUNDING = 64 * np.finfo(np.float64).eps
 """Relative margin added to every bound: sums of at most a few thousand terms lose less."""
@@ -82,10 +82,16 @@ def combined_bound(
     """
     share = weights / weights.sum()
     combined = share @ scores
-    terms = [float(combined[choice].max()) for choice in choices]
+    terms = largest_of_each(combined, choices).tolist()
     constant = float(share @ constants)
     magnitude = abs(constant) + float(np.abs(share * constants).sum()) + sum(map(abs, terms))
     return constant + sum(terms) + ROUNDING * magnitude, combined
+
+
+def largest_of_each(amounts: FloatArray, choices: Sequence[IntArray]) -> FloatArray:
+    """(N,) largest of the amounts (E,) of each robot's elements; ``choices`` : per robot, at least one element."""
+    starts = np.cumsum([0, *map(len, choices[:-1])])
+    return np.asarray(np.maximum.reduceat(amounts[np.concatenate(choices)], starts))
 
 
 def uniform_selection(problem: Problem) -> FloatArray:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, one_curvature
-from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
+from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from ratt_opt.graph.threat import Threat
@@ -18,9 +17,15 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
-__all__ = ["achievable_group_size", "group_size_bound", "strongest_robots"]
+__all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
 
-SOURCE = "group-size bound (proof in its docstring)"
+SOURCE = "group-size bound (this library)"
+IN_COQ = {"k": "group_size_submodular", "c": "group_size_total_curvature"}
+"""For complete graphs without protected parts, where a bait always survives."""
+
+
+LARGEST_EXACT = 12
+"""Most robots for which all sets are tabulated on graphs that are not complete: 0.4 s, and four times that for 14."""
 
 
 def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, baits_survive: bool = True) -> Guarantee:
@@ -59,23 +64,27 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     g = check_integer("g", g, low=0)
     kind, value = one_curvature(k, c)
     keep = 1 - value
-    if g <= 1:
-        bound = greedy = 1.0
-    elif kind == "k":
-        bound, greedy = 1 / g, 1 / (1 + value)
-    else:
-        bound, greedy = keep / (g - 1 + keep), keep
+    bound = group_size_share(g, keep, submodular=kind == "k")
+    greedy = 1.0 if g <= 1 else 1 / (1 + value) if kind == "k" else keep
     uses_curvature = g > 1 and (kind == "c" or not baits_survive)
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
     needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
-    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE)
+    in_coq = f"; in Coq {IN_COQ[kind] if g > 1 else 'ratt_optimal'} (complete graphs)" if baits_survive else ""
+    proof = f"group_size_bound{in_coq}"
+    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
+
+
+def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:
+    """The formula of :func:`group_size_bound` for ``kept = 1-k`` or ``1-c``: a float, or exactly for a rational."""
+    one = kept**0
+    return one if g <= 1 else one / g if submodular else kept / (g - 1 + kept)
 
 
 def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int:
     """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
-    The smallest such number on complete graphs without protected links (integer partitions) and for up to 14 robots
+    The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
     on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
     largest group small and one that makes the most seeing robots few: the number returned is achievable, and a larger
     one only weakens the guarantee, as a spent ``budget`` does.
@@ -85,7 +94,7 @@ def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int
         return forced_group_size(problem.n_robots, threat.n_blinded, threat.alpha_c)
     blinded, graph = strongest_robots(problem), problem.communication
     cuts_only = Threat(graph, 0, threat.alpha_c, protected_links=threat.protected_links)
-    if problem.n_robots <= LARGEST_LATTICE:
+    if problem.n_robots <= LARGEST_EXACT:
         seeing = sum(1 << i for i in range(problem.n_robots) if i not in blinded)
         counts = np.bitwise_count(np.arange(2**problem.n_robots) & seeing).astype(np.float64)
         test = ThresholdTest(cuts_only, counts)

@@ -8,7 +8,8 @@ end is then used. The curvature must be taken over a domain that holds every set
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol, Self, runtime_checkable
+from fractions import Fraction
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
@@ -37,16 +38,19 @@ class HasUpper(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Guarantee(float):
-    """A share of the optimum that is guaranteed, with what it needs and where it comes from.
+    """A share of the optimum that is guaranteed, with what it needs, where it comes from and where it is proved.
 
-    A number wherever one is wanted: equal, as numbers are, to what has its ``value``.
+    ``proof`` : the function of this library whose documentation has the proof, and the theorem in ``formal/`` where
+    there is one; empty where the source has to be believed. A number wherever one is wanted: equal, as numbers are, to
+    what has its ``value``.
     """
 
     value: float
     hypotheses: tuple[str, ...]
     source: str
+    proof: str = ""
 
-    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str) -> Self:  # noqa: ARG004  (see the fields)
+    def __new__(cls, value: float, hypotheses: tuple[str, ...], source: str, proof: str = "") -> Self:  # noqa: ARG004  (fields)
         """Make the number; the fields follow."""
         return super().__new__(cls, value)
 
@@ -54,8 +58,8 @@ class Guarantee(float):
         object.__setattr__(self, "value", float(self.value))
 
     # Copies are made by ``__new__``, which needs all fields.
-    def __getnewargs__(self) -> tuple[float, tuple[str, ...], str]:  # type: ignore[override]
-        return self.value, self.hypotheses, self.source
+    def __getnewargs__(self) -> tuple[float, tuple[str, ...], str, str]:  # type: ignore[override]
+        return self.value, self.hypotheses, self.source, self.proof
 
     __str__ = float.__repr__
 
@@ -64,10 +68,25 @@ class Guarantee(float):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
-        return {"value": self.value, "hypotheses": list(self.hypotheses), "source": self.source}
+        return {
+            "value": self.value,
+            "hypotheses": list(self.hypotheses),
+            "source": self.source,
+            "proof": self.proof,
+        }
+
+
+IN_COQ = {"k": "ratt_submodular", "c": "ratt_non_decreasing"}
+
+
+def _by_pattern_free(kind: str) -> str:
+    """Where bounds are proved that are no larger than the pattern-free ones."""
+    return f"pattern_free_bound; in Coq {IN_COQ[kind]}"
 
 
 Curvatures = float | HasUpper | None
+Share = TypeVar("Share", float, Fraction)
+"""A formula's number, in floating point or exact."""
 
 
 def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, all_bait: bool = False) -> Guarantee:
@@ -82,7 +101,8 @@ def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None,
     ------
     InputError : neither or both curvatures, one outside [0, 1], or a negative ``alpha_cs``.
 
-    Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof is by patterns and leaves some out.
+    Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof there has gaps (``docs/audit.md``);
+    :func:`pattern_free_bound` is at least as large, and proved.
     """
     alpha_cs = check_integer("alpha_cs", alpha_cs, low=0)
     kind, value = one_curvature(k, c)
@@ -91,7 +111,7 @@ def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None,
         bound = keep if all_bait else min(keep / (1 + value), keep / max(alpha_cs, 1))
     else:
         bound = keep**2 if all_bait else min(keep**3, keep**2 / max(alpha_cs, 1))
-    return Guarantee(bound, _needs(kind, "RATT's plan"), "ratt.tex, Theorem 1")
+    return Guarantee(bound, _needs(kind, "RATT's plan"), "ratt.tex, Theorem 1", _by_pattern_free(kind))
 
 
 def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -104,9 +124,8 @@ def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
     Source: ratt.tex, Remark 1.
     """
     kind, value = one_curvature(k, c)
-    return Guarantee(
-        1 - value if kind == "k" else (1 - value) ** 2, _needs(kind, "the myopic plan"), "ratt.tex, Remark 1"
-    )
+    bound = 1 - value if kind == "k" else (1 - value) ** 2
+    return Guarantee(bound, _needs(kind, "the myopic plan"), "ratt.tex, Remark 1", _by_pattern_free(kind))
 
 
 def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -121,7 +140,7 @@ def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
     kind, value = one_curvature(k, c)
     bound = (1 - value) / (1 + value) if kind == "k" else (1 - value) ** 3
     needs = (*_needs(kind, "RATT's plan"), "no link attacks (alpha_c = 0)")
-    return Guarantee(bound, needs, "Tzoumas et al. 2018, Theorem 1")
+    return Guarantee(bound, needs, "Tzoumas et al. 2018, Theorem 1", _by_pattern_free(kind))
 
 
 def pattern_free_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -151,9 +170,8 @@ def pattern_free_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
     """
     kind, value = one_curvature(k, c)
     bound = 1 - value if kind == "k" else (1 - value) ** 2
-    return Guarantee(
-        bound, _needs(kind, "each robot is bait or chosen greedily"), "pattern-free bound (proof in its docstring)"
-    )
+    needs = _needs(kind, "each robot is bait or chosen greedily")
+    return Guarantee(bound, needs, "pattern-free bound (this library)", _by_pattern_free(kind))
 
 
 def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -180,7 +198,8 @@ def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = Non
         bound = (1 + (g - 1) * keep) / g
     else:
         bound = (1 + (g - 1) * keep) / (1 + (g - 1) / keep) if keep > 0 else float(g == 1)
-    return Guarantee(bound, _needs(kind, f"a group of {g} bait robots survives"), "all-bait group bound (this library)")
+    needs = _needs(kind, f"a group of {g} bait robots survives")
+    return Guarantee(bound, needs, "all-bait group bound (this library)", "all_bait_group_bound")
 
 
 def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:

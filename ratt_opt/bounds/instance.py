@@ -41,14 +41,14 @@ def instance_bound(
 ) -> Guarantee:
     """Share of the optimum that a plan keeps under the worst attack, from this plan's and the instance's own numbers.
 
-    The larger of two. *By marginals.* Let ``u`` be the plan, ``o`` any plan, and put the robots in any order. For
-    every set ``S`` of robots, ``u_S`` is built robot by robot in that order, each adding at least ``l_i``, the smallest
-    marginal of ``u_i`` over sets of elements that the plan has before ``i`` (submodular: the marginal on top of all of
-    them). And ``o_S`` is built from marginals of at most ``m_i``, the largest marginal of any element of robot ``i``
-    over feasible sets (submodular: its value alone). So ``phi(u_S) >= sum_S l_i >= min_i (l_i / m_i) phi(o_S)``, for
-    every ``S``, hence for the best group of every outcome and after the worst attack. The order that makes the smallest
-    ratio largest puts last, again and again, the robot with the largest ratio among those left: leaving robots out can
-    only raise the others' ``l``.
+    Proof, of the larger of two. *By marginals.* Let ``u`` be the plan, ``o`` any plan, and put the robots in any
+    order. For every set ``S`` of robots, ``u_S`` is built robot by robot in that order, each adding at least ``l_i``,
+    the smallest marginal of ``u_i`` over sets of elements that the plan has before ``i`` (submodular: the marginal on
+    top of all of them). And ``o_S`` is built from marginals of at most ``m_i``, the largest marginal of any element of
+    robot ``i`` over feasible sets (submodular: its value alone). So ``phi(u_S) >= sum_S l_i >= min_i (l_i / m_i)
+    phi(o_S)``, for every ``S``, hence for the best group of every outcome and after the worst attack. The order that
+    makes the smallest ratio largest puts last, again and again, the robot with the largest ratio among those left:
+    leaving robots out can only raise the others' ``l``.
 
     *By group size* (:func:`group_size_bound` with the numbers themselves). Some robot of the ``alpha_s + 1`` largest
     ``phi(u_i)`` sees after every attack, so the plan keeps the smallest of these. And the attack that blinds the
@@ -91,7 +91,7 @@ def instance_bound(
     if np.isfinite(largest).all():
         value = max(value, _by_group_size(problem, plan, largest, own))
     needs = (SUBMODULAR if k else NON_DECREASING, "this instance and this plan")
-    return Guarantee(min(max(value, 0.0), 1.0), needs, "this instance's marginals and groups (proof in its docstring)")
+    return Guarantee(min(max(value, 0.0), 1.0), needs, "this instance's marginals and groups", "instance_bound")
 
 
 def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget: Budget) -> float:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_integer
-from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, one_curvature
+from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
 from ratt_opt.graph.survivor_sizes import iterate_non_dominated_sizes
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
-__all__ = ["largest_survivor_group", "survivor_bound"]
+__all__ = ["largest_survivor_group", "survivor_bound", "survivor_share"]
 
-SOURCE = "survivor bound (proof in its docstring)"
+SOURCE = "survivor bound (this library)"
 
 
 def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -56,19 +56,24 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
     Source: this library. With ``alpha_c = 0 < alpha_s`` the second is RATT's exact worst ratio where
     ``s - 1 <= min(alpha_s, s) (1 + 1/t)`` and no other (``docs/ratios.md``); the first is for ``s = 2``.
     """
-    s = max(check_integer("size", size, low=0), 1)
+    size = check_integer("size", size, low=0)
     kind, value = one_curvature(k, c)
-    t = 1 - value
-    rest = s - 1
-    non_decreasing = t * (1 + rest * t) / (t + rest) if rest else 1.0
-    bound = max(t, (1 + rest * t**2) / s) if kind == "k" else non_decreasing
+    bound = survivor_share(size, 1 - value, submodular=kind == "k")
     needs = (
         SUBMODULAR if kind == "k" else NON_DECREASING,
         f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
         f"no group of more than {size} seeing robots",
         "RATT's plan",
     )
-    return Guarantee(bound, needs, SOURCE)
+    return Guarantee(bound, needs, SOURCE, "survivor_bound")
+
+
+def survivor_share(size: int, kept: Share, *, submodular: bool) -> Share:
+    """The formula of :func:`survivor_bound` for ``kept = 1-k`` or ``1-c``: a float, or exactly for a rational."""
+    rest = max(size - 1, 0)
+    if submodular:
+        return max(kept, (1 + rest * kept**2) / (rest + 1))
+    return kept * (1 + rest * kept) / (kept + rest) if rest else kept**0
 
 
 def largest_survivor_group(problem: Problem) -> int:

@@ -54,7 +54,7 @@ def check_extracted(
     Raises
     ------
     ProofError : it refuses the certificate.
-    FileFormatError : it reads no such certificate (log-det, for one, which its proof does not cover).
+    FileFormatError : it reads no such certificate.
     UndecidedError : it did not end within the time limit.
     InputError : there is no such program, or what runs is another one.
     """

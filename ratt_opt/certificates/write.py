@@ -19,6 +19,7 @@ from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick
 from ratt_opt.errors import InputError, ProofError, UndecidedError
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
 
@@ -126,7 +127,7 @@ def certify_if_possible(
 
     Raises
     ------
-    ProofError : the result's proof has a fault.
+    ProofError : the result's proof has a fault. One that is not decided within the verifier's limits is a reason.
     """
     if path is None:
         return Certification(why_not="not asked for")
@@ -136,9 +137,9 @@ def certify_if_possible(
         return Certification(why_not="the search stopped before it proved a bound")
     try:
         return Certification(certificate=certify(problem, result, path, budget=budget))
-    except (UndecidedError, InputError, MemoryError) as error:
-        why = {UndecidedError: "not enough time", MemoryError: "not enough memory"}.get(type(error), str(error))
-        return Certification(why_not=f"could not be made: {why}", final=False)
+    except (InputError, UndecidedError, MemoryError) as error:
+        reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
+        return Certification(why_not=f"could not be made: {reason}", final=False)
 
 
 def certify(
@@ -179,6 +180,7 @@ def certify(
         )
 
 
+@Step("certificate, written and checked")
 def write_certificate(
     problem: Problem,
     elements: IntArray,

@@ -1,9 +1,9 @@
 """The command line ``ratt-opt``: parse, call, print.
 
 Open ``program.py`` first: the list of commands, exit codes, errors in one line. A command stands with its kin:
-``planning.py`` (demo, bound), ``scenarios.py`` (new, schema), ``attacking.py`` (attack), ``proofs.py`` (verify, audit).
-``options.py`` has the options that several commands share, ``terminal.py`` where text goes; ``interrupts.py`` and
-``faults.py`` are the last line of defence.
+``planning.py`` (demo, bound), ``scenarios.py`` (new, schema), ``attacking.py`` (attack), ``tracking.py`` (track),
+``proofs.py`` (verify, audit). ``options.py`` has the options that several commands share, ``terminal.py`` where text
+goes; ``interrupts.py`` and ``faults.py`` are the last line of defence.
 """
 
 import os
@@ -20,6 +20,7 @@ def main() -> None:
     try:
         from ratt_opt.cli.interrupts import ignore_interrupts
 
+        _hold_streams()
         code = run(sys.argv[1:])
         ignore_interrupts()
     except KeyboardInterrupt:  # outside of the command's own guards: nothing has begun, or all is done
@@ -35,22 +36,33 @@ def main() -> None:
     sys.exit(code)
 
 
+def _hold_streams() -> None:
+    """Fill the places of closed standard streams: a result's file opened there would get what libraries print."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+
+
 def run(arguments: list[str]) -> int:
     """Run one command line and return its exit code; every error is one line on standard error."""
     from ratt_opt.cli.interrupts import Interrupts
 
+    fault: Exception | None = None
     with Interrupts() as interrupts:
         try:
+            from ratt_opt._cache import provide_cache
             from ratt_opt.cli.program import run_program
 
+            provide_cache()
             return run_program(arguments)
-        except BaseException as error:
-            from ratt_opt.cli.faults import keep_traceback
-            from ratt_opt.cli.terminal import fail
-
-            if isinstance(error, (SystemExit, GeneratorExit)):
-                raise
+        except KeyboardInterrupt:
+            pass
+        except Exception as error:  # noqa: BLE001  (the last line of defence)
             # Compiled code and imports turn an interrupt into errors of their own.
-            if isinstance(error, KeyboardInterrupt) or interrupts.happened:
-                return fail("interrupted", INTERRUPTED)
-            return fail(keep_traceback(error, arguments), FAULT)
+            fault = None if interrupts.happened else error
+        from ratt_opt.cli.faults import keep_traceback
+        from ratt_opt.cli.terminal import fail
+
+        return fail("interrupted", INTERRUPTED) if fault is None else fail(keep_traceback(fault, arguments), FAULT)

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, ObjectiveOption
-from ratt_opt.cli.terminal import print_json, print_tables, progress
+from ratt_opt.cli.terminal import print_json, print_tables
 from ratt_opt.errors import InputError
 
 __all__ = ["attack"]
@@ -40,13 +40,9 @@ def attack(
         raise InputError("--below", "must be a finite number", below)
     problem = load_input(file).problem(objective)
     elements = load_plan(plan, problem)
-    with progress() as tell:
-        tell("attacking")
-        results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
-        if rank or below is not None:
-            tell("what to protect")
-        critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else None
-        budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
+    results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
+    critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else None
+    budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
     if as_json:
         print_json(attack_document(objective, elements, results, critical, budgets))
     else:

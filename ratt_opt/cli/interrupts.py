@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 __all__ = ["Interrupts", "ignore_interrupts"]
 
 AGAIN_AFTER = 0.01
-"""Seconds until a dropped interrupt comes again: the destructor or callback that dropped it has ended by then."""
+"""Seconds until a dropped interrupt comes again, the destructor or callback that dropped it having ended by then; and
+again, until it is met: one that comes just before the program waits for something does not end the waiting."""
 
 
 class Interrupts:
@@ -27,7 +28,7 @@ class Interrupts:
         self.happened = False
         self._before: Any = None
         self._hook: Any = None
-        self._again: threading.Timer | None = None
+        self._met = threading.Event()
 
     def __enter__(self) -> Self:
         main_thread = threading.current_thread() is threading.main_thread()
@@ -37,33 +38,30 @@ class Interrupts:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._again is not None:
-            self._again.cancel()
+        self._met.set()
         sys.unraisablehook = self._hook
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:
         self.happened = True
+        self._met.set()
         signal.default_int_handler(number, frame)
 
     def _dropped(self, what: Any) -> None:
         if issubclass(what.exc_type, KeyboardInterrupt):
             self.happened = True
             # Raised from here it would be dropped again.
-            self._again = threading.Timer(AGAIN_AFTER, _interrupt_main)
-            self._again.daemon = True
-            self._again.start()
+            self._met.clear()
+            threading.Thread(target=self._again, daemon=True).start()
         elif not self.happened:
             self._hook(what)
 
-
-def _interrupt_main() -> None:
-    """Send the main thread an interrupt that also ends its waiting, unless the process would end by it."""
-    main = threading.main_thread().ident
-    if callable(signal.getsignal(signal.SIGINT)) and main is not None:
+    def _again(self) -> None:
+        """Interrupt the main thread until it has met that, unless the process would end by it."""
         send = getattr(signal, "pthread_kill", lambda _, number: signal.raise_signal(number))
-        send(main, signal.SIGINT)
+        while not self._met.wait(AGAIN_AFTER) and signal.getsignal(signal.SIGINT) == self._interrupt:
+            send(threading.main_thread().ident, signal.SIGINT)
 
 
 def ignore_interrupts() -> None:

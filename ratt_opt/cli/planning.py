@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, progress
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import ProofError, printable
+from ratt_opt.progress import Step
 
 if TYPE_CHECKING:
     from ratt_opt.main_job.result import BoundReport
@@ -73,15 +74,14 @@ def _bound(
     from ratt_opt.report.write import FILES, write_report
 
     folder = output_directory(out, PROOF, *FILES)
-    with progress() as tell:
-        report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, progress=tell)
-        wanted = certificate and not report.interrupted
-        tell("report and figure")
+    report = main_job(source, objective=objective, time_limit=time_limit, gap=gap)
+    wanted = certificate and not report.interrupted
+    with Step("report and figure"):
         files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)
-        if wanted:
-            tell("certificate")
+    if wanted:
+        with Step("certificate"):
             report = _certified(report, folder)
-            files += [proof.path] if (proof := report.certificate.certificate) else []
+        files += [proof.path] if (proof := report.certificate.certificate) else []
     if report.certificate.certificate is None and report.certificate.final and (folder / PROOF).exists():
         (folder / PROOF).replace(folder / EARLIER_PROOF)  # it is not about this report
     if as_json:

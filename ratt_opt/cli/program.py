@@ -18,6 +18,7 @@ from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
 from ratt_opt.cli.scenarios import new, schema
 from ratt_opt.cli.terminal import OutputError, WorkInterrupted, encode_anything, fail, flush, print_lines
+from ratt_opt.cli.tracking import track
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 
 __all__ = ["app", "run_program"]
@@ -40,7 +41,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for command in (demo, new, bound, attack, verify, audit, schema):
+for command in (demo, new, bound, attack, track, verify, audit, schema):
     app.command()(command)
 
 # Typer's own usage errors (unknown option, missing value, ...) share this base; typer does not export it.
@@ -60,8 +61,10 @@ def run_program(arguments: list[str]) -> int:
     Everything else is raised.
     """
     encode_anything()
+    if word := next((word for word in arguments if "\0" in word), None):  # no path can; the system's words never do
+        return fail(f"a word must not hold a null character; got {word}", BAD_INPUT)
     try:
-        code = app(arguments, standalone_mode=False)
+        code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
         flush()
     except typer.Abort:
         raise KeyboardInterrupt from None

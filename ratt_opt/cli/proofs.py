@@ -8,8 +8,9 @@ import typer
 
 from ratt_opt.certificates.verifier.work import SECONDS
 from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, progress
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import printable
+from ratt_opt.progress import Step
 
 __all__ = ["audit", "verify"]
 
@@ -50,8 +51,9 @@ def verify(
         from ratt_opt.scenario.files import load_input
 
         expected = same_problem(load_input(problem), objective)
-    found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
-    second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
+    with Step("checking the certificate"):
+        found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
+        second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     if as_json:
         checked = {} if second is None else {"verified": asdict(second)}
         print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **checked})
@@ -74,8 +76,7 @@ def audit(
     from ratt_opt.audit.ledger import run_audit
     from ratt_opt.report.tables import audit_table
 
-    with progress() as tell:
-        ledger = run_audit(out, quick=quick, progress=lambda done, total, name: tell(f"{done + 1}/{total} {name}"))
+    ledger = run_audit(out, quick=quick)
     files = [str(out / name) for name in ("audit.json", "audit.html", "audit.md")]
     if as_json:
         kept = {name: value for name, value in ledger.document().items() if name in SUMMARY}

@@ -1,4 +1,4 @@
-"""Where text goes: results to standard output, progress to standard error; what users wrote is text, never markup."""
+"""Where text goes: results to standard output, errors to standard error; what users wrote is text, never markup."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ratt_opt.errors import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
     from rich.console import RenderableType
 
@@ -24,7 +24,6 @@ __all__ = [
     "print_json",
     "print_lines",
     "print_tables",
-    "progress",
 ]
 
 
@@ -84,19 +83,6 @@ def abandon_output() -> None:
         if stream is not None:
             with suppress(OSError, ValueError):
                 stream.flush()
-
-
-@contextmanager
-def progress() -> Iterator[Callable[[str], None]]:
-    """A spinner with the current line on a terminal, plain lines elsewhere, nothing where nobody listens."""
-    from rich.console import Console
-    from rich.text import Text
-
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield lambda text: _complain(printable(text) if text == text.strip() else f"  {printable(text)}")
-        return
-    with Console(stderr=True).status(Text("")) as status:
-        yield lambda text: status.update(Text(printable(text)))
 
 
 @contextmanager

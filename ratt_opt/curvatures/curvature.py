@@ -26,6 +26,7 @@ from ratt_opt.curvatures.marginals import (
 from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
 from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.base import TableFunction, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import Metered
@@ -146,6 +147,7 @@ def curvature(
     return curvature_over(domain_of(f, owners, plan), total=False, gap=check_number("gap", gap, low=0), budget=inner)
 
 
+@Step("curvature")
 def curvature_over(domain: Domain, *, total: bool, gap: float, budget: Budget) -> Curvature:
     """The total curvature, or the curvature, over a domain."""
     if total:

@@ -22,6 +22,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.curvatures.curvature import ENUMERATION_SHARE, GAP, SECONDS, curvature_over
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.stopping import Stop
 
@@ -71,6 +72,7 @@ class GeneralisedCurvature:
     stop: Stop
 
 
+@Step("submodularity ratio")
 def submodularity_ratio(
     f: SetFunction,
     owners: ArrayLike | None = None,
@@ -116,6 +118,7 @@ def submodularity_ratio(
     return _ratio(lower, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
+@Step("generalised curvature")
 def generalised_curvature(
     f: SetFunction,
     owners: ArrayLike | None = None,

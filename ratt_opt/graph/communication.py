@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import networkx as nx
+import numpy as np
 
 from ratt_opt.errors import InputError
 
@@ -57,13 +58,14 @@ class CommunicationGraph:
         """
         if not isinstance(graph, nx.Graph) or graph.is_directed() or graph.is_multigraph():
             raise InputError("graph", "must be an undirected networkx.Graph", type(graph).__name__)
-        if set(graph.nodes) != set(range(n_robots)):
+        if set(graph.nodes) != set(range(n_robots)) or any(isinstance(i, (bool, np.bool_)) for i in graph.nodes):
             nodes = sorted(map(repr, graph.nodes))
             raise InputError("graph", f"must have the nodes 0..{n_robots - 1}", f"[{', '.join(nodes)}]")
         loops = list(nx.selfloop_edges(graph))
         if loops:
             raise InputError("graph", "must have no self-loop", loops[0])
-        return cls(n_robots, frozenset((min(i, j), max(i, j)) for i, j in graph.edges))
+        # Nodes equal to integers may be of another type, such as NumPy's.
+        return cls(n_robots, frozenset((int(min(i, j)), int(max(i, j))) for i, j in graph.edges))
 
     def groups(self, cut: Iterable[Link] = ()) -> tuple[frozenset[int], ...]:
         """Connected components left when the links of ``cut`` are gone, by lowest robot."""

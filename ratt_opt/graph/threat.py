@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ratt_opt._validation import check_integer
+from ratt_opt._validation import check_distinct, check_integer, check_link
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,8 +36,9 @@ class Threat:
         set_field(self, "alpha_s", check_integer("alpha_s", self.alpha_s, low=0, high=n_robots))
         set_field(self, "alpha_c", check_integer("alpha_c", self.alpha_c, low=0, high=len(links)))
         robots = (check_integer("protected robot", i, low=0, high=n_robots - 1) for i in self.protected_robots)
-        set_field(self, "protected_robots", frozenset(robots))
-        ordered = frozenset((min(int(i), int(j)), max(int(i), int(j))) for i, j in self.protected_links)
+        set_field(self, "protected_robots", check_distinct("protected robot", robots))
+        pairs = (check_link("protected link", link) for link in self.protected_links)
+        ordered = check_distinct("protected link", ((min(i, j), max(i, j)) for i, j in pairs))
         for link in sorted(ordered - links):
             raise InputError("protected link", "must be a link of the graph", link)
         set_field(self, "protected_links", ordered)

@@ -13,12 +13,13 @@ from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
+from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
-from ratt_opt.errors import InputError
+from ratt_opt.errors import InputError, ProofError
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
 
@@ -42,6 +44,7 @@ class Steps:
     """``tell`` : called with one line of text, or ``None``; ``seconds`` : wall time of each step that has ended."""
 
     tell: Callable[[str], None] | None
+    shown: Step = field(default_factory=lambda: Step("planning"))
     seconds: dict[str, float] = field(default_factory=dict)
     _last_line: float = -SECONDS_BETWEEN_LINES
 
@@ -50,14 +53,17 @@ class Steps:
         """Tell that a step begins, and keep how long it takes."""
         self._say(step)
         began = monotonic()
-        yield
+        with Step(step) as self.shown:
+            yield
         self.seconds[step] = monotonic() - began
 
     def search_line(self, nodes: int, lower: float, upper: float) -> None:
         """Tell where a search stands, unless that was told just now."""
         if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
             self._last_line = monotonic()
-            self._say(f"  {nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}")
+            line = f"{nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}"
+            self.shown.say(line)
+            self._say(f"  {line}")
 
     def _say(self, line: str) -> None:
         if self.tell is not None:
@@ -115,7 +121,7 @@ def bound(
     Raises
     ------
     InputError : an argument breaks its rule. A certificate that cannot be written is a reason in the report.
-    ProofError : the verifier finds a fault in the search's own proof.
+    ProofError : the verifier finds a fault in the search's own proof; its ``report`` holds what was found.
     """
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
@@ -143,8 +149,8 @@ def bound(
         guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
         interrupted = budget.stop() is Stop.INTERRUPTED
-        proof = INTERRUPTED if interrupted else certify_if_possible(problem, optimum, certificate, whole)
-    return BoundReport(
+        proof, failure = (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate, whole)
+    report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
         ratt=robust,
@@ -163,6 +169,20 @@ def bound(
         seeds={"random": RANDOM_SEED},
         interrupted=interrupted,
     )
+    if failure is not None:
+        failure.report = report
+        raise failure
+    return report
+
+
+def _certified(
+    problem: Problem, optimum: MaxMinResult, path: str | Path | None, budget: Budget
+) -> tuple[Certification, ProofError | None]:
+    """The certificate or why there is none, and the fault that the verifier found in our own proof."""
+    try:
+        return certify_if_possible(problem, optimum, path, budget), None
+    except ProofError as failure:
+        return Certification(why_not=f"the proof has a fault: {failure}", final=False), failure
 
 
 def _kept(budget: Budget, step: Callable[[], T]) -> T:

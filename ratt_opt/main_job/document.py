@@ -62,6 +62,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
         "certified_ratio": _number(report.certified_ratio),
         "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
         "hypotheses": {name: list(value.hypotheses) for name, value in report.guarantees.items()},
+        "proofs": {name: value.proof for name, value in report.guarantees.items()},
         "inapplicable": dict(report.inapplicable),
         "guaranteed_share": report.guaranteed_share,
         "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
     Attacker = Callable[[Problem, IntArray, int], Attack | AttackResult]
+    OwnAttacker = Callable[[Problem, IntArray], Attack | AttackResult]
 
 __all__ = ["ATTACKERS", "attack_of", "attacker_called"]
 
@@ -32,7 +33,7 @@ ATTACKERS: dict[str, Attacker] = {
 """Called with the problem, the plan and a seed of the step."""
 
 
-def attacker_called(attacker: str | Callable[[Problem, IntArray], Attack | AttackResult]) -> Attacker:
+def attacker_called(attacker: str | OwnAttacker) -> Attacker:
     """The attacker of that name, or the given one, called with problem and plan.
 
     InputError : there is none of that name, or it cannot be called.

@@ -64,6 +64,11 @@ class Belief(ByValue, Shown):
         """Sum over the targets of the traces of their positions' covariances [m^2]."""
         return float(np.trace(self.position_covariance, axis1=1, axis2=2).sum())
 
+    def nees(self, truth: FloatArray) -> FloatArray:
+        """(M,) normalised estimation error squared of each target, for true states (M, d); expected: d."""
+        error = self.mean - truth
+        return np.asarray(np.einsum("mi,mij,mj->m", error, symmetric_inverse(self.covariance), error))
+
     def predicted(self, motion: TargetMotion, period: float, time: float) -> Belief:
         """One period later: ``F P F' + Q`` at the mean's motion."""
         step = motion.transition(self.mean, period)

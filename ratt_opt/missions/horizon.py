@@ -25,12 +25,14 @@ if TYPE_CHECKING:
     from ratt_opt.missions.models.targets import TargetMotion
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["OUTPUTS", "Sequences", "control_sequences", "joint_covariance", "output_matrix", "undominated"]
+__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covariance", "output_matrix", "undominated"]
 
 OUTPUTS = ("mean", "last")
 NOISE_FLOOR = 1e-6
 """Of a target's covariance: joint states whose steps determine each other (no process noise) get that much noise
 a step, so that their prior is invertible. It moves values by that share."""
+FEW = 4
+"""Matrices compared at once; of more, most are compared in vain."""
 MOST_SEQUENCES = 20_000
 """Of one robot: twelve controls make 1,728 in three steps and 20,736 in four, whose matrices would take gigabytes."""
 
@@ -66,6 +68,17 @@ def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motio
     for h in range(horizon):
         path.append(motion(path[-1], sequences[:, h], scenario.sampling_period))
     return Sequences(readonly(owners), readonly(sequences), readonly(np.stack(path[1:], axis=1)))
+
+
+def extended(scenario: Scenario, sequences: Sequences, motion: RobotMotion) -> Sequences:
+    """Every sequence followed by every control of its robot, the new control fastest."""
+    counts = np.array([len(robot.controls) for robot in scenario.robots])[sequences.owner]
+    again = np.repeat(np.arange(len(sequences.owner)), counts)
+    added = np.concatenate([np.array(scenario.robots[i].controls) for i in sequences.owner])
+    last = motion(sequences.poses[again, -1], added, scenario.sampling_period)
+    controls = np.concatenate([sequences.controls[again], added[:, None]], axis=1)
+    poses = np.concatenate([sequences.poses[again], last[:, None]], axis=1)
+    return Sequences(readonly(sequences.owner[again]), readonly(controls), readonly(poses))
 
 
 def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:
@@ -125,14 +138,24 @@ def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dic
         for f in own:
             if f in by:
                 continue
-            a, b, c = entries[:, f : f + 1] - entries[:, own]
-            near = (a >= 0) & (c >= 0) & (a * c >= b * b * (1 - 1e-12))
-            for e in own[near.all(axis=1)]:
+            for e in _nearly_dominated(entries, int(f), own):
                 if e != f and e not in by and _dominates(entries[:, f], entries[:, e], first=bool(f < e)):
                     by[int(e)] = int(f)
     kept = np.array([e for e in range(len(owner)) if e not in by], dtype=np.int64)
     # What dominated an element may have been dropped later: by transitivity, so does what dominates it.
     return kept, {e: _last(by, f) for e, f in by.items()}
+
+
+def _nearly_dominated(entries: FloatArray, f: int, others: IntArray) -> IntArray:
+    """Those that element ``f`` may dominate, but for rounding; a few targets decide of nearly all that it does not."""
+    for start in range(0, entries.shape[2], FEW):
+        block = slice(start, start + FEW)
+        a, b, c = entries[:, f, None, block] - entries[:, others, block]
+        near = (a >= 0) & (c >= 0) & (a * c >= b * b * (1 - 1e-12))
+        others = others[near.all(axis=1)]
+        if len(others) == 1:
+            break
+    return others
 
 
 def _dominates(more: FloatArray, less: FloatArray, *, first: bool) -> bool:

@@ -31,9 +31,9 @@ class MaxMinPlanner:
     time_limit: float | None = None
     max_nodes: int | None = 30
 
-    def __call__(self, problem: Problem) -> MaxMinResult:
-        """Search until closed to the gap or out of limits."""
-        return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes)
+    def __call__(self, problem: Problem, start: IntArray | None = None) -> MaxMinResult:
+        """Search until closed to the gap or out of limits, from a plan ``start`` where one is known."""
+        return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes, start=start)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,4 +72,4 @@ def planner_called(planner: str | Planner) -> Planner:
 
 def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:
     """A planner's elements, checked. InputError : they are no plan of the problem."""
-    return problem.check_plan(getattr(plan, "elements", plan))
+    return problem.check_plan(plan if isinstance(plan, (np.ndarray, list, tuple)) else plan.elements)

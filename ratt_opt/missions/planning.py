@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt.missions.beam import beam_sequences
 from ratt_opt.missions.horizon import Sequences
 from ratt_opt.problem import Attack, Problem
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import Threatened, World
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Part", "TeamPlan", "plan_team"]
+__all__ = ["Part", "TeamPlan", "offered_sequences", "plan_team"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,28 +65,35 @@ class TeamPlan:
 
 def plan_team(world: World, memory: Memory, poses: FloatArray, step: int, threatened: Threatened) -> TeamPlan:
     """What the team can choose in a step, after everybody who is connected has told what it knows."""
-    offered, time = world.sequences(poses), step * world.period
+    time = step * world.period
     apart = world.communication(poses, threatened.standing).groups()
     memory = memory.shared(apart)
     beliefs = [memory.belief(min(group)) for group in apart]
     if all(belief is beliefs[0] or belief == beliefs[0] for belief in beliefs[1:]):
-        objective, sequences = world.objective(beliefs[0], offered, time)
+        objective, sequences = world.objective(beliefs[0], offered_sequences(world, beliefs[0], poses, time), time)
         problem = world.problem(objective, sequences.owner, poses, threatened)
         return TeamPlan(memory, sequences, problem, (Part(np.arange(problem.objective.n), problem),))
-    return _apart(world, memory, (poses, time, threatened), offered, list(zip(apart, beliefs, strict=True)))
+    return _apart(world, memory, (poses, time, threatened), list(zip(apart, beliefs, strict=True)))
+
+
+def offered_sequences(world: World, belief: Belief, poses: FloatArray, time: float) -> Sequences:
+    """All control sequences, or the beam of a belief."""
+    if world.model.beam is None or world.horizon == 1:
+        return world.sequences(poses)
+    return beam_sequences(world, belief, poses, time)
 
 
 def _apart(
     world: World,
     memory: Memory,
     now: tuple[FloatArray, float, Threatened],
-    offered: Sequences,
     groups: list[tuple[frozenset[int], Belief]],
 ) -> TeamPlan:
     """Each group plans with its own belief; the attacker's problem is that of the belief that knows most."""
     poses, time, threatened = now
     own, kept = [], []
     for group, belief in groups:
+        offered = offered_sequences(world, belief, poses, time)
         objective, sequences = world.objective(belief, offered.only(np.isin(offered.owner, sorted(group))), time)
         own.append(objective)
         kept.append(sequences)

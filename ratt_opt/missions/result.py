@@ -33,11 +33,11 @@ class GroupTrack(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MissionStep(ByValue):
-    """One step: ``poses`` (N, 3) after it, ``controls`` (N, 2) that led there, the ``attack`` in force, ``truth`` (M, d).
+    """One step: ``poses`` (N, 3) after it, ``controls`` (N, 2) that led there, the ``attack`` in force.
 
-    ``links`` : those that were not cut. ``groups`` : by the lowest robot; ``best`` : which of them is the team's, the one
-    with the smallest trace of position covariances (sharing the best group's belief only: the group that the
-    criterion values most). ``value`` : the criterion of the team's seeing robots.
+    ``truth`` : (M, d) states; ``links`` : those that were not cut; ``groups`` : by the lowest robot. ``best`` : which
+    of them is the team's, the one with the smallest trace of position covariances (sharing the best group's belief
+    only: the group that the criterion values most); ``value`` : the criterion of its seeing robots.
     """
 
     poses: FloatArray
@@ -115,11 +115,7 @@ class Mission(ByValue):
     @property
     def nees(self) -> FloatArray:
         """(T,) normalised estimation error squared, mean over the targets; ``d`` where the filter is consistent."""
-        found = []
-        for step in self.steps:
-            error = step.team.belief.mean - step.truth
-            found.append(np.einsum("mi,mij,mj->m", error, np.linalg.inv(step.team.belief.covariance), error).mean())
-        return readonly(np.array(found))
+        return readonly(np.array([step.team.belief.nees(step.truth).mean() for step in self.steps]))
 
     @property
     def nis(self) -> FloatArray:
@@ -132,8 +128,8 @@ class Mission(ByValue):
         from scipy.stats import chi2
 
         freedom = self.dimension * self.scenario.n_targets
-        low, high = chi2.ppf([(1 - level) / 2, (1 + level) / 2], freedom) / self.scenario.n_targets
-        return float(low), float(high)
+        low, high = (float(chi2.ppf(end, freedom)) for end in ((1 - level) / 2, (1 + level) / 2))
+        return low / self.scenario.n_targets, high / self.scenario.n_targets
 
     def nis_band(self, level: float = 0.95) -> FloatArray:
         """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN where none."""
@@ -173,9 +169,9 @@ class Mission(ByValue):
         return write_mission(self, directory)
 
     def animate(self, path: str | Path) -> Path:
-        """Write the animation: ``.gif``, or ``.html`` for a player that needs nothing else.
+        """Write the animation: ``.gif``, ``.html`` for a player that needs nothing else, ``.mcap`` for log viewers.
 
-        InputError : another ending, or the file cannot be written.
+        InputError : another ending, a library that is not installed, or the file cannot be written.
         """
         from ratt_opt.report.mission.write import write_animation
 

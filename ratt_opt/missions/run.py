@@ -6,6 +6,7 @@ mission is the same to the bit on every run, targets move alike under every plan
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from ratt_opt.missions.attackers import Attacker
+    from ratt_opt.missions.attackers import Attacker, OwnAttacker
     from ratt_opt.missions.planners import Planner
     from ratt_opt.missions.planning import TeamPlan
     from ratt_opt.missions.sensing import Innovation, Reading
@@ -48,7 +49,7 @@ def run_mission(
     *,
     steps: int,
     planner: str | Planner = "ratt",
-    attacker: str | Callable[..., object] = "worst",
+    attacker: str | OwnAttacker = "worst",
     attacks: str | AttackModel = "renewed",
     sharing: str = "best group",
     horizon: int = 1,
@@ -63,12 +64,12 @@ def run_mission(
     ----------
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
     steps : T >= 1
-    planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)`` that
-        returns a plan or its elements, such as :class:`MaxMinPlanner`
+    planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)``
+        that returns a plan or its elements, such as :class:`MaxMinPlanner`
     attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
         that returns an :class:`Attack`
-    attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or an
-        :class:`AttackModel`
+    attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or
+        an :class:`AttackModel`
     sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's), or each group keeps its
         own and they are merged without double counting when links return (``"all surviving"``). Then groups that
         standing failures keep apart plan for themselves, each against what of the budgets can hit it; and the attacker
@@ -94,9 +95,9 @@ def run_mission(
     world = World(scenario, model or MissionModel(), horizon)
     players = _Players(planner_called(planner), attacker_called(attacker), attack_model(attacks))
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
-    settings = {name: value if isinstance(value, str) else repr(value) for name, value in named.items()}
+    settings = {name: value if isinstance(value, str) else _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
-    log = Journal.open(journal, scenario, settings | {"model": repr(world.model)})
+    log = Journal.open(journal, scenario, settings | {"model": _described(world.model)})
     flight = _Flight(world, players, sharing, seed)
     for step in range(steps):
         flight.advance(step, log)
@@ -162,6 +163,8 @@ class _Flight:
         sensors, links = self.players.model.strikes(
             threatened, len(team.problem.communication.links), self._rng(step, STRIKE)
         )
+        if sensors == 0 and links == 0:
+            return standing
         problem = team.with_budgets(sensors, links)
         new = attack_of(self.players.attack(problem, elements, self._word(step, ATTACKER)), problem)
         return Attack(standing.sensing | new.sensing, standing.links | new.links)
@@ -214,13 +217,18 @@ class _Flight:
     ) -> tuple[Pieces, Innovation]:
         """A group's new pieces, linearised at what its ``robot`` predicts."""
         predicted = self.memory.belief(robot).predicted(self.world.motion, self.world.period, step * self.world.period)
-        return group_pieces(self.world, predicted, self.poses, readings, see)
+        return group_pieces(self.world, predicted, dict(enumerate(self.poses)), readings, see)
 
     def _rng(self, step: int, stream: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(step, stream)))
 
     def _word(self, step: int, stream: int) -> int:
         return int(np.random.SeedSequence(self.seed, spawn_key=(step, stream)).generate_state(1)[0])
+
+
+def _described(value: object) -> str:
+    """A value as text, the same in every process: without the addresses of functions and objects."""
+    return re.sub(r" at 0x[0-9a-f]+", "", repr(value))
 
 
 def _drawn(rng: np.random.Generator, covariance: FloatArray) -> FloatArray:

@@ -54,12 +54,18 @@ def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck:
 
 
 def group_pieces(
-    world: World, predicted: Belief, poses: FloatArray, readings: Mapping[int, Reading], robots: Collection[int]
+    world: World,
+    predicted: Belief,
+    poses: Mapping[int, FloatArray],
+    readings: Mapping[int, Reading],
+    robots: Collection[int],
 ) -> tuple[Pieces, Innovation]:
     """The pieces of a group's seeing ``robots`` (zero for others), and how surprising they were together.
 
     Every measurement is linearised at the predicted positions, as the plan does; with an iterated linearisation at the
     estimate that follows, again and again.
+
+    ``poses`` : robot by robot (3,), or (M, 3) where each target was measured from another pose.
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)
     members = sorted(robots)
@@ -97,15 +103,16 @@ def _linearise(
     """One robot's piece, linearised at the second belief of ``about``; the first is the prediction."""
     predicted, point, spread = about
     places = point.positions
+    pose = np.broadcast_to(pose, (len(places), 3))
     piece = _Piece(np.zeros((*places.shape, 2)), np.zeros(places.shape))
     usable = reading.seen & sensor.sees(pose, predicted.positions)
-    usable &= np.linalg.norm(places - pose[:2], axis=-1) > ON_TOP
+    usable &= np.linalg.norm(places - pose[:, :2], axis=-1) > ON_TOP
     j = np.flatnonzero(usable)
     if not len(j):
         return piece
-    slope = sensor.jacobian(pose, places[j])
-    weights = np.linalg.inv(sensor.noise_covariance(pose, places[j], None if spread is None else spread[j]))
-    surprise = sensor.surprise(reading.values[j], sensor.measure(pose, places[j]))
+    slope = sensor.jacobian(pose[j], places[j])
+    weights = np.linalg.inv(sensor.noise_covariance(pose[j], places[j], None if spread is None else spread[j]))
+    surprise = sensor.surprise(reading.values[j], sensor.measure(pose[j], places[j]))
     # As linear in the position: the surprise at the point of linearisation, plus the slope times that point.
     linear = surprise + (slope @ places[j][..., None])[..., 0]
     weighted = np.swapaxes(slope, -1, -2) @ weights

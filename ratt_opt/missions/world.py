@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["MissionModel", "Threatened", "World"]
+__all__ = ["Linearisation", "MissionModel", "Threatened", "World"]
 
 Linearisation = Literal["first order", "second order", "iterated"]
 
@@ -55,6 +55,7 @@ class MissionModel:
     output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
         a robot that has no other keeps the one that ends nearest to it.
+    beam : so many control sequences of each robot are planned with, those worth most alone; all where ``None``
     """
 
     motion: str | TargetMotion = "known velocity"
@@ -64,6 +65,7 @@ class MissionModel:
     objective: str = "trace"
     output: Literal["mean", "last"] = "mean"
     area: tuple[float, float, float, float] | None = None
+    beam: int | None = None
 
     def __post_init__(self) -> None:
         for name, known in (("linearisation", get_args(Linearisation)), ("output", OUTPUTS)):
@@ -72,6 +74,8 @@ class MissionModel:
         criterion_called(self.objective)
         if self.area is not None and not (self.area[0] < self.area[2] and self.area[1] < self.area[3]):
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
+        if self.beam is not None:
+            check_integer("beam", self.beam, low=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,5 +207,5 @@ class World:
             own = sequences.owner == i
             with np.errstate(divide="ignore", invalid="ignore"):  # on top of a target there is no bearing
                 information[own] = sensor.information(sequences.poses[own, h], points, spread)
-        usable = np.isfinite(information).all(axis=(-1, -2))
+        usable = np.asarray(np.isfinite(information).all(axis=(-1, -2)))
         return readonly(np.where(usable[..., None, None], information, 0.0))

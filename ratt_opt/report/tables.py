@@ -158,13 +158,14 @@ def verdict_text(given: Certification) -> str:
 
 
 def _guarantees(report: BoundReport) -> Table:
-    table = _table("what was guaranteed before planning", "guarantee", "value", "needs")
+    table = _table("what was guaranteed before planning", "guarantee", "value", "needs", "proved at")
     best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0
-        table.add_row(f"{name} *" if strongest else name, down(float(guarantee), 6), "; ".join(guarantee.hypotheses))
+        needs = "; ".join(guarantee.hypotheses)
+        table.add_row(f"{name} *" if strongest else name, down(float(guarantee), 6), needs, guarantee.proof)
     for name, why in report.inapplicable.items():
-        table.add_row(name, "none", f"does not apply: {why}")
+        table.add_row(name, "none", f"does not apply: {why}", "")
     table.caption = "; ".join(
         filter(None, ["* strongest that applies" if report.guaranteed_share else "", guarantee_text(report)])
     )

@@ -6,12 +6,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.problem_record import Link, ProblemRecord
-from ratt_opt.scenario.record import Number, Positive, Text, Whole
+from ratt_opt.scenario.record import Number, Positive, Text, Whole, plain
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -21,7 +21,7 @@ __all__ = ["InformationInput"]
 LARGEST_ENTRY = 1e100
 """Units are the user's, so far larger entries than a scenario's are accepted; products of two stay finite."""
 
-Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY)]
+Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY), BeforeValidator(plain)]
 Matrix = tuple[tuple[Entry, ...], ...]
 Place = tuple[Number, Number]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
@@ -105,7 +106,7 @@ class Scenario(ProblemRecord):
         self._check_sizes(sum(len(robot.controls) for robot in self.robots), 2)
         self._check_links()
         self._check_ranges()
-        self.problem()  # every rule of the matrices too: what loads can be planned
+        self._check_matrices()
         return self
 
     @property
@@ -187,6 +188,19 @@ class Scenario(ProblemRecord):
     @property
     def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         return self.prior, self.information, np.array([target.weight for target in self.targets])
+
+    def _check_matrices(self) -> None:
+        """Every rule of the matrices too, by the names that they have here: what loads can be planned."""
+        try:
+            self.problem()
+        except InputError as error:
+            about = [int(number) for number in re.findall(r"\d+", error.argument)]
+            if error.argument.startswith("prior["):
+                raise InputError(f"targets[{about[0]}].covariance: {error.argument}", error.rule, error.value) from None
+            if error.argument.startswith("information["):
+                where = f"sensor of robots[{self.robot[about[0]]}] for targets[{about[1]}].covariance"
+                raise InputError(where, error.rule, error.value) from None
+            raise
 
     def _check_ranges(self) -> None:
         apart = np.linalg.norm(self.predicted_poses[:, None, :2] - self.predicted_targets[None], axis=-1)

@@ -12,23 +12,23 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-__all__ = ["NonNegative", "Number", "Positive", "Record", "Text", "Whole", "first_fault"]
+__all__ = ["NonNegative", "Number", "Positive", "Record", "Text", "Whole", "first_fault", "plain"]
 
 LARGEST = 1e12
 """Physical quantities beyond this, or positive ones below its inverse, are refused: squares and
 products of a few of them stay far from overflow and underflow, so no later step can meet infinity."""
 
 
-def _plain(value: object) -> object:
+def plain(value: object) -> object:
     """A NumPy number or boolean as Python's own: the first counts as a number, the second does not."""
     return value.item() if isinstance(value, (np.number, np.bool_)) else value
 
 
-Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST), BeforeValidator(_plain)]
+Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST), BeforeValidator(plain)]
 """A number: no text, no boolean."""
-Positive = Annotated[float, Field(strict=True, ge=1 / LARGEST, le=LARGEST), BeforeValidator(_plain)]
-NonNegative = Annotated[float, Field(strict=True, ge=0, le=LARGEST), BeforeValidator(_plain)]
-Whole = Annotated[int, Field(strict=True, ge=0), BeforeValidator(_plain)]
+Positive = Annotated[float, Field(strict=True, ge=1 / LARGEST, le=LARGEST), BeforeValidator(plain)]
+NonNegative = Annotated[float, Field(strict=True, ge=0, le=LARGEST), BeforeValidator(plain)]
+Whole = Annotated[int, Field(strict=True, ge=0), BeforeValidator(plain)]
 
 
 def _printable(text: str) -> str:

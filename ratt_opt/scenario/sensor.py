@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
-from ratt_opt.scenario.record import NonNegative, Positive, Record
+from ratt_opt.scenario.record import NonNegative, Positive, Record, plain
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -38,7 +38,7 @@ class Sensor(Record):
     bearing_noise: Positive = 0.002
     bearing_noise_slope: NonNegative = 0.008
     max_range: Positive | None = None
-    field_of_view: Annotated[float, Field(strict=True, gt=0, le=2 * math.pi)] | None = None
+    field_of_view: Annotated[float, Field(strict=True, gt=0, le=2 * math.pi), BeforeValidator(plain)] | None = None
 
     def noise_variances(self, distance: FloatArray, bearing: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Variances of the range [m^2] and bearing [rad^2] errors; same shape as the arguments."""

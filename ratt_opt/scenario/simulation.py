@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt._validation import check_integer, readonly
+from ratt_opt._validation import check_distinct, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
 
@@ -74,7 +74,9 @@ def simulate_tracking(
     """
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
     check_integer("draws", draws, low=1)
-    group = sorted(check_integer("robot", i, low=0, high=scenario.n_robots - 1) for i in robots)
+    group = sorted(
+        check_distinct("robot", (check_integer("robot", i, low=0, high=scenario.n_robots - 1) for i in robots))
+    )
     poses = scenario.predicted_poses[_check_plan(elements, scenario.robot, scenario.n_robots)]
     predicted, prior = scenario.predicted_targets, scenario.prior
     truth = predicted + _correlated(rng.standard_normal((draws, *predicted.shape)), prior)

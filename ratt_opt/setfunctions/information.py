@@ -25,6 +25,13 @@ __all__ = ["InformationObjective", "packed", "symmetric_inverse"]
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
+LARGEST = 1e100
+"""Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
+WIDEST = 2e14
+"""Largest eigenvalue of an element's information times that of the prior. Sums of both hold sixteen digits, of which
+searches that exchange elements lose a few: beyond this nothing would be left of the prior."""
+DEEPEST = 0.01
+"""Largest size of a negative eigenvalue of the information times the prior's: some robots' must not outweigh it."""
 
 
 class InformationObjective(CriterionParts):
@@ -55,7 +62,7 @@ class InformationObjective(CriterionParts):
 
     def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
         self.prior: FloatArray = readonly(_check_prior(prior))
-        self.information: FloatArray = readonly(_check_information(information, self.n_targets, self.dimension))
+        self.information: FloatArray = readonly(_check_information(information, self.prior))
         self.weights: FloatArray = readonly(_check_weights(weights, self.n_targets))
         self.prior_information: FloatArray = readonly(symmetric_inverse(self.prior))
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
@@ -96,7 +103,7 @@ class InformationObjective(CriterionParts):
     def with_information(self, information: ArrayLike) -> Self:
         """The same criterion of other elements: (E, M, d, d), checked."""
         other = copy(self)
-        other.information = readonly(_check_information(information, self.n_targets, self.dimension))
+        other.information = readonly(_check_information(information, self.prior))
         other.condition = readonly(other._condition())
         return other
 
@@ -152,6 +159,8 @@ def packed(matrices: FloatArray) -> list[Any]:
 
 def _check_symmetric(argument: str, matrices: FloatArray) -> FloatArray:
     """Return the symmetric part of matrices that are symmetric up to rounding."""
+    if np.abs(matrices).max() > LARGEST:
+        raise InputError(argument, f"must have entries of size at most {LARGEST:g}", float(np.abs(matrices).max()))
     transposed = np.swapaxes(matrices, -1, -2)
     defect = np.abs(matrices - transposed).max(axis=(-1, -2))
     bad = np.argwhere(defect > SYMMETRY_TOLERANCE * np.abs(matrices).max(axis=(-1, -2)))
@@ -172,11 +181,15 @@ def _check_prior(value: ArrayLike) -> FloatArray:
     for j, eigenvalues in enumerate(np.linalg.eigvalsh(prior)):
         if eigenvalues[0] <= np.finfo(np.float64).eps * abs(eigenvalues[-1]):
             raise InputError(f"prior[{j}]", "must be positive definite", f"smallest eigenvalue {eigenvalues[0]:.6g}")
+        if eigenvalues[0] < 1 / LARGEST:
+            rule = f"must have eigenvalues of at least {1 / LARGEST:g}"
+            raise InputError(f"prior[{j}]", rule, f"smallest eigenvalue {eigenvalues[0]:.6g}")
     return prior
 
 
-def _check_information(value: ArrayLike, targets: int, dimension: int) -> FloatArray:
-    """Return (E, M, d, d) matrices, symmetric positive semidefinite up to rounding."""
+def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
+    """Return (E, M, d, d) matrices, symmetric positive semidefinite up to rounding, that leave the prior its digits."""
+    targets, dimension = prior.shape[:2]
     information = check_finite("information", value, ndim=4)
     if information.shape[0] < 1:
         raise InputError("information", "must hold at least one element", f"shape {information.shape}")
@@ -184,13 +197,28 @@ def _check_information(value: ArrayLike, targets: int, dimension: int) -> FloatA
         rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
         raise InputError("information", rule, f"shape {information.shape}")
     information = _check_symmetric("information", information)
-    eigenvalues = np.linalg.eigvalsh(information)
+    eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
     bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
     if len(bad):
         e, j = bad[0].tolist()
         shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
         raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
+    _check_spread(eigenvalues, np.asarray(np.linalg.eigvalsh(prior)[:, -1]))
     return information
+
+
+def _check_spread(eigenvalues: FloatArray, largest: FloatArray) -> None:
+    """Refuse information, of (E, M, d) ``eigenvalues``, beside which a prior of (M,) ``largest`` variance is lost."""
+    high, low = eigenvalues[..., -1] * largest, -eigenvalues[..., 0] * largest
+    rules = (
+        (high, WIDEST, "must be at most {} times the inverse of prior[{}], which would lose its digits beside it"),
+        (low, DEEPEST, "must not be negative anywhere by more than {} times the inverse of prior[{}]"),
+    )
+    for sizes, limit, rule in rules:
+        bad = np.argwhere(sizes > limit)
+        if len(bad):
+            e, j = bad[0].tolist()
+            raise InputError(f"information[{e}, {j}]", rule.format(f"{limit:g}", j), f"{sizes[e, j]:.3g} times")
 
 
 def _check_weights(value: ArrayLike | None, targets: int) -> FloatArray:
@@ -202,4 +230,7 @@ def _check_weights(value: ArrayLike | None, targets: int) -> FloatArray:
         raise InputError("weights", f"must have shape ({targets},) to match prior", f"shape {weights.shape}")
     if (weights <= 0).any():
         raise InputError("weights", "must be positive", float(weights.min()))
+    if weights.min() < 1 / LARGEST or weights.max() > LARGEST:
+        shown = f"{weights.min():.6g} to {weights.max():.6g}"
+        raise InputError("weights", f"must be in [{1 / LARGEST:g}, {LARGEST:g}]", shown)
     return weights

@@ -14,6 +14,7 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.base import checked_values, finite_values
 from ratt_opt.setfunctions.metered import table_within
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
@@ -98,6 +99,7 @@ def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> V
     return Violation(rule="normalised", a=(), b=(), slack=-abs(value), tolerance=tolerance)
 
 
+@Step("looking for a negative value")
 def find_negativity(
     f: SetFunction,
     *,
@@ -115,6 +117,7 @@ def find_negativity(
     return asked.sampled() if values is None else asked.witness((int(values.argmin()), 0), values)
 
 
+@Step("looking for a falling value")
 def find_monotonicity_violation(
     f: SetFunction,
     *,
@@ -155,6 +158,7 @@ def find_monotonicity_violation(
     return asked.witness((base, 1 << x), values)
 
 
+@Step("looking for a violation of submodularity")
 def find_submodularity_violation(
     f: SetFunction,
     *,
@@ -176,6 +180,7 @@ def find_submodularity_violation(
     return None if f.n > LARGEST_EXACT and f.is_submodular else _second_order(asked)
 
 
+@Step("looking for a violation of modularity")
 def find_modularity_violation(
     f: SetFunction,
     *,
@@ -194,6 +199,7 @@ def find_modularity_violation(
     return _second_order(_Question.of(f, "modular", tolerance, trials=trials, seed=seed, budget=own))
 
 
+@Step("looking for a violation of subadditivity")
 def find_subadditivity_violation(
     f: SetFunction,
     *,

@@ -11,6 +11,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import Metered
 from ratt_opt.solvers.result import MaxMinResult
@@ -27,6 +28,7 @@ LARGEST_SEARCH = 5_000_000
 """Most plans that are enumerated (12**6 is about 3 million)."""
 
 
+@Step("all plans")
 def exhaustive_optimum(
     problem: Problem,
     *,

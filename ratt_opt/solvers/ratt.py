@@ -13,6 +13,7 @@ from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.separable_groups import LARGEST_MASK
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["bait_and_greedy", "equivalent_sensing_attacks", "greedy", "myopic", "random_plan", "ratt"]
@@ -65,6 +66,7 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
     return replace(bait_and_greedy(problem, problem.alpha_s + known, budget), alpha_cs=known)
 
 
+@Step("planning")
 def bait_and_greedy(problem: Problem, alpha: int, budget: Budget | None = None) -> Plan:
     """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts."""
     single = problem.objective.singletons()

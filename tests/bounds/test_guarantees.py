@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import re
 from dataclasses import FrozenInstanceError, asdict, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -116,6 +118,32 @@ def test_extremes_of_the_formulas():
         assert bound(k=1.0) == bound(c=1) == 0
         assert bound(k=0.3).hypotheses
         assert bound(k=0.3).source
+
+
+def test_every_guarantee_points_at_a_proof():
+    """A function whose documentation has one, and the theorem of formal/ where it names one."""
+    theories = Path(__file__).parents[2] / "formal" / "theories"
+    coq = "\n".join(path.read_text(encoding="utf-8") for path in theories.glob("*.v"))
+    problem = ro.random_scenario(4, 3, alpha_s=1, alpha_c=0, seed=0).problem("trace")
+    c = ro.total_curvature(problem.objective, problem.robot)
+    bounds = [ro.instance_bound(problem, ro.ratt(problem).elements, c=c), ro.all_bait_group_bound(2, k=0.5)]
+    for g, given in ((1, {"c": c}), (2, {"c": c}), (2, {"k": 0.5})):
+        bounds += [ro.group_size_bound(g, **given), ro.survivor_bound(g, **given), ro.remark1_bound(**given)]
+        bounds += [*ro.all_guarantees(problem, 0, **given).values(), ro.theorem1_bound(2, **given)]
+    for bound in bounds:
+        function, _, theorem = bound.proof.partition("; in Coq ")
+        assert "Proof" in getattr(ro, function).__doc__
+        name = theorem.removesuffix(" (complete graphs)")
+        assert not theorem or re.search(rf"^(Theorem|Corollary) {name}\b", coq, re.MULTILINE)
+        assert bound.proof.startswith("pattern_free_bound") or function in {
+            "instance_bound",
+            "all_bait_group_bound",
+            "group_size_bound",
+            "survivor_bound",
+        }
+        if bound.proof.startswith("pattern_free_bound"):
+            name = "k" if "ratt_submodular" in theorem else "c"
+            assert bound <= ro.pattern_free_bound(**{name: 0.5 if name == "k" else c})
 
 
 def test_a_bracket_gives_its_conservative_end():

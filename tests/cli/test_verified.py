@@ -6,7 +6,6 @@ import stat
 import numpy as np
 import pytest
 
-from ratt_opt import LogDetObjective, Problem, certify, solve_maxmin
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.cli import run
 from tests.certificates.cases import certified
@@ -55,12 +54,12 @@ def test_the_real_checker_and_the_verifier_decide_together(document, code, monke
     assert code(document | {"version": 7}) == 2
 
 
-def test_log_det_is_said_not_to_be_covered(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("kind", ["logdet", "maxeig"])
+def test_every_criterion_is_covered(tmp_path, monkeypatch, kind):
     monkeypatch.setenv("RATT_CHECK", ratt_check())
-    problem = Problem(LogDetObjective([[[2.0]]], [[[[k]]] for k in (1.0, 2.0, 3.0, 4.0)]), [0, 0, 1, 1], None, 1, 0)
-    certify(problem, solve_maxmin(problem), tmp_path / "c.json")
-    assert run(["verify", str(tmp_path / "c.json"), "--verified"]) == 2
-    assert "must be a certificate that ratt-check reads" in capsys.readouterr().err
+    path = tmp_path / "c.json"
+    certified(random_problem(np.random.default_rng(8), 3, kind=kind, controls=2), path)
+    assert run(["verify", str(path), "--verified"]) == 0
 
 
 def test_without_the_program_there_is_one_line_and_no_verdict(document, code, monkeypatch, capsys, tmp_path):
@@ -80,7 +79,7 @@ def test_without_the_program_there_is_one_line_and_no_verdict(document, code, mo
         ('echo "0 $1: both ends proved"', 0, ""),
         ('echo "3 $1: only the upper end proved"; exit 3', 3, ""),
         ('echo "1 $1: not proved"; exit 1', 1, "ratt-check: not proved"),
-        ('echo "2 $1: log-det"; exit 2', 2, "log-det"),
+        ('echo "2 $1: no certificate"; exit 2', 2, "no certificate"),
         ('echo "0 $1: both ends proved"; exit 1', 2, "must answer as it is written to"),
         ("exit 0", 2, "must answer as it is written to"),
         ("echo Segmentation fault; exit 139", 2, "must answer as it is written to"),

@@ -1,4 +1,4 @@
-"""The definitions in Coq and Python agree: values proved in formal/theories/Examples.v, computed again here."""
+"""The definitions in Coq and Python agree: values proved in formal/theories/Examples*.v, computed again here."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, Problem, TraceObjective, exhaustive_optimum
+from ratt_opt import Attack, Problem, TraceObjective, curvature, exhaustive_optimum, ratt, total_curvature
+from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.setfunctions.base import TableFunction
 from tests.oracles import brute_force_worst_case
 
 FORMAL = Path(__file__).parents[2] / "formal"
 EXAMPLES = ("relay", "safe", "split")
-TEXT = (FORMAL / "theories" / "Examples.v").read_text()
+EXAMPLE_FILES = [f"theories/{path.stem}.vo" for path in sorted((FORMAL / "theories").glob("Examples*.v"))]
+TEXT = "\n".join(path.read_text() for path in sorted((FORMAL / "theories").glob("Examples*.v")))
 
 
 def defined(name):
     """The right side of a definition in the Coq file."""
-    found = re.search(rf"^Definition {name} : [^=]* := (.*)\.$", TEXT, re.MULTILINE)
+    found = re.search(rf"^Definition {name} : [^=]*:=\s(.*?)\.$", TEXT, re.MULTILINE | re.DOTALL)
     assert found is not None, name
     return found[1]
 
@@ -84,6 +87,33 @@ def test_attacks_and_groups(name):
     assert sorted(found - attack.sensing) == sees
 
 
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_smallest_possible_largest_group(name):
+    problem = example(name)[0]
+    found = smallest_largest_group(problem.communication, problem.alpha_c, protected_links=problem.protected_links)
+    assert [found.n_max] == numbers(defined(f"{name}_n_max"))
+
+
+@pytest.mark.parametrize("name", ["ties", "pairs"])
+def test_ratt_with_ties(name):
+    owners, table, alpha, plan = (numbers(defined(f"{name}_{what}")) for what in ("owners", "table", "alpha", "plan"))
+    problem = Problem(TableFunction(np.array(table, dtype=float)), np.array(owners), None, alpha[0], 0)
+    assert list(ratt(problem, alpha_cs=0).elements) == plan
+
+
+@pytest.mark.parametrize(("name", "measure"), [("covered", curvature), ("bonus", total_curvature)])
+def test_curvatures(name, measure):
+    owners, table = (
+        np.array(numbers(defined("covered_owners"))),
+        np.array(numbers(defined(f"{name}_table")), dtype=float),
+    )
+    over, under = numbers(defined(f"{name}_curvature_is"))
+    found = measure(TableFunction(table), owners)
+    assert found.lower == pytest.approx(over / under, abs=1e-12)
+    assert found.upper == pytest.approx(over / under, abs=1e-12)
+    assert measure(TableFunction(table)).lower == pytest.approx(1)  # over all sets
+
+
 def test_every_definition_distinguishes_the_examples():
     """Without the relay, without protection, or with other groups the values would be others."""
     relay, plan, value, *_ = example("relay")
@@ -100,7 +130,7 @@ def test_coq_accepts_the_examples():
     if coqc is None:
         pytest.skip("coqc is not installed (Debian: coq libcoq-mathcomp-algebra)")
     done = subprocess.run(
-        [shutil.which("make") or "make", "-C", str(FORMAL), "theories/Examples.vo"],
+        [shutil.which("make") or "make", "-C", str(FORMAL), *EXAMPLE_FILES],
         capture_output=True,
         text=True,
         check=False,

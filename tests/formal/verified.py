@@ -18,6 +18,7 @@ from tests.strategies import random_problem
 BUILT = Path(__file__).parents[2] / "formal" / "build" / "ratt-check"
 BATCH = 200
 ACCEPTED = (0, 3)
+KINDS = ("trace", "maxeig", "logdet")
 
 
 def ratt_check() -> str:
@@ -50,9 +51,7 @@ def bases(folder, seeds):
     """Certificates of small random problems: dimension 1 to 3, protected robots and links, ragged controls."""
     for seed in seeds:
         rng = np.random.default_rng([47, seed])
-        problem = random_problem(
-            rng, 3, kind=("trace", "maxeig")[seed % 2], controls=2, complete=True if seed % 4 < 2 else None
-        )
+        problem = random_problem(rng, 3, kind=KINDS[seed % 3], controls=2, complete=True if seed % 6 < 3 else None)
         written, document = certified(problem, folder / "base.json")
         if written.verified.lower > 1e-3:  # where every robot can be blinded there is nothing to mutate
             yield rng, document

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.errors import InputError
+from ratt_opt.certificates import write
+from ratt_opt.errors import InputError, ProofError, UndecidedError
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
+
+SMALL = ro.Problem(ro.LogDetObjective([[[2.0]]], [[[[k]]] for k in (1.0, 2.0, 3.0, 4.0)]), [0, 0, 1, 1], None, 1, 0)
 
 
 @pytest.mark.parametrize("kind", [*OBJECTIVES, "table"])
@@ -83,3 +88,25 @@ def test_an_interrupt_ends_every_step_and_keeps_the_bracket():
     assert lines[-2:] == ["curvature and guarantees", "certificate"]
     assert report.optimum.lower <= ro.solve_maxmin(report.problem, gap=1e-6).upper
     assert ro.solve_maxmin(report.problem, gap=1e-6).lower <= report.upper * (1 + 1e-9)
+
+
+def test_a_proof_with_a_fault_raises_and_keeps_the_report(tmp_path, monkeypatch):
+    def faulty(*_):
+        raise ProofError("claim: false")
+
+    monkeypatch.setattr(write, "_write_verified", faulty)
+    with pytest.raises(ProofError, match="claim: false") as caught:
+        ro.bound(SMALL, certificate=tmp_path / "c.json")
+    report = caught.value.report
+    assert report == replace(ro.bound(SMALL), certificate=report.certificate)
+    assert report.certificate.why_not == "the proof has a fault: claim: false"
+    assert ProofError("other").report is None
+
+
+def test_a_proof_that_is_not_decided_is_a_reason(tmp_path, monkeypatch):
+    def undecided(*_):
+        raise UndecidedError("not decided within 600 s")
+
+    monkeypatch.setattr(write, "_write_verified", undecided)
+    report = ro.bound(SMALL, certificate=tmp_path / "c.json")
+    assert report.certificate.why_not == "could not be made: not decided within 600 s"

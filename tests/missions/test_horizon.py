@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
 import numpy as np
 import pytest
 
-from ratt_opt import random_scenario, ratt, solve_maxmin, worst_case_attack
+from ratt_opt import InputError, random_scenario, ratt, run_mission, solve_maxmin, worst_case_attack
 from ratt_opt.missions.attack_models import RenewedAttacks
+from ratt_opt.missions.beam import beam_sequences, solve_by_columns
 from ratt_opt.missions.horizon import undominated
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.problem import Attack
@@ -130,3 +132,40 @@ def test_dropping_loses_no_value() -> None:
     everything = world.criterion(world.motion.initial(scenario), offered, 0.0)
     best = max(everything([a, 9 + b]) for a in range(9) for b in range(9))
     assert max(problem.objective([a, b]) for a in problem.choices[0] for b in problem.choices[1]) == pytest.approx(best)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_columns_bracket_the_optimum_over_all_elements(seed: int) -> None:
+    problem, _ = problem_of(world_of(2, "mean", seed=seed))
+    whole = solve_maxmin(problem)
+    start = np.array([choice[-1] for choice in problem.choices])
+    found = solve_by_columns(problem, start, gap=1e-6)
+    assert found.lower <= whole.upper * (1 + 1e-9)
+    assert found.upper >= whole.lower * (1 - 1e-9)
+    assert found.upper - found.lower <= 1e-6 * found.upper
+    assert worst_case_attack(problem, found.elements).upper == pytest.approx(found.lower, rel=1e-6)
+    # One round proves less, and truly: what the first elements alone can do is no bound.
+    first = solve_by_columns(problem, start, gap=0.9)
+    assert first.upper >= whole.lower * (1 - 1e-9)
+
+
+def test_a_beam_keeps_the_best_alone() -> None:
+    world = world_of(3)
+    belief = world.motion.initial(world.scenario)
+    everything = world.sequences(world.scenario.poses)
+    wide = replace(world, model=replace(world.model, beam=27))
+    kept = beam_sequences(wide, belief, world.scenario.poses, 0.0)
+    assert np.array_equal(kept.controls, everything.controls)
+    assert np.array_equal(kept.poses, everything.poses)
+    narrow = replace(world, model=replace(world.model, beam=4))
+    kept = beam_sequences(narrow, belief, world.scenario.poses, 0.0)
+    assert np.bincount(kept.owner).tolist() == [4, 4, 4]
+    alone = world.criterion(belief, everything, 0.0).singletons()
+    for i in range(3):
+        own = everything.owner == i
+        best = everything.controls[own][np.argmax(alone[own])]
+        assert (kept.controls[kept.owner == i] == best).all(axis=(1, 2)).any()
+    mission = run_mission(world.scenario, steps=2, horizon=3, model=replace(world.model, beam=4))
+    assert len(mission.steps) == 2
+    with pytest.raises(InputError, match="beam must be an integer >= 1"):
+        MissionModel(beam=0)

@@ -70,9 +70,20 @@ def test_coordinated_turn(rate: float) -> None:
 
 def test_noise_moves_a_target_by_its_process_std() -> None:
     for period in (0.5, 2.0):
-        noise = ConstantVelocity(np.array([0.5, 1.0])).noise(period)
+        noise = ConstantVelocity(np.array([0.5, 1.0]), period).noise(period)
         np.testing.assert_allclose(noise[:, 0, 0], [0.25, 1.0])
         assert (np.linalg.eigvalsh(noise) > 0).all()
+
+
+@pytest.mark.parametrize("kind", [ConstantVelocity, CoordinatedTurn, KnownVelocity])
+def test_two_half_periods_add_up_to_the_noise_of_a_whole_one(kind) -> None:
+    motion = kind.of(random_scenario(1, 2, alpha_s=0, alpha_c=0, seed=0))
+    straight = np.zeros((2, motion.dimension))
+    if kind is CoordinatedTurn:
+        motion = CoordinatedTurn(motion.process_std, turn_noise=0.0)
+    F = motion.transition(straight, 0.5)
+    halves = F @ motion.noise(0.5) @ F.swapaxes(-1, -2) + motion.noise(0.5)
+    np.testing.assert_allclose(halves, motion.noise(1.0), rtol=1e-12, atol=1e-15)
 
 
 def test_known_velocity_starts_as_the_scenario_and_circles() -> None:

@@ -113,3 +113,37 @@ def test_extremes_are_handled_or_refused_by_name(seed: int, tmp_path: Path) -> N
         return
     report = ro.bound(problems[seed % 3], time_limit=2.0)
     assert 0 <= report.optimum.lower <= report.upper < float("inf")
+
+
+def test_a_scenario_names_the_sensor_and_the_covariance_that_do_not_fit() -> None:
+    sharp = SCENARIO.sensor.replace(range_noise=1e-5, range_noise_slope=0.0)
+    far = SCENARIO.targets[1].replace(covariance=((1e10, 0.0), (0.0, 1e10)))
+    assert SCENARIO.replace(sensor=sharp).problem()
+    with pytest.raises(InputError, match=r"sensor of robots\[0\] for targets\[1\].covariance must be at most 2e\+14"):
+        SCENARIO.replace(sensor=sharp, targets=(SCENARIO.targets[0], far))
+    thin = SCENARIO.targets[0].replace(covariance=((1e9, 0.0), (0.0, 1e-9)), process_std=0.0)
+    with pytest.raises(InputError, match=r"targets\[0\].covariance: prior\[0\] must be positive definite"):
+        SCENARIO.replace(targets=(thin,))
+
+
+def test_matrices_and_limits_take_numbers_of_any_kind_but_no_booleans(tmp_path: Path) -> None:
+    given: dict[str, Any] = {"information": [[[[1.0]]], [[[np.int64(2)]]]], "robot": [np.int8(0), 1], "alpha_s": 1}
+    team = InformationInput(**given, prior=[[[np.float32(2)]]], weights=[np.uint8(3)], alpha_c=np.int16(0))
+    assert team.information[1][0][0][0] == 2.0
+    with pytest.raises(InputError, match=r"prior\[0\]\[0\]\[0\] must be a number"):
+        InformationInput(**given, prior=[[[True]]], alpha_c=0)
+    assert SCENARIO.sensor.replace(field_of_view=np.int64(2)).field_of_view == 2
+    problem = team.problem()
+    assert ro.solve_maxmin(problem, time_limit=np.int64(9), gap=np.float32(0)).lower > 0
+    ro.certify(problem, ro.solve_maxmin(problem), tmp_path / "c.json")
+    assert ro.verify_certificate(tmp_path / "c.json", time_limit=np.int64(9)).lower_proved
+    for wrong in (True, "1", None):
+        with pytest.raises(InputError, match="gap must be a number >= 0"):
+            ro.solve_maxmin(problem, gap=wrong)  # type: ignore[arg-type]
+    for wrong in (True, "1"):
+        with pytest.raises(InputError, match="time_limit must be a number of seconds >= 0"):
+            ro.solve_maxmin(problem, time_limit=wrong)  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="time_limit must be a positive number"):
+            ro.verify_certificate(tmp_path / "c.json", time_limit=wrong)  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="value must be a finite number"):
+            ro.breaking_budgets(problem, [0, 1], wrong)  # type: ignore[arg-type]

@@ -56,6 +56,18 @@ class GroupExchanges:
         home[rising[np.isin(rising, seeing)]] = np.repeat(np.arange(1, len(self.sizes) + 1), self.sizes)
         self._improve(home, budget)
 
+    def around(self, largest: frozenset[int], budget: Budget) -> None:
+        """Start from a largest group, and the individually weakest others."""
+        rising = np.argsort(self._team.single, kind="stable")
+        others = rising[~np.isin(rising, list(largest))]
+        others = np.concatenate([others[self._must[others]], others[~self._must[others]]])
+        home = np.zeros_like(self._home)
+        home[list(largest)] = 1
+        places = np.repeat(np.arange(2, len(self.sizes) + 1), self.sizes[1:])
+        home[others[: len(places)]] = places
+        if not (self._must & (home == 0)).any():
+            self._improve(home, budget)
+
     def shake(self, rounds: int, budget: Budget) -> None:
         """Exchange a few random robots of the best family and improve it again, so often.
 

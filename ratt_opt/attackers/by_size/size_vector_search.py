@@ -25,6 +25,7 @@ from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
+from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
@@ -52,6 +53,9 @@ EXCHANGES_SHARE = 0.3
 SHAKEN, SHAKES = 6, 40
 """Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
 
+WEAK_SETS = 3
+"""Weak sets of its size that a largest group is started from where it is more than twice as large as the others."""
+
 LATER_SHAKES = 400
 """The same for vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
 
@@ -76,6 +80,7 @@ class SizeVectorSearch:
         self.packer = Packer(team, self.threat.protected_robots, task.budget)
         self.bounds: dict[Sizes, float] = {}
         """What the families of each vector that is open are worth at least."""
+        self._weak: dict[int, list[frozenset[int]]] = {}
         self.left_open = np.inf
         """Least value of a set whose packing question was given up; the proof cannot rise above it."""
         self.weakest = np.inf
@@ -119,6 +124,8 @@ class SizeVectorSearch:
                 break
             family = GroupExchanges(self.team, sizes, must)
             family.weakest(self.task.budget)
+            for largest in self._weak_largest(sizes):
+                family.around(largest, self.task.budget)
             families.append(family)
         families.sort(key=lambda family: family.value)
         for family in families[:SHAKEN]:
@@ -127,6 +134,15 @@ class SizeVectorSearch:
         families.sort(key=lambda family: family.value)
         self._accept(families[0].groups())
         return families
+
+    def _weak_largest(self, sizes: Sizes) -> list[frozenset[int]]:
+        """Weak sets of the size of a largest group that alone decides what a family is worth."""
+        largest, *others = sizes
+        if others and 2 * others[0] > largest:
+            return []
+        if largest not in self._weak:
+            self._weak[largest] = weak_sets_of_size(self.team, largest)[:WEAK_SETS]
+        return self._weak[largest]
 
     def _accept(self, groups: Iterable[frozenset[int]]) -> bool:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))

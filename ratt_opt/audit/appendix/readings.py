@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.audit.appendix.roles import Robots
 
-__all__ = ["SETTINGS", "dominance_entries", "readings_of_sets", "readings_of_the_attack"]
+__all__ = ["LEFT_SIDE", "SETTINGS", "dominance_entries", "readings_of_sets", "readings_of_the_attack"]
 
 PLAN, OPTIMUM = "A* is the plan's worst attack", "A* is the optimum's worst attack"
 ND = FunctionClass.TOTAL_CURVATURE

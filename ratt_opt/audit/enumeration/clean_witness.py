@@ -49,7 +49,7 @@ def _decided() -> Counted:
     problem = Problem(TableFunction(table), np.arange(n), None, ALPHA_S, ALPHA_C)
     plan = ratt(problem)
     first, second = GROUPS
-    attack = Attack({0}, problem.communication.links_between(GROUPS))
+    attack = Attack(frozenset({0}), problem.communication.links_between(GROUPS))
     worst = worst_case_attack(problem, plan.elements)
     is_worst = problem.team_value(plan.elements, attack) == worst.upper == worst.lower
     greedy = sorted(set(range(n)) - set(plan.bait))

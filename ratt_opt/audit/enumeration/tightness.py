@@ -1,8 +1,8 @@
-"""What the bounds are worth: Theorem 1's are attained by no instance, the pattern-free ones are.
+"""What the bounds are worth: Theorem 1's are attained by no instance; what the pattern-free and size bounds are.
 
-The paper leaves the tightness of ``(1-c)^3`` open. It is not tight: ``(1-c)^2`` always holds. That cannot be
-improved for all N: the family of ``limit_instance`` has ratios that tend to it. For submodular functions ``1-k``
-cannot be improved either: the family of ``attaining_instance`` attains it for every ``k < 1``.
+The paper leaves the tightness of ``(1-c)^3`` open. It is not tight: ``(1-c)^2`` always holds. Over all teams nothing
+larger does: ``1-k`` and ``(1-c)^2`` are infima, the first attained where ties go against RATT, both approached without.
+For given budgets the survivor and group-size bounds say more.
 """
 
 from __future__ import annotations
@@ -15,12 +15,16 @@ from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, R
 from ratt_opt.audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
+from ratt_opt.audit.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
+from ratt_opt.bounds.survivors import survivor_share
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
+
+    from ratt_opt.audit.worst_ratio.witness import RatioWitness
 
 __all__ = ["tightness_entries"]
 
@@ -29,6 +33,9 @@ REPLAYED = tuple((size, Fraction(part, 4)) for size, part in ((1, 2), (2, 1), (2
 """Sizes g and total curvatures c."""
 ATTAINED = tuple((size, Fraction(*k)) for size, k in ((2, (1, 4)), (2, (1, 2)), (3, (3, 5)), (3, (2, 3))))
 """Sizes m and curvatures k."""
+SHRINKING = (Fraction(1, 10), Fraction(1, 100))
+SENSING = tuple((g, p, Fraction(*c)) for g, p, c in ((2, 1, (1, 4)), (3, 1, (1, 4)), (4, 1, (1, 2)), (3, 2, (9, 10))))
+"""Robots left, robots blinded, and total curvatures, with ``g - 1 <= p (1 + 1/(1-c))``."""
 SUB_TIGHT, ND_TIGHT = (Reference(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
 GIVEN = "all set functions of the class, complete graph"
 _claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="tightness", hypotheses=GIVEN)
@@ -42,12 +49,20 @@ def tightness_entries() -> Iterator[EnumeratedEntry]:
     text = "some instance with 0 < k < 1 attains Theorem 1's bound min[(1-k)/(1+k), (1-k)/alpha_cs]"
     run = partial(_exceeded, FunctionClass.CURVATURE, KEPT, KEPT_OVER_ONE_PLUS_K)
     yield _claim(label="theorem1_sub_tight", statement=text, enumerate_cases=run, serves_by=SUB_TIGHT)
-    text = "for every k < 1 RATT's worst ratio is 1-k exactly once N is large enough: N = 3m with m >= 1/(1-k)"
+    text = "for every k < 1 some team has worst ratio 1-k exactly where ties go against RATT (N = 3m, m >= 1/(1-k))"
     yield _claim(label=SUB_TIGHT.label, statement=text, enumerate_cases=_attained_by_family)
+    text = "without ties RATT's ratio comes as close to 1-k as wanted: at most 1-k + 3/2 epsilon"
+    yield _claim(label=f"{SUB_TIGHT.label}_no_ties", statement=text, enumerate_cases=_attained_without_ties)
+    text = "links alone are enough for 1-k: N = 7, nobody blinded, alpha_c = 11, k = 1/2 and 2/5"
+    yield _claim(label=f"{SUB_TIGHT.label}_links", statement=text, enumerate_cases=_attained_by_links)
     text = "RATT's worst ratio can be 1-k exactly with four robots"
     yield _claim(label=f"{SUB_TIGHT.label}_n4", statement=text, enumerate_cases=_attained)
     text = "RATT's worst ratio comes as close to (1-c)^2 as wanted, as N grows"
     yield _claim(label=ND_TIGHT.label, statement=text, enumerate_cases=_approached)
+    text = "without links cut the survivor bound is attained for total curvature c wherever g-1 <= p (1 + 1/(1-c))"
+    yield _claim(label="survivors_nd_tight", statement=text, enumerate_cases=_survivors_attained)
+    text = "without links cut the survivor bound is attained for curvature k and groups of two: (1 + (1-k)^2)/2"
+    yield _claim(label="survivors_sub_tight", statement=text, enumerate_cases=_pairs_attained)
 
 
 def _exceeded(function_class: FunctionClass, proved: Factor, printed: Factor) -> Counted:
@@ -90,6 +105,40 @@ def _attained_by_family() -> Counted:
     detail = f"{len(ATTAINED)} weighted coverage functions replayed through the library; the ratio is 1-k each time"
     sizes = f"replayed for (m, k) in {', '.join(f'({m}, {k})' for m, k in ATTAINED)}; any m by its proof"
     return Counted(verdict=Verdict.PROVED, sizes=sizes, detail=detail)
+
+
+def _attained_without_ties() -> Counted:
+    found = {(size, k, e): replay(attaining_instance(size, k, e)) for size, k in ATTAINED for e in SHRINKING}
+    wrong = [case for case, ratio in found.items() if ratio > 1 - case[1] + Fraction(3, 2) * case[2]]
+    detail = f"{len(found)} instances replayed, epsilon {' and '.join(map(str, SHRINKING))}; {len(wrong)} above"
+    verdict = Verdict.UNDECIDED if wrong else Verdict.PROVED
+    return Counted(verdict=verdict, sizes="replayed for the same (m, k); any m by its proof", detail=detail)
+
+
+def _attained_by_links() -> Counted:
+    return _replayed({f"k = {k}": (link_only_instance(k), 1 - k) for k in (Fraction(1, 2), Fraction(2, 5))})
+
+
+def _survivors_attained() -> Counted:
+    cases = {
+        f"(g, p, c) = ({g}, {p}, {c})": (sensing_instance(g, p, c), survivor_share(g, 1 - c, submodular=False))
+        for g, p, c in SENSING
+    }
+    return _replayed(cases)
+
+
+def _pairs_attained() -> Counted:
+    shares = (Fraction(1, 4), Fraction(1, 2), Fraction(9, 10))
+    return _replayed({f"k = {k}": (pair_instance(k), survivor_share(2, 1 - k, submodular=True)) for k in shares})
+
+
+def _replayed(cases: Mapping[str, tuple[RatioWitness, Fraction]]) -> Counted:
+    """Instances against the ratio each must have."""
+    found = {name: (replay(witness), ratio) for name, (witness, ratio) in cases.items()}
+    attained = all(got == ratio for got, ratio in found.values())
+    detail = f"replayed through the library: {', '.join(f'{name}: {got}' for name, (got, _) in found.items())}"
+    verdict = Verdict.PROVED if attained else Verdict.UNDECIDED
+    return Counted(verdict=verdict, sizes="the cases replayed; any by the family's proof", detail=detail)
 
 
 def _approached() -> Counted:

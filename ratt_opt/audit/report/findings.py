@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind, Reference
 from ratt_opt.audit.appendix.misprints import MISPRINTS
+from ratt_opt.audit.appendix.readings import LEFT_SIDE
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
 
 if TYPE_CHECKING:
@@ -97,15 +98,9 @@ def _lines(records: list[EntryRecord]) -> Finding:
     table = [("numbered lines whose step ...", "how many", "which")]
     for name, labels in outcome.items():
         table.append((name, str(len(labels)), "all others" if name == HOLDS else ", ".join(labels) or "none"))
-    equalities = _grouped([r for r in records if r["kind"] == EntryKind.AS_WRITTEN])
-    for name, test in (("holds with = in one reading only", any), ("holds with >= in place of =", all)):
-        found = [
-            label
-            for label, group in equalities.items()
-            if test(r["verdict"] == REFUTED for r in group)
-            and (test is all or not all(r["verdict"] == REFUTED for r in group))
-        ]
-        table.append((name, str(len(found)), ", ".join(found) or "none"))
+    some, none = _equalities(records)
+    table.append(("is printed with =, which holds in some reading only", str(len(some)), ", ".join(some) or "none"))
+    table.append(("is printed with =, but holds with >= only", str(len(none)), ", ".join(none) or "none"))
     text = f"Of {sum(map(len, outcome.values()))} numbered lines, {len(outcome[HOLDS])} follow from the line before in"
     text = f"{text} every reading, {len(outcome[FAILS])} in none."
     end = "A failing step is a gap in the argument, not a false result: from the start of its chain each line is proved"
@@ -113,6 +108,17 @@ def _lines(records: list[EntryRecord]) -> Finding:
     if lost:
         end = f"Even from the start of its chain, these lines fail in every reading: {', '.join(lost)}."
     return Finding(heading="Which steps hold?", sentences=(text, end), table=tuple(table))
+
+
+def _equalities(records: Sequence[EntryRecord]) -> tuple[list[str], list[str]]:
+    """Lines printed with = that hold so in some reading but not in all, and in none."""
+    some: list[str] = []
+    none: list[str] = []
+    for label, group in _grouped([r for r in records if r["kind"] == EntryKind.AS_WRITTEN]).items():
+        refuted = sum(r["verdict"] == REFUTED for r in group)
+        if refuted:
+            (none if refuted == len(group) else some).append(label)
+    return some, none
 
 
 def _misprints(records: list[EntryRecord]) -> Finding:
@@ -142,6 +148,11 @@ def _readings(records: list[EntryRecord]) -> Finding:
         sentences.append(f"If A* is {who} worst attack, {steps}.")
     if all(fails.values()):
         sentences.append("So no single reading of A* makes every step hold.")
+    if any(r["label"] == LEFT_SIDE and r["verdict"] == REFUTED and _whose(r["reading"]) == OPTIMUM for r in records):
+        sentences.append(
+            "And with the optimum's worst attack the appendix speaks of RATT's value under that attack, Theorem 1 "
+            f"about RATT's own worst case: going from one to the other ({LEFT_SIDE}) is refuted."
+        )
     return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
 
 
@@ -204,7 +215,7 @@ def _all_proved(records: list[EntryRecord]) -> bool:
     return bool(records) and all(r["verdict"] == PROVED for r in records)
 
 
-def _grouped(records: list[EntryRecord]) -> dict[str, list[EntryRecord]]:
+def _grouped(records: Sequence[EntryRecord]) -> dict[str, list[EntryRecord]]:
     groups: dict[str, list[EntryRecord]] = {}
     for record in records:
         groups.setdefault(record["label"], []).append(record)

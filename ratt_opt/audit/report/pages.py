@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
+from ratt_opt.audit.report.chains import chain_lines
 from ratt_opt.audit.report.findings import findings, title
 
 if TYPE_CHECKING:
@@ -25,7 +26,8 @@ __all__ = ["evidence", "finding_lines", "html_report", "markdown_report", "per_c
 _STYLE = """
 body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}
 table{border-collapse:collapse;margin:1rem 0}
-td,th{border:1px solid #bbb;padding:.2rem .6rem;text-align:left;overflow-wrap:anywhere}
+td,th{border:1px solid #bbb;padding:.2rem .6rem;text-align:left;vertical-align:top}
+.wide{overflow-x:auto}
 details{border-left:.35rem solid #999;margin:.4rem 0;padding:.2rem .8rem}
 details.proved{border-color:#0072b2}details.refuted{border-color:#d55e00}
 details.no-violation-found{border-color:#e69f00}
@@ -46,6 +48,8 @@ def html_report(document: LedgerDocument) -> str:
         *(_finding(finding) for finding in findings(document)),
         "<h2>Verdicts per chain</h2>",
         _verdicts(document),
+        "<h2>The lines that the entries speak of</h2>",
+        *(_finding(chain, level=3) for chain in chain_lines(document)),
         "<h2>All entries</h2>",
         *(_entry(record) for record in document["entries"]),
     ]
@@ -53,9 +57,9 @@ def html_report(document: LedgerDocument) -> str:
     return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>\n' + "\n".join(body) + "\n</body></html>\n"
 
 
-def _finding(finding: Finding) -> str:
+def _finding(finding: Finding, level: int = 2) -> str:
     sentences = f"<p>{escape(' '.join(finding.sentences))}</p>" if finding.sentences else ""
-    return f"<h2>{escape(finding.heading)}</h2>{sentences}{_table(finding.table)}"
+    return f"<h{level}>{escape(finding.heading)}</h{level}>{sentences}{_table(finding.table)}"
 
 
 def _verdicts(document: LedgerDocument) -> str:
@@ -68,7 +72,8 @@ def _table(rows: Sequence[Sequence[str]]) -> str:
     head, *rest = rows
     cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest]
     body = "".join(f"<tr>{row}</tr>" for row in cells)
-    return f"<table><tr>{''.join(f'<th>{escape(name)}</th>' for name in head)}</tr>{body}</table>"
+    titles = "".join(f'<th scope="col">{escape(name)}</th>' for name in head)
+    return f'<div class="wide"><table><tr>{titles}</tr>{body}</table></div>'
 
 
 def _entry(record: EntryRecord) -> str:
@@ -99,7 +104,10 @@ def markdown_report(document: LedgerDocument) -> str:
     columns = list(document["counts"])
     lines += [_row(["chain", *columns]), _row(["---"] * (len(columns) + 1))]
     lines += [_row([name, *(str(counts[c]) for c in columns)]) for name, counts in per_chain(document).items()]
-    lines += ["", "## Refuted entries", ""]
+    lines += ["", "## The lines that the entries speak of", ""]
+    for chain in chain_lines(document):
+        lines += finding_lines(chain, level=3)
+    lines += ["## Refuted entries", ""]
     for record in document["entries"]:
         if record["verdict"] == "refuted":
             lines += _refuted(record)
@@ -110,10 +118,14 @@ def markdown_report(document: LedgerDocument) -> str:
     return "\n".join([*lines, ""])
 
 
-def finding_lines(finding: Finding) -> list[str]:
+def finding_lines(finding: Finding, *, level: int = 2) -> list[str]:
     """One section of the summary: heading, sentences, table."""
     head, *rows = finding.table
-    lines = [f"## {finding.heading}", "", *([_escape(" ".join(finding.sentences)), ""] if finding.sentences else [])]
+    lines = [
+        f"{'#' * level} {_escape(finding.heading)}",
+        "",
+        *([_escape(" ".join(finding.sentences)), ""] if finding.sentences else []),
+    ]
     return [*lines, _row(list(head)), _row(["---"] * len(head)), *(_row(list(row)) for row in rows), ""]
 
 

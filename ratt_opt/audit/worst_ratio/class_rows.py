@@ -133,7 +133,7 @@ class NonDecreasing:
         slack = values[:, None] + self._length(x[1 : 1 + self.n], masks, masks) - values[None, :]
         pairs = np.argwhere(slack < -ROUNDING)
         pairs = pairs[np.argsort(slack[tuple(pairs.T)], kind="stable")][:MOST_ROWS]
-        return [self._pair(int(masks[i]), int(masks[j])) for i, j in pairs]
+        return [self.pair(int(masks[i]), int(masks[j])) for i, j in pairs]
 
     def _length(self, marginals: FloatArray, starts: IntArray, ends: IntArray) -> FloatArray:
         bits = 1 << np.arange(self.n, dtype=np.int64)
@@ -141,7 +141,8 @@ class NonDecreasing:
         result: FloatArray = (b & ~a) @ marginals - float(self.kept) * ((a & ~b) @ marginals)
         return result
 
-    def _pair(self, start: int, end: int) -> Row:
+    def pair(self, start: int, end: int) -> Row:
+        """What the class says of two subsets in use (0: the empty one)."""
         terms: dict[int, Fraction] = {}
         if start:
             terms[self._columns[start]] = Fraction(1)

@@ -11,16 +11,18 @@ import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt.audit.worst_ratio.class_rows import NonDecreasing, Submodular
+from ratt_opt.audit.worst_ratio.closed_form import proved_ratio
 from ratt_opt.audit.worst_ratio.search import RatioSearch, Skeleton, skeleton
 from ratt_opt.audit.worst_ratio.witness import FAMILIES, PLANNERS, RatioQuestion, RatioWitness, replay
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
+from ratt_opt.progress import Step
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.audit.worst_ratio.class_rows import ClassRows
 
-__all__ = ["WorstCaseRatio", "pattern_free_ratio", "worst_case_ratio"]
+__all__ = ["WorstCaseRatio", "class_rows", "worst_case_ratio"]
 
 LARGEST_TEAM = 7
 """Most robots: a witness has ``4**N`` values."""
@@ -34,7 +36,7 @@ class WorstCaseRatio:
 
     ``exact_upper`` is attained by ``witness``, replayed through the library in exact arithmetic.
     ``exact_lower`` is proved by rational multipliers of every linear program of the search
-    (``lower_from`` is ``"multipliers"``) or by the pattern-free theorem (``"theorem"``).
+    (``lower_from`` is ``"multipliers"``) or by a theorem with a written proof (``"theorem"``: ``proved_ratio``).
     ``lower`` and ``upper`` are these rounded outward to float64. ``stop`` is ``CLOSED`` when the exact
     ends are equal, ``EXHAUSTED`` when the search ended but some bound did not verify in rationals,
     else ``TIME`` or ``INTERRUPTED``. ``nodes`` and ``programs`` count the search's nodes and linear programs.
@@ -51,6 +53,7 @@ class WorstCaseRatio:
     programs: int
 
 
+@Step("the worst ratio")
 def worst_case_ratio(
     n_robots: int,
     alpha_s: int,
@@ -82,8 +85,8 @@ def worst_case_ratio(
     domain : the curvature is over all ``"elements"`` (the paper's definition) or over ``"feasible"`` sets,
         one element per robot
     time_limit : seconds of wall time; the bracket stays valid
-    use_theorem : start from the pattern-free bound and stop once it is attained; ``False`` proves the lower
-        end by multipliers alone
+    use_theorem : start from the largest bound with a written proof (``proved_ratio``) and stop once it is attained;
+        ``False`` proves the lower end by multipliers alone
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -108,8 +111,8 @@ def worst_case_ratio(
             raise InputError(name, f"must be one of {', '.join(known)}", value)
     own = Budget.inside(budget, time_limit)
     parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
-    floor = pattern_free_ratio(question.curvature, family) if use_theorem else Fraction(0)
-    search = RatioSearch(parts, _class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
+    floor = proved_ratio(question) if use_theorem else Fraction(0)
+    search = RatioSearch(parts, class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
     stop = Stop.EXHAUSTED
     try:
         search.run(own)
@@ -118,16 +121,6 @@ def worst_case_ratio(
     except KeyboardInterrupt:
         stop = own.interrupt()
     return _result(search, question, stop)
-
-
-def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
-    """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
-
-    Proved in ``bounds.guarantees.pattern_free_bound``: its plan is any whose robots are bait or chosen greedily.
-    Neither can be improved for all N: ``witness.attaining_instance`` attains the first for every ``k < 1``,
-    and the ratios of ``witness.limit_instance`` tend to the second.
-    """
-    return 1 - curvature if family == "submodular" else (1 - curvature) ** 2
 
 
 def check_curvature(value: float | str | Fraction) -> Fraction:
@@ -150,7 +143,8 @@ def _check_sensing(alpha_s: int, n_robots: int) -> int:
         raise InputError("alpha_s", rule, alpha_s) from None
 
 
-def _class_rows(parts: Skeleton, question: RatioQuestion) -> ClassRows:
+def class_rows(parts: Skeleton, question: RatioQuestion) -> ClassRows:
+    """Columns and rows of the class that a question is about."""
     if question.family == "submodular":
         return Submodular(parts.n_robots, question.curvature, question.domain)
     compared = [mask for pair in parts.comparisons for mask in pair]

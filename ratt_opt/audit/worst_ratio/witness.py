@@ -1,8 +1,8 @@
 """An explicit instance on which a planner attains a ratio, and its exact replay through the library.
 
-Two families attain, or tend to, the pattern-free bounds. ``1-k`` cannot be improved for submodular functions:
-:func:`attaining_instance` attains it for every ``k < 1``. ``(1-c)^2`` cannot be improved for all N: the ratios of
-:func:`limit_instance` tend to it.
+Two families show that no larger share than the pattern-free bounds holds for all teams: :func:`attaining_instance`
+has ``1-k`` where ties go against RATT, and comes as close as wanted without ties; the ratios of :func:`limit_instance`
+tend to ``(1-c)^2``. For one budget more is true (``bounds/survivors.py``). ``families.py`` has more of them.
 """
 
 from __future__ import annotations
@@ -124,8 +124,11 @@ def _check(witness: RatioWitness) -> None:
     check_class(FAMILIES[witness.family], values, witness.curvature, feasible)
 
 
-def attaining_instance(size: int, curvature: Fraction) -> RatioWitness:
+def attaining_instance(size: int, curvature: Fraction, epsilon: Fraction = Fraction(0)) -> RatioWitness:
     """Return the instance with ``N = 3 size`` robots, ``alpha_s = size`` on which RATT keeps exactly ``1 - curvature``.
+
+    That is where ties go against RATT, by the order of the elements. With ``epsilon > 0`` RATT's choices are strictly
+    the best, in whatever order elements come, and it keeps at most ``1 - curvature + 3/2 epsilon``.
 
     Let ``t = 1-k`` and m = ``size``. A weighted coverage function, hence submodular and non-decreasing. Each element
     covers an item of its own, and some share items: robots ``b`` (m of them), ``r`` (m) and ``v`` (m) have
@@ -141,15 +144,19 @@ def attaining_instance(size: int, curvature: Fraction) -> RatioWitness:
     ``o(v_j)`` beside ``r_j``. *Attack.* Blinding the r leaves ``m t + k + m (t - k/m) = 2 m t``. *Optimum.* The
     other plan covers no item twice: it is additive, 1 each, and keeps 2m whatever m robots are blinded. So the ratio
     is at most t, and the pattern-free theorem says at least t.
+    *No ties.* The elements ``b`` get ``2 epsilon`` more of their own, ``r`` and ``v`` get ``epsilon``; curvature falls.
+    The b are the best alone, then the r, and beside the r no element adds more than t but the v. What is left grows by
+    ``3 m epsilon``.
 
     ``size`` is m >= 1; ``InputError`` unless ``curvature`` is in [0, 1 - 1/m]: above, ``v_j`` would exceed it.
     """
     if not 0 <= curvature <= 1 - Fraction(1, size):
         raise InputError("curvature", f"must be in [0, {1 - Fraction(1, size)}]", curvature)
-    n, whole = 3 * size, curvature.denominator * size
-    part = int(whole * curvature) // size
+    n, whole = 3 * size, curvature.denominator * size * epsilon.denominator
+    part, more = int(whole * curvature) // size, int(whole * epsilon)
     kept = whole - size * part
-    own = [kept] * (2 * size) + [kept - part] * size + [whole] * (2 * size) + [kept] * size
+    own = [kept + 2 * more] * size + [kept + more] * size + [kept - part + more] * size
+    own += [whole] * (2 * size) + [kept] * size
     bait, removed, victims = range(size), range(size, 2 * size), range(2 * size, n)
     items: list[tuple[int, tuple[int, ...]]] = [(weight, (element,)) for element, weight in enumerate(own)]
     items += [(part, (*bait, v)) for v in victims]

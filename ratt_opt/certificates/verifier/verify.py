@@ -7,6 +7,7 @@ arithmetic, logarithms in balls (python-flint).
 from __future__ import annotations
 
 import math
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -43,7 +44,9 @@ def verify_certificate(
     ProofError : the proof has a fault; the text names the first one found.
     UndecidedError : neither, within the time and memory that the verifier gives to one file.
     """
-    if time_limit is not None and not (isinstance(time_limit, (int, float)) and time_limit > 0):
+    if time_limit is not None and (
+        isinstance(time_limit, bool) or not isinstance(time_limit, Real) or not time_limit > 0
+    ):
         raise InputError("time_limit", "must be a positive number of seconds", time_limit)
     with limited(math.inf if time_limit is None else float(time_limit)):
         return _decide(path, expected_problem)

@@ -89,7 +89,8 @@ def cheapest_cut(weights: FloatArray) -> BoolArray:
     """
     weights, n = weights.copy(), len(weights)
     alive, merged = np.ones(n, dtype=np.bool_), np.eye(n, dtype=np.bool_)
-    best, side = np.inf, merged[0]
+    best = np.inf
+    side: BoolArray = merged[0]
     for left in range(n, 1, -1):
         last = int(alive.argmax())
         before, cost = last, 0.0

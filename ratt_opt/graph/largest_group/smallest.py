@@ -29,6 +29,7 @@ from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
+from ratt_opt.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,6 +48,7 @@ LARGEST_AUTOMATIC_PROGRAM = 40
 METHODS = ("auto", "milp", "caa", "partitions", "enumeration", "counting")
 
 
+@Step("the smallest largest group")
 def smallest_largest_group(
     graph: nx.Graph | CommunicationGraph,
     alpha_c: int,

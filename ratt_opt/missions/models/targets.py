@@ -59,12 +59,13 @@ class KnownVelocity(ByValue, TargetMotion):
     """The paper's targets: the position is the state, speed and turning are known.
 
     ``motions`` : (M, 3) speed [m/s], turn rate [rad/s], heading at time 0 [rad]; ``process_std`` : (M,) standard
-    deviation per axis of one period's noise [m]. The heading advances with the turn rate, so that a target circles;
-    the first period is the one of :attr:`Scenario.predicted_targets`.
+    deviation per axis of the noise of one ``sampling_period`` [m], [s]. The heading advances with the turn rate, so
+    that a target circles; the first period is the one of :attr:`Scenario.predicted_targets`.
     """
 
     motions: FloatArray
     process_std: FloatArray
+    sampling_period: float = 1.0
     dimension: ClassVar[int] = 2
 
     @classmethod
@@ -72,7 +73,7 @@ class KnownVelocity(ByValue, TargetMotion):
         """The scenario's targets."""
         targets = scenario.targets
         motions = np.array([(target.speed, target.turn_rate, target.heading) for target in targets])
-        return cls(readonly(motions), readonly(np.array([target.process_std for target in targets])))
+        return cls(readonly(motions), _process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
         """(..., M, 2) positions one period later."""
@@ -83,9 +84,9 @@ class KnownVelocity(ByValue, TargetMotion):
         """Identities: the step does not depend on where a target is."""
         return np.broadcast_to(np.eye(2), (*states.shape, 2))
 
-    def noise(self, period: float) -> FloatArray:  # noqa: ARG002  (``process_std`` is of one period)
-        """(M, 2, 2) isotropic."""
-        return np.asarray((self.process_std**2)[:, None, None] * np.eye(2))
+    def noise(self, period: float) -> FloatArray:
+        """(M, 2, 2) isotropic, in proportion to the time."""
+        return np.asarray((self.process_std**2)[:, None, None] * np.eye(2) * (period / self.sampling_period))
 
     def initial(self, scenario: Scenario) -> Belief:
         """The scenario's estimates."""
@@ -96,20 +97,21 @@ class KnownVelocity(ByValue, TargetMotion):
 class ConstantVelocity(ByValue, TargetMotion):
     """States x, y [m], velocity [m/s]; white acceleration.
 
-    ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in one period [m].
+    ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in a ``sampling_period`` [m].
     ``velocity_std`` : of what is believed of the velocity at first [m/s].
 
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.2.
     """
 
     process_std: FloatArray
+    sampling_period: float = 1.0
     velocity_std: float = VELOCITY_STD
     dimension: ClassVar[int] = 4
 
     @classmethod
     def of(cls, scenario: Scenario) -> ConstantVelocity:
         """The scenario's targets, their velocity now to be estimated."""
-        return cls(readonly(np.array([target.process_std for target in scenario.targets])))
+        return cls(_process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
         """(..., M, 4) states one period later."""
@@ -122,7 +124,7 @@ class ConstantVelocity(ByValue, TargetMotion):
 
     def noise(self, period: float) -> FloatArray:
         """(M, 4, 4) of white acceleration."""
-        return _white_acceleration(self.process_std, period)
+        return _white_acceleration(self.process_std, self.sampling_period, period)
 
     def initial(self, scenario: Scenario) -> Belief:
         """The scenario's estimates, with its speeds and headings as velocities."""
@@ -140,6 +142,7 @@ class CoordinatedTurn(ByValue, TargetMotion):
     """
 
     process_std: FloatArray
+    sampling_period: float = 1.0
     velocity_std: float = VELOCITY_STD
     turn_std: float = TURN_STD
     turn_noise: float = TURN_NOISE
@@ -148,7 +151,7 @@ class CoordinatedTurn(ByValue, TargetMotion):
     @classmethod
     def of(cls, scenario: Scenario) -> CoordinatedTurn:
         """The scenario's targets, their velocity and turn rate now to be estimated."""
-        return cls(readonly(np.array([target.process_std for target in scenario.targets])))
+        return cls(_process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
         """(..., M, 5) states one period later."""
@@ -186,7 +189,7 @@ class CoordinatedTurn(ByValue, TargetMotion):
     def noise(self, period: float) -> FloatArray:
         """(M, 5, 5)."""
         noise = np.zeros((len(self.process_std), 5, 5))
-        noise[:, :4, :4] = _white_acceleration(self.process_std, period)
+        noise[:, :4, :4] = _white_acceleration(self.process_std, self.sampling_period, period)
         noise[:, 4, 4] = period * self.turn_noise**2
         return noise
 
@@ -229,10 +232,15 @@ def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, Floa
     return along, across, d_along, d_across
 
 
-def _white_acceleration(process_std: FloatArray, period: float) -> FloatArray:
-    """(M, 4, 4); its density is such that one period moves a position by ``process_std``."""
-    shape = np.array([[1.0, 1.5 / period], [1.5 / period, 3 / period**2]])
-    return np.asarray((process_std**2)[:, None, None] * np.kron(shape, np.eye(2)))
+def _process_std(scenario: Scenario) -> FloatArray:
+    return readonly(np.array([target.process_std for target in scenario.targets]))
+
+
+def _white_acceleration(process_std: FloatArray, sampling_period: float, period: float) -> FloatArray:
+    """(M, 4, 4); its density is such that one sampling period moves a position by ``process_std``."""
+    density = 3 * process_std**2 / sampling_period**3
+    shape = np.array([[period**3 / 3, period**2 / 2], [period**2 / 2, period]])
+    return np.asarray(density[:, None, None] * np.kron(shape, np.eye(2)))
 
 
 def _positions(scenario: Scenario) -> Belief:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["report_page"]
 
+GUARANTEE_COLUMNS = ("guarantee", "share", "needs", "proved at")
 VIEW_TITLES = {
     "worst": "worst attack",
     "next worst": "next worst: spares a part of the worst attack",
@@ -127,11 +128,11 @@ def _trust_section(report: BoundReport) -> Iterator[str]:
         yield "<code>ratt-opt verify certificate.json</code>."
     optimum = bracket_text(report.optimum.lower, report.upper)
     yield f"</p><p>Best possible: {optimum}; the search for it stopped because: {report.optimum.stop.value}.</p>"
-    rows = [(name, down(float(g), 6), "; ".join(g.hypotheses)) for name, g in report.guarantees.items()]
-    rows += [(name, "none", f"does not apply: {why}") for name, why in report.inapplicable.items()]
+    rows = [(name, down(float(g), 6), "; ".join(g.hypotheses), g.proof) for name, g in report.guarantees.items()]
+    rows += [(name, "none", f"does not apply: {why}", "") for name, why in report.inapplicable.items()]
     if said := guarantee_text(report):
         yield f"<p>Guarantees: {escape(said)}.</p>"
-    yield f'<div class="wide">{html_table("Guaranteed before planning", ("guarantee", "share", "needs"), rows)}</div>'
+    yield f'<div class="wide">{html_table("Guaranteed before planning", GUARANTEE_COLUMNS, rows)}</div>'
     yield "</section>"
 
 

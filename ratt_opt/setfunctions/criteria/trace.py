@@ -128,7 +128,7 @@ class TraceObjective(InformationObjective):
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points."""
-        return self._ends(np.linalg.eigvalsh(self.prior)[:, -1])
+        return self._ends(np.asarray(np.linalg.eigvalsh(self.prior)[:, -1], dtype=np.float64))
 
     def _ends(self, largest: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The same, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
@@ -256,7 +256,7 @@ class OutputTraceObjective(TraceObjective):
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points, with ``lambda_max(C P0 C')`` for those of lower rank."""
         outputs = self.output @ self.prior @ np.swapaxes(self.output, -1, -2)
-        return self._ends(np.linalg.eigvalsh(outputs)[:, -1])
+        return self._ends(np.asarray(np.linalg.eigvalsh(outputs)[:, -1], dtype=np.float64))
 
     @property
     def stated(self) -> dict[str, Any]:
@@ -270,14 +270,14 @@ class OutputTraceObjective(TraceObjective):
 
 def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
     """(M, q, d) matrices of full row rank."""
-    targets, d = np.shape(prior)[:2]
-    matrices = check_finite("output", output)
+    targets, d = check_finite("prior", prior, ndim=3).shape[:2]
+    matrices = given = check_finite("output", output)
     if matrices.ndim == 2:
         matrices = np.broadcast_to(matrices, (targets, *matrices.shape))
     if matrices.ndim != 3 or matrices.shape[0] != targets or matrices.shape[2] != d or not 1 <= matrices.shape[1] <= d:
-        raise InputError("output", f"must have shape (q, {d}) or ({targets}, q, {d}), 1 <= q <= {d}", np.shape(output))
+        raise InputError("output", f"must have shape (q, {d}) or ({targets}, q, {d}), 1 <= q <= {d}", given.shape)
     if (np.linalg.matrix_rank(matrices) < matrices.shape[1]).any():
-        raise InputError("output", "must have independent rows", np.shape(output))
+        raise InputError("output", "must have independent rows", given.shape)
     return matrices
 
 

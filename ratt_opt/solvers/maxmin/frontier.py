@@ -92,7 +92,7 @@ class Frontier:
 
     def settle(self, node: TreeNode) -> None:
         """Finish a node of a single plan, whose bound is as low as the known outcomes make it."""
-        self._settled.append((node, len(self.rule.plans.pool.attacks)))
+        self._settled.append((node, len(self.rule.plans.pool)))
         self._lowest = max(self._lowest, node.bound)
 
     def reopen(self) -> bool:
@@ -115,4 +115,4 @@ class Frontier:
         return bool(again or outdated)
 
     def _is_outdated(self, node: TreeNode, known: int) -> bool:
-        return not self.rule.closes(node.bound) and known < len(self.rule.plans.pool.attacks)
+        return not self.rule.closes(node.bound) and known < len(self.rule.plans.pool)

@@ -9,13 +9,13 @@ worst case; the leaf's convex combination of such cuts bounds every plan that re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ratt_opt._values import ByValue
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack
@@ -31,7 +31,7 @@ __all__ = [
     "UpperProof",
     "WinnerBranch",
     "nodes_below",
-    "preorder",
+    "upper_proof",
 ]
 
 
@@ -139,9 +139,25 @@ def nodes_below(root: TreeNode) -> Iterator[TreeNode]:
             stack.extend(child for _, child in sorted(node.split.parts, key=lambda part: part[0], reverse=True))
 
 
-def preorder(root: TreeNode) -> tuple[Node, ...]:
-    """The proof below ``root``."""
-    return tuple(_proof_node(node) for node in nodes_below(root))
+def upper_proof(root: TreeNode, attack_of: Callable[[int], Attack], cut_of: Callable[[int], Cut]) -> UpperProof:
+    """The proof below ``root``, with the attacks and cuts that it uses, numbered anew."""
+    tree = [_proof_node(node) for node in nodes_below(root)]
+    used = sorted({k for node in tree if isinstance(node, Leaf) for k in node.cuts})
+    cuts = [cut_of(k) for k in used]
+    outcomes = sorted({c.attack for c in cuts} | {node.attack for node in tree if isinstance(node, WinnerBranch)})
+    cut_number = {k: number for number, k in enumerate(used)}
+    attack_number = {outcome: number for number, outcome in enumerate(outcomes)}
+
+    def renumbered(node: Node) -> Node:
+        if isinstance(node, Leaf):
+            return replace(node, cuts=tuple(cut_number[k] for k in node.cuts))
+        return replace(node, attack=attack_number[node.attack]) if isinstance(node, WinnerBranch) else node
+
+    return UpperProof(
+        attacks=tuple(attack_of(outcome) for outcome in outcomes),
+        cuts=tuple(replace(cut, attack=attack_number[cut.attack]) for cut in cuts),
+        tree=tuple(renumbered(node) for node in tree),
+    )
 
 
 def _proof_node(node: TreeNode) -> Node:

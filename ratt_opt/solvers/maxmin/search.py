@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
-from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, UpperProof, nodes_below, preorder
+from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, nodes_below, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
 from ratt_opt.stopping import Stop
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
     from ratt_opt.solvers.maxmin.task import Task
 
@@ -63,11 +65,18 @@ class BranchAndBound:
         """Proved upper bound on the optimum: the largest bound of a node, or of a group closed for all plans."""
         return max(self.frontier.bound, self.winners.finished, self.incumbent.proved.lower)
 
+    def use(self, cuts: list[int]) -> None:
+        """Let the first programs hold these cuts, those that are usable everywhere."""
+        winners = [self.winners.of(self._root, int(outcome)) for outcome in self.cuts.outcomes[cuts]]
+        for k, winner in zip(cuts, winners, strict=True):
+            if winner == self.cuts.groups[k]:
+                self.rounds.use(k)
+
     def proof(self) -> UpperProof:
         """The proof of :attr:`upper`: winners decided for all plans, then the tree."""
         used = {k for node in nodes_below(self._root) if node.split is None for k in node.leaf.cuts}
         root = self.winners.above(self._root, {int(self.cuts.outcomes[k]) for k in used})
-        return UpperProof(attacks=tuple(self.pool.attacks), cuts=self.cuts.record(), tree=preorder(root))
+        return upper_proof(root, self.pool.attack, self.cuts.record)
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
@@ -140,11 +149,12 @@ class BranchAndBound:
 
     def _eliminate(self, node: TreeNode, leaf: Leaf, bound: float, combined: FloatArray) -> TreeNode:
         """Split off elements whose choice would close the node by the same multipliers; return what remains."""
-        slack = self.rule.missing(bound)
-        for i in range(self.task.problem.n_robots):
+        slack, everything = self.rule.missing(bound), node.choices
+        largest, lowest = largest_of_each(combined, everything), -largest_of_each(-combined, everything)
+        for i in np.flatnonzero(lowest - largest < slack).tolist():
             choice = node.choices[i]
-            gone = combined[choice] - combined[choice].max() < slack
-            if not gone.any() or gone.all():
+            gone = combined[choice] - largest[i] < slack
+            if gone.all():
                 continue
             closed = node.child(with_choice(node.choices, i, choice[gone]))
             closed.leaf, closed.bound = leaf, self.cuts.leaf_bound(leaf, closed.choices)[0]
@@ -160,7 +170,7 @@ class BranchAndBound:
         """The root, bounded by one tangent cut of the best plan's worst attack where its winner is decided."""
         node = TreeNode(choices=self.task.choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
         points = self.pool.group_points(self.task.objective.information[self.incumbent.candidates.best])
-        for outcome in range(len(self.pool.attacks)):
+        for outcome in range(len(self.pool)):
             winner = self.winners.of(node, outcome)
             if winner is None:
                 continue

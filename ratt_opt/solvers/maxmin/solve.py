@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import islice
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +13,8 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack
+from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.any_function import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
@@ -22,12 +23,16 @@ from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
 from ratt_opt.solvers.maxmin.task import Task
+from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from ratt_opt.problem import Problem
+    from numpy.typing import ArrayLike
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.problem import Plan, Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
 __all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "solve_maxmin"]
@@ -39,6 +44,7 @@ ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
 
+@Step("the best plan")
 def solve_maxmin(
     problem: Problem,
     *,
@@ -49,6 +55,7 @@ def solve_maxmin(
     alpha_cs: int | None = None,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    start: ArrayLike | Plan | MaxMinResult | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
@@ -66,10 +73,13 @@ def solve_maxmin(
     alpha_cs : sensing attacks that the link attacks are worth, where RATT was asked before
     max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
+    start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
+        problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
 
     Raises
     ------
-    InputError : a limit is negative, or the objective is no information criterion and falls where it was looked at.
+    InputError : a limit is negative, ``start`` is a plan but not one element per robot, or the objective is no
+        information criterion and falls where it was looked at.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
@@ -77,24 +87,36 @@ def solve_maxmin(
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap)
+    warm = WarmStart.of(problem, start)
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
     search: BranchAndBound | None = None
     try:
         _list_outcomes(problem, pool)
+        outcomes = warm.add_outcomes(pool)
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
-        plans = [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
-        incumbent.start(plans if pairs is None else [*plans, pairs.values.strongest_plan()])
+        incumbent.start(_first_plans(problem, first, warm, pairs, budget))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
+        search.use(warm.add_cuts(search.cuts, outcomes))
         stop = _search_and_prove(search, Turns(budget, incumbent), progress)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
         stop = budget.interrupt()
     return _result(problem, incumbent, search, stop, gap)
+
+
+def _first_plans(
+    problem: Problem, first: IntArray, warm: WarmStart, pairs: PairOutcomes | None, budget: Budget
+) -> list[IntArray]:
+    """RATT's plan, and one that was best a step before; the plans of other planners where there is none."""
+    if warm.plan is not None:
+        return [first, warm.plan]
+    plans = [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
+    return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
 
 
 def _search_and_prove(search: BranchAndBound, turns: Turns, progress: Progress) -> Stop:
@@ -142,7 +164,7 @@ def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
     outcomes = list(islice(non_dominated_outcomes(problem.threat), LISTED_OUTCOMES + 1))
     if len(outcomes) <= LISTED_OUTCOMES:
         for outcome in outcomes:
-            pool.add(Attack(*realise(problem.threat, outcome)))
+            pool.add_outcome(outcome)
         pool.complete = True
 
 
@@ -151,12 +173,16 @@ def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = N
 
     Raises ``InputError`` : the gap is negative or not a number, or a limit is not positive.
     """
-    if not (math.isfinite(gap) and gap >= 0):
+    if not (_is_number(gap) and math.isfinite(gap) and gap >= 0):
         raise InputError("gap", "must be a number >= 0", gap)
-    if time_limit is not None and not time_limit >= 0:
+    if time_limit is not None and not (_is_number(time_limit) and time_limit >= 0):
         raise InputError("time_limit", "must be a number of seconds >= 0", time_limit)
     if max_nodes is not None and max_nodes < 1:
         raise InputError("max_nodes", "must be at least 1", max_nodes)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 FEW_PLANS, ENUMERATION_SHARE = 300_000, 0.5

@@ -12,6 +12,10 @@ def test_verdicts() -> None:
         "theorem1_nd_tight": Verdict.REFUTED,
         "theorem1_sub_tight": Verdict.REFUTED,
         "pattern_free_sub_tight": Verdict.PROVED,
+        "pattern_free_sub_tight_no_ties": Verdict.PROVED,
+        "pattern_free_sub_tight_links": Verdict.PROVED,
         "pattern_free_sub_tight_n4": Verdict.PROVED,
         "pattern_free_nd_tight": Verdict.PROVED,
+        "survivors_nd_tight": Verdict.PROVED,
+        "survivors_sub_tight": Verdict.PROVED,
     }

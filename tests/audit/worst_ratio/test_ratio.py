@@ -12,7 +12,8 @@ import pytest
 from ratt_opt import InputError, Problem, ProofError, Stop, TableFunction, exhaustive_optimum, ratt, worst_case_attack
 from ratt_opt.audit.enumeration.tightness import tightness_entries
 from ratt_opt.audit.worst_ratio import witness
-from ratt_opt.audit.worst_ratio.ratio import pattern_free_ratio, worst_case_ratio
+from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
+from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import replay
 
 

@@ -56,7 +56,7 @@ class Winners:
         return winner if winner >= 0 else None
 
     def _grow(self) -> None:
-        missing = len(self.pool.attacks) - len(self._winner)
+        missing = len(self.pool) - len(self._winner)
         if missing > 0:
             self._winner = np.concatenate([self._winner, np.full(missing, UNKNOWN)])
 

@@ -117,21 +117,21 @@ class Adversary:
 
     def learn(self, plan: IntArray) -> bool:
         """Attack a plan quickly, unless all outcomes are known; whether that found a new outcome."""
-        known = len(self.pool.attacks)
+        known = len(self.pool)
         if not self.pool.complete:
             self._remember(self.problem, plan, self._quick_attack(self.problem, plan))
-        return len(self.pool.attacks) > known
+        return len(self.pool) > known
 
     def learn_relaxed(self, of_robot: FloatArray) -> bool:
         """The same for a relaxed plan, as if it were one: its robots contribute ``of_robot`` (N, M, d, d)."""
-        known = len(self.pool.attacks)
+        known = len(self.pool)
         owners = np.arange(self.problem.n_robots)
         objective = self.pool.objective.with_information(of_robot)
         relaxed = replace(self.problem, objective=objective, robot=owners)
         if len(owners) <= SEARCHED_BY_SIZE:
             self.pool.add(greedy_attack(relaxed, owners).attack)
         self._remember(relaxed, owners, self._quick_attack(relaxed, owners))
-        return len(self.pool.attacks) > known
+        return len(self.pool) > known
 
     def attack(self, plan: IntArray, budget: Budget) -> AttackResult:
         """Exact worst case of a plan within a part of the budget."""

@@ -92,12 +92,12 @@ class Candidates:
         """Rank a plan that was met; whether it became the best."""
         value = self.pool.plan_value(plan)
         better = value > self.level
-        heapq.heappush(self._ranked, (-value, len(self._met), len(self.pool.attacks), plan.copy()))
+        heapq.heappush(self._ranked, (-value, len(self._met), len(self.pool), plan.copy()))
         return better
 
     def _top(self) -> tuple[float, int, int, IntArray]:
         """The best candidate; a stored value is out of date, and too large, where outcomes were found since."""
-        known = len(self.pool.attacks)
+        known = len(self.pool)
         while self._ranked and self._ranked[0][2] < known:
             _, serial, _, plan = self._ranked[0]
             heapq.heapreplace(self._ranked, (-self.pool.plan_value(plan), serial, known, plan))
@@ -192,10 +192,10 @@ class Incumbent:
         current = plan
         for _ in range(LOCAL_SEARCH_ROUNDS):
             current = climb(self.problem, self.pool, current, self.budget)
-            known = len(self.pool.attacks)
+            known = len(self.pool)
             if not self.adversary.learn(current):
                 self.offer(current)
-            if len(self.pool.attacks) == known:
+            if len(self.pool) == known:
                 return
 
     def prove(self) -> bool:

@@ -6,9 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.graph.outcomes import realise
+from ratt_opt.problem import Attack
+
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.graph.outcomes import Outcome
+    from ratt_opt.problem import Problem
 
 __all__ = ["OutcomePool"]
 
@@ -16,14 +22,14 @@ __all__ = ["OutcomePool"]
 class OutcomePool:
     """Attacks with the groups of non-blinded robots they leave; equal outcomes are kept once.
 
-    ``attacks[o]`` leaves the groups ``groups[g]`` for ``g`` in ``of_outcome[o]``. ``complete`` : whether
+    Outcome ``o`` leaves the groups ``groups[g]`` for ``g`` in ``of_outcome[o]``. ``complete`` : whether
     all outcomes that matter are known.
     """
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.objective = problem, problem.information_objective
         self.complete = False
-        self.attacks: list[Attack] = []
+        self._attacks: list[Attack | Outcome] = []
         self.groups: list[tuple[int, ...]] = []
         self.of_outcome: list[tuple[int, ...]] = []
         self._number: dict[tuple[int, ...], int] = {}
@@ -32,13 +38,29 @@ class OutcomePool:
         self._flat = np.zeros(0, dtype=np.int64)
         self._starts = np.zeros(0, dtype=np.int64)
 
+    def __len__(self) -> int:
+        return len(self.of_outcome)
+
+    def attack(self, outcome: int) -> Attack:
+        """An attack with this outcome."""
+        known = self._attacks[outcome]
+        if not isinstance(known, Attack):
+            known = self._attacks[outcome] = Attack(*realise(self.problem.threat, known))
+        return known
+
     def add(self, attack: Attack) -> int:
         """Add the outcome of one attack and return its index, new or old."""
-        left = [tuple(sorted(group)) for group in self.problem.groups_left(attack)]
-        numbers = tuple(sorted({self._group(group) for group in left if group} or {self._group(())}))
+        return self._add(self.problem.groups_left(attack), attack)
+
+    def add_outcome(self, outcome: Outcome) -> int:
+        """Add an outcome that some attack has; the attack is found once it is asked for."""
+        return self._add(outcome, outcome)
+
+    def _add(self, left: Iterable[frozenset[int]], origin: Attack | Outcome) -> int:
+        numbers = tuple(sorted({self._group(tuple(sorted(group))) for group in left if group} or {self._group(())}))
         if numbers not in self._known:
-            self._known[numbers] = len(self.attacks)
-            self.attacks.append(attack)
+            self._known[numbers] = len(self)
+            self._attacks.append(origin)
             self.of_outcome.append(numbers)
         return self._known[numbers]
 

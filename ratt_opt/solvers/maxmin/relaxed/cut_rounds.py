@@ -92,12 +92,10 @@ class CutStore:
         cuts = list(leaf.cuts)
         return combined_bound(self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices)
 
-    def record(self) -> tuple[Cut, ...]:
-        """All cuts as part of a proof."""
-        return tuple(
-            Cut(attack=outcome, group=cut.group, point=cut.point, target=cut.target)
-            for outcome, cut in zip(self.outcomes.tolist(), self._cuts, strict=True)
-        )
+    def record(self, k: int) -> Cut:
+        """One cut as part of a proof."""
+        cut = self._cuts[k]
+        return Cut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
 
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.

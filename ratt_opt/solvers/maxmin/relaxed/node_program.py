@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.highs import LinearProgram, rows_of
+from ratt_opt.highs import LinearProgram, Rows, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,17 +52,33 @@ class NodeProgram:
         self.in_use: list[int] = []
         """Cuts that are rows now, in row order."""
         self._idle: dict[int, int] = {}
+        self._fresh: list[tuple[float, FloatArray]] = []
+        """Constants and scores of the last cuts in use, whose rows are added together before the next solve."""
 
     def use(self, cut: int, constant: float, scores: FloatArray) -> None:
         """Add one cut as a row."""
-        columns = np.flatnonzero(scores)
-        row = [*columns.tolist(), self._n], [*(-scores[columns]).tolist(), 1.0]
-        self._program.add_rows(rows_of([row], -np.inf, constant))
+        self._fresh.append((constant, scores))
         self.in_use.append(cut)
         self._idle[cut] = 0
 
+    def _add_fresh(self) -> None:
+        if not self._fresh:
+            return
+        columns = [np.append(np.flatnonzero(scores), self._n) for _, scores in self._fresh]
+        values = [np.append(-scores[own[:-1]], 1.0) for own, (_, scores) in zip(columns, self._fresh, strict=True)]
+        rows = Rows(
+            lower=np.full(len(columns), -np.inf),
+            upper=np.array([constant for constant, _ in self._fresh]),
+            starts=np.cumsum([0, *map(len, columns)]),
+            columns=np.concatenate(columns),
+            values=np.concatenate(values),
+        )
+        self._program.add_rows(rows)
+        self._fresh.clear()
+
     def drop(self, gone: Callable[[int], bool]) -> None:
         """Remove the rows of cuts for which ``gone`` is true."""
+        self._add_fresh()
         positions = [position for position, cut in enumerate(self.in_use) if gone(cut)]
         if positions:
             self._program.delete_rows(np.array(positions) + self._robots)
@@ -85,6 +101,7 @@ class NodeProgram:
 
     def solve(self, seconds: float = np.inf) -> RelaxedPlan | None:
         """Solve within so many seconds and return what HiGHS claims, or ``None`` when it claims no optimum."""
+        self._add_fresh()
         claim = self._program.solve(seconds)
         if not claim.is_optimal:
             return None

@@ -1,0 +1,91 @@
+"""Warm starts: a scenario that moves step by step, planned anew cold and from the plan and the result before.
+
+Run as ``python -m analysis.benchmarks.warm [--robots 10 20] [--objectives ...] [--steps 50] [--gap G] [--seed S]``.
+Robots carry out the best plan of each step and targets move as their motion says; what is believed of the targets stays
+the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+from time import process_time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analysis.tables import print_table
+from ratt_opt import random_scenario, solve_maxmin
+
+if TYPE_CHECKING:
+    from ratt_opt import MaxMinResult, Problem, Scenario
+    from ratt_opt._validation import IntArray
+
+BUDGETS = {10: (3, 11), 20: (6, 47)}
+TARGETS = {10: 15, 20: 20}
+
+
+def moved(scenario: Scenario, plan: IntArray) -> Scenario:
+    """The scenario one period later, each robot having carried out its element of the plan."""
+    poses = scenario.predicted_poses[plan]
+    robots = [
+        robot.replace(x=float(x), y=float(y), heading=float(np.arctan2(np.sin(angle), np.cos(angle))))
+        for robot, (x, y, angle) in zip(scenario.robots, poses.tolist(), strict=True)
+    ]
+    targets = [
+        target.replace(x=float(x), y=float(y), heading=target.heading + scenario.sampling_period * target.turn_rate)
+        for target, (x, y) in zip(scenario.targets, scenario.predicted_targets.tolist(), strict=True)
+    ]
+    return scenario.replace(robots=tuple(robots), targets=tuple(targets))
+
+
+def timed(problem: Problem, gap: float, start: IntArray | MaxMinResult | None) -> tuple[MaxMinResult, float]:
+    """A result and its processor seconds."""
+    began = process_time()
+    result = solve_maxmin(problem, gap=gap, start=start)
+    return result, process_time() - began
+
+
+def measure(scenario: Scenario, name: str, steps: int, gap: float) -> dict[str, Any]:
+    """Medians over the steps, of seconds and of the speed-up of each step."""
+    before = solve_maxmin(scenario.problem(name), gap=gap)
+    seconds, nodes, worst = [], [], 0.0
+    for _ in range(steps):
+        scenario = moved(scenario, before.elements)
+        problem = scenario.problem(name)
+        (cold, slow), (plan, fair), (warm, fast) = (
+            timed(problem, gap, start) for start in (None, before.elements, before)
+        )
+        seconds.append((slow, fair, fast))
+        nodes.append((cold.nodes, plan.nodes, warm.nodes))
+        worst = max(worst, warm.lower - cold.upper, cold.lower - warm.upper)
+        before = warm
+    times = np.array(seconds)
+    row: dict[str, Any] = {
+        f"{kind}_s": float(np.median(times[:, k])) for k, kind in enumerate(("cold", "plan", "result"))
+    }
+    row |= {"speedup_plan": float(np.median(times[:, 0] / times[:, 1]))}
+    row |= {"speedup_result": float(np.median(times[:, 0] / times[:, 2]))}
+    row |= {f"{kind}_nodes": int(np.sum(nodes, axis=0)[k]) for k, kind in enumerate(("cold", "plan", "result"))}
+    return row | {"brackets_apart": worst}
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--robots", type=int, nargs="*", default=sorted(BUDGETS), choices=sorted(BUDGETS))
+    parser.add_argument("--objectives", nargs="*", default=["trace", "logdet", "maxeig"])
+    parser.add_argument("--steps", type=int, default=50)
+    parser.add_argument("--gap", type=float, default=1e-6)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    rows: list[dict[str, object]] = []
+    for robots in options.robots:
+        alpha_s, alpha_c = BUDGETS[robots]
+        for name in options.objectives:
+            scenario = random_scenario(robots, TARGETS[robots], alpha_s=alpha_s, alpha_c=alpha_c, seed=options.seed)
+            rows.append({"robots": robots, "objective": name} | measure(scenario, name, options.steps, options.gap))
+    print_table(f"Steps of a moving team, medians over {options.steps}", rows)
+
+
+if __name__ == "__main__":
+    main()

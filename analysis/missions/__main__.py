@@ -1,0 +1,13 @@
+"""All studies of missions: ``python -m analysis.missions --trials T --out DIR``."""
+
+from __future__ import annotations
+
+import sys
+
+from analysis.missions import consistency, exact_flights, flights
+from analysis.missions.claims import write_claims
+from analysis.studies.command import main
+
+if __name__ == "__main__":
+    ENTRIES = [flights.ENTRY, exact_flights.ENTRY, consistency.ENTRY]
+    sys.exit(main("Missions under attack.", ENTRIES, trials=100, after=write_claims))

@@ -1,0 +1,134 @@
+"""Planners under attackers over whole missions, under every attack model.
+
+``python -m analysis.missions.flights --trials 100 --out DIR``
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.studies.command import Entry, main
+from analysis.studies.plots import new_figure, points, save
+from analysis.studies.statistics import column, estimate, select
+from analysis.studies.study import Case, Study
+from ratt_opt.missions.planners import MaxMinPlanner, RandomPlanner
+from ratt_opt.missions.run import run_mission
+from ratt_opt.missions.world import MissionModel
+from ratt_opt.scenario.generator import random_scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from analysis.studies.study import Cell, Seeds
+    from ratt_opt.missions.planners import Planner
+
+STEPS = 50
+SIZES = ((5, 8), (10, 15), (20, 20))
+MODELS = (
+    ("renewed", "best group"),
+    ("renewed", "all surviving"),
+    ("persistent", "all surviving"),
+    ("permanent", "all surviving"),
+)
+MAXMIN = MaxMinPlanner(gap=1e-3, max_nodes=10)
+MODEL = MissionModel(linearisation="second order")
+SETTLED = 10
+"""Steps after which the first uncertainty of 3 m is forgotten; means are over the rest of a mission."""
+
+
+def cases(sizes: Sequence[tuple[int, int]], models: Sequence[tuple[str, str]]) -> tuple[Case, ...]:
+    """Sizes with the paper's smallest budgets, times attack models."""
+    return tuple(
+        Case(
+            n_robots=n,
+            n_targets=m,
+            alpha_s=n // 3,
+            alpha_c=n * (n - 1) // 8,
+            options=(("attacks", attacks), ("sharing", sharing)),
+        )
+        for n, m in sizes
+        for attacks, sharing in models
+    )
+
+
+def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """One mission for each planner and attacker: ``planner/attacker/metric``, means over the settled steps.
+
+    ``rmse`` [m], ``trace`` of the position covariance per target [m^2], ``nees`` over its expected value, and ``last``,
+    the RMSE of the last step [m].
+    """
+    options = dict(case.options)
+    scenario = random_scenario(
+        case.n_robots, case.n_targets, alpha_s=case.alpha_s, alpha_c=case.alpha_c, seed=seeds.scenario
+    )
+    players: dict[str, Planner] = {"maxmin": MAXMIN, "random": RandomPlanner(seeds.planner)}
+    row: dict[str, Cell] = {}
+    for planner in study.planner_names:
+        for attacker in study.attacker_names:
+            mission = run_mission(
+                scenario,
+                steps=STEPS,
+                planner=players.get(planner) or planner,
+                attacker=attacker,
+                attacks=str(options["attacks"]),
+                sharing=str(options["sharing"]),
+                seed=seeds.simulation,
+                model=MODEL,
+            )
+            found = {
+                "rmse": float(np.sqrt(mission.squared_errors[SETTLED:].mean())),
+                "trace": float(mission.traces[SETTLED:].mean()),
+                "nees": float(mission.nees[SETTLED:].mean()) / mission.dimension,
+            }
+            row |= {f"{planner}/{attacker}/{metric}": found[metric] for metric in study.metrics}
+    return row
+
+
+STUDY = Study(
+    name="flights",
+    cases=cases(SIZES, MODELS),
+    planners=("ratt", "greedy", "myopic", "random"),
+    attackers=("none", "worst"),
+    metrics=("rmse", "trace", "nees"),
+    measure=measure,
+)
+NAMES = {"maxmin": "optimum"}
+"""Planners whose look in figures goes by another name."""
+
+
+def draw_study(study: Study, rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """RMSE of every planner, by attack model, under every attacker."""
+    sizes = list(dict.fromkeys(case.n_robots for case in study.cases))
+    figure = new_figure(11, 3.4 * len(sizes))
+    axes = figure.subplots(len(sizes), len(study.attacker_names), squeeze=False)
+    for down, n in enumerate(sizes):
+        kept = [(case, select(rows, case=case.name)) for case in study.cases if case.n_robots == n]
+        groups = [f"{dict(case.options)['attacks']}\n{dict(case.options)['sharing']}" for case, _ in kept]
+        for across, attacker in enumerate(study.attacker_names):
+            series = {
+                NAMES.get(p, p): [estimate(column(k, f"{p}/{attacker}/rmse")) for _, k in kept]
+                for p in study.planner_names
+            }
+            points(axes[down, across], groups, series)
+            axes[down, across].set_title(f"N={n}, attacker: {attacker}")
+        axes[down, 0].set_ylabel("RMSE [m]")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels), frameon=False)
+    trials = len(select(rows, case=study.cases[0].name))
+    figure.supxlabel(f"{trials} paired missions of {STEPS} steps, means with 95 % interval", fontsize="small")
+    save(figure, folder, study.name)
+
+
+def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
+    """The figure of the paper's planners."""
+    draw_study(STUDY, rows, folder)
+
+
+ENTRY = Entry(STUDY, draw)
+
+if __name__ == "__main__":
+    sys.exit(main("Planners over whole missions.", [ENTRY], trials=100))

@@ -1,0 +1,105 @@
+"""``ratt-opt track``: a whole mission in simulation."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from ratt_opt.cli.options import JsonFlag, OutFolder
+from ratt_opt.cli.terminal import print_json, print_lines
+from ratt_opt.errors import InputError, printable
+from ratt_opt.progress import Step
+
+if TYPE_CHECKING:
+    from ratt_opt.missions.result import Mission
+
+__all__ = ["track"]
+
+JOURNAL = "journal.jsonl"
+"""Every step's decisions, in the folder of the results: run the same command again after a kill, and it goes on."""
+
+Planner = Literal["ratt", "maxmin", "greedy", "myopic", "nonrobust", "random"]
+Attacker = Literal["none", "worst", "bounded rational", "greedy", "random"]
+
+
+def track(
+    file: Annotated[Path, typer.Argument(help="Scenario file.", show_default=False)],
+    steps: Annotated[int, typer.Option("--steps", help="Steps of the mission.")],
+    out: OutFolder,
+    planner: Annotated[Planner, typer.Option("--planner", help="Who plans.")] = "ratt",
+    attacker: Annotated[Attacker, typer.Option("--attacker", help="Who attacks.")] = "worst",
+    attacks: Annotated[
+        Literal["renewed", "persistent", "permanent"], typer.Option("--attacks", help="How long attacks last.")
+    ] = "renewed",
+    sharing: Annotated[
+        Literal["best group", "all surviving"], typer.Option("--sharing", help="Whose belief lives on.")
+    ] = "best group",
+    horizon: Annotated[int, typer.Option("--horizon", help="Steps that a plan looks ahead.")] = 1,
+    motion: Annotated[
+        Literal["known velocity", "constant velocity", "coordinated turn"],
+        typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
+    ] = "known velocity",
+    linearisation: Annotated[
+        Literal["first order", "second order", "iterated"],
+        typer.Option("--linearisation", help="The textbook EKF, or with the second-order term it leaves out."),
+    ] = "first order",
+    time_limit: Annotated[
+        float | None, typer.Option("--time-limit", help="Seconds a step for maxmin; else limited by nodes.")
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of everything random.")] = 0,
+    seeds: Annotated[int, typer.Option("--seeds", min=1, help="Missions for the figures' intervals.")] = 1,
+    as_json: JsonFlag = False,
+) -> None:
+    """Fly a mission under attack in simulation; write tables, figures, an animation and a player."""
+    from ratt_opt._files import output_directory
+    from ratt_opt.missions.planners import MaxMinPlanner
+    from ratt_opt.missions.run import run_mission
+    from ratt_opt.missions.world import MissionModel
+    from ratt_opt.report.mission.write import write_mission
+    from ratt_opt.scenario.files import load_scenario
+
+    if time_limit is not None and planner != "maxmin":
+        raise InputError("--time-limit", "must come with --planner maxmin", planner)
+    scenario = load_scenario(file)
+    folder = output_directory(out)
+    model = MissionModel(motion=motion, linearisation=linearisation)
+    chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
+    missions = []
+    with Step("flying") as shown:
+        for k in range(seeds):
+            journal = folder / (JOURNAL if k == 0 else f"{k}.{JOURNAL}")
+
+            def say(step: int, of: int, number: int = k) -> None:
+                shown.say(f"mission {number + 1} of {seeds}, step {step} of {of}")
+
+            mission = run_mission(
+                scenario,
+                steps=steps,
+                planner=chosen,
+                attacker=attacker,
+                attacks=attacks,
+                sharing=sharing,
+                horizon=horizon,
+                seed=seed + k,
+                model=model,
+                journal=journal,
+                progress=say,
+            )
+            missions.append(mission)
+    files = write_mission(missions[0], folder, missions[1:])
+    if as_json:
+        print_json(missions[0].to_dict())
+    else:
+        print_lines([*_summary(missions), "written: " + ", ".join(printable(str(file)) for file in files)])
+
+
+def _summary(missions: "list[Mission]") -> list[str]:
+    first = missions[0]
+    low, high = first.nees_band()
+    rmse = ", ".join(f"{mission.rmse.mean():.4g}" for mission in missions)
+    nees = ", ".join(f"{mission.nees.mean():.3g}" for mission in missions)
+    return [
+        f"{len(first.steps)} steps, {first.scenario.n_robots} robots, {first.scenario.n_targets} targets",
+        f"RMSE [m], mean over the steps: {rmse}",
+        f"NEES, mean over the steps: {nees} (consistent: {first.dimension}; one step in [{low:.3g}, {high:.3g}])",
+    ]

@@ -1,0 +1,259 @@
+"""The MRCLAM dataset replayed: real poses and measurements, cameras that are planned, blinded and cut off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, IntArray, check_integer, check_number, readonly
+from ratt_opt._values import ByValue
+from ratt_opt.errors import InputError
+from ratt_opt.missions.attack_models import AttackModel, attack_model
+from ratt_opt.missions.attackers import attack_of, attacker_called
+from ratt_opt.missions.belief import Belief
+from ratt_opt.missions.memory import Memory, Pieces
+from ratt_opt.missions.replay.cameras import camera_planner
+from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor
+from ratt_opt.missions.sensing import Reading, group_pieces
+from ratt_opt.missions.world import MissionModel, Threatened, World
+from ratt_opt.problem import Attack, Problem
+from ratt_opt.scenario.mrclam import MRCLAM_SENSOR, from_mrclam, pose_at
+from ratt_opt.scenario.mrclam_reader import read_mrclam
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ratt_opt.missions.attackers import Attacker, OwnAttacker
+    from ratt_opt.scenario.mrclam_reader import MrclamData
+
+__all__ = ["Replay", "ReplaySettings", "ReplayStep", "replay_mrclam"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ReplayStep(ByValue):
+    """One step: robots whose cameras are ``running``, the ``attack``, the team's ``belief`` after it.
+
+    ``group`` : its robots; ``errors`` : (M, 2) [m]; ``used``, ``gated`` : measurements taken in, and refused as
+    outliers, by that group.
+    """
+
+    running: frozenset[int]
+    attack: Attack
+    group: frozenset[int]
+    belief: Belief
+    errors: FloatArray
+    used: int
+    gated: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Replay(ByValue):
+    """A replayed mission; ``sensor`` as fitted."""
+
+    sensor: FittedSensor
+    steps: tuple[ReplayStep, ...]
+
+    def __repr__(self) -> str:
+        ends = f"RMSE {self.rmse[-1]:.3g} m at the end, NEES {self.nees[-1]:.3g} of 2"
+        return f"Replay({len(self.steps)} steps, {ends})"
+
+    @property
+    def rmse(self) -> FloatArray:
+        """(T,) root of the mean squared error over the landmarks [m]."""
+        return readonly(np.array([np.sqrt((step.errors**2).sum(axis=1).mean()) for step in self.steps]))
+
+    @property
+    def nees(self) -> FloatArray:
+        """(T,) mean over the landmarks; 2 where the filter is consistent."""
+        return readonly(np.array([step.belief.nees(step.belief.mean - step.errors).mean() for step in self.steps]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReplaySettings:
+    """What a replay is.
+
+    ``start`` : seconds since all poses have begun; ``period`` : of a step [s], in which every running camera gives its
+    last sighting of each landmark (successive ones have correlated errors); ``cameras`` : how many may run;
+    ``prior_std`` : by which landmarks are believed elsewhere at first [m]; ``drift_std`` : by which landmarks are taken
+    to move in a step [m], which keeps the filter from trusting errors that do not average out; ``seed`` : of the first
+    beliefs and of random players.
+    """
+
+    start: float = 60.0
+    period: float = 5.0
+    cameras: int = 3
+    alpha_s: int = 1
+    alpha_c: int = 2
+    prior_std: float = 0.5
+    drift_std: float = 0.0
+    seed: int = 0
+
+
+def replay_mrclam(
+    directory: str | Path,
+    *,
+    steps: int,
+    planner: str = "ratt",
+    attacker: str | OwnAttacker = "worst",
+    attacks: str | AttackModel = "renewed",
+    sensor: FittedSensor | None = None,
+    settings: ReplaySettings | None = None,
+) -> Replay:
+    """Track the landmarks with the dataset's own measurements, under attack.
+
+    Each group keeps its own belief; they are merged without double counting when links return. The team is the group
+    that knows most.
+
+    Parameters
+    ----------
+    directory : dataset folder, see :func:`read_mrclam`
+    steps : T >= 1
+    planner : of the cameras: ``"ratt"``, ``"maxmin"`` (exact), ``"greedy"``, ``"myopic"`` or ``"random"``
+    attacker, attacks : as in :func:`run_mission`
+    sensor : noise law and gate; by default fitted to all sightings of the dataset
+    settings : when, how many cameras, which budgets
+
+    Raises
+    ------
+    FileFormatError : a file is missing or malformed.
+    InputError : an argument breaks its rule, or the poses end before the replay does.
+    """
+    s = settings or ReplaySettings()
+    check_integer("steps", steps, low=1)
+    for name in ("start", "period", "prior_std", "drift_std"):
+        check_number(name, getattr(s, name), low=0.0)
+    data = read_mrclam(directory)
+    flight = _Replay(data, directory, s, sensor)
+    if flight.begin + steps * s.period > min(poses[-1, 0] for poses in data.poses):
+        raise InputError("steps", "must end before the poses do", steps)
+    choose, attack, model = camera_planner(planner), attacker_called(attacker), attack_model(attacks)
+    for step in range(steps):
+        problem = flight.problem(step, model)
+        running = problem.check_plan(choose(problem, s.cameras, s.seed + step))
+        flight.attacked(step, problem, running, (attack, model))
+        flight.measure(step, running)
+    return Replay(sensor=flight.sensor, steps=tuple(flight.steps))
+
+
+class _Replay:
+    """The state of a replay under way."""
+
+    def __init__(
+        self, data: MrclamData, directory: str | Path, settings: ReplaySettings, sensor: FittedSensor | None
+    ) -> None:
+        self.data, self.settings = data, settings
+        self.begin = max(poses[0, 0] for poses in data.poses) + settings.start
+        fitted = fit_sensor(data) if sensor is None else sensor
+        reach = {"max_range": MRCLAM_SENSOR.max_range, "field_of_view": MRCLAM_SENSOR.field_of_view}
+        self.sensor: FittedSensor = fitted.replace(**reach)
+        scenario = from_mrclam(
+            directory,
+            settings.start,
+            alpha_s=settings.alpha_s,
+            alpha_c=settings.alpha_c,
+            sensor=self.sensor,
+            prior_std=max(settings.prior_std, 1e-3),
+            sampling_period=settings.period,
+        )
+        drifting = tuple(target.replace(process_std=settings.drift_std) for target in scenario.targets)
+        self.world = World(scenario.replace(targets=drifting), MissionModel(linearisation="second order"), 1)
+        self.truth = np.array([(target.x, target.y) for target in scenario.targets])
+        self.subjects = sorted(data.landmarks)
+        shift = np.random.default_rng(settings.seed).standard_normal(self.truth.shape) * settings.prior_std
+        belief = self.world.motion.initial(scenario)
+        belief = Belief.of(belief.mean + shift, belief.covariance)
+        self.memory = Memory.start(self.world.motion, settings.period, belief, scenario.n_robots)
+        self.attack, self.threatened = Attack(), Threatened(Attack(), settings.alpha_s, settings.alpha_c)
+        self.steps: list[ReplayStep] = []
+
+    def problem(self, step: int, model: AttackModel) -> Problem:
+        """Every robot's camera off (its first element) or on, from where it is now, with the best belief there is."""
+        scenario = self.world.scenario
+        self.threatened = model.threatened(step, self.attack, scenario)
+        poses = self._poses(self.begin + step * self.settings.period)
+        groups = self.world.communication(poses, self.threatened.standing).groups()
+        self.memory = self.memory.shared(groups)
+        knowing = min((self.memory.belief(min(group)) for group in groups), key=lambda belief: belief.trace)
+        ahead = knowing.predicted(self.world.motion, self.settings.period, step * self.settings.period)
+        information = np.zeros((2 * scenario.n_robots, *ahead.covariance.shape))
+        for i, sensor in enumerate(self.world.sensors):
+            information[2 * i + 1] = sensor.information(poses[i : i + 1], ahead.positions, ahead.position_covariance)[0]
+        objective = TraceObjective(ahead.covariance, information)
+        owner = np.repeat(np.arange(scenario.n_robots), 2)
+        return self.world.problem(objective, owner, poses, self.threatened)
+
+    def attacked(self, step: int, problem: Problem, plan: IntArray, players: tuple[Attacker, AttackModel]) -> None:
+        """What stood before, and what the attacker adds."""
+        attacker, model = players
+        rng = np.random.default_rng([self.settings.seed, step])
+        sensors, links = model.strikes(self.threatened, len(problem.communication.links), rng)
+        standing = self.threatened.standing
+        limited = replace(problem, alpha_s=sensors, alpha_c=links)
+        found = attacker(limited, plan, self.settings.seed + step) if sensors or links else Attack()
+        new = attack_of(found, limited)
+        self.attack = Attack(standing.sensing | new.sensing, standing.links | new.links)
+
+    def measure(self, step: int, plan: IntArray) -> None:
+        """Groups take in what their running cameras saw in this step."""
+        n_robots = self.world.scenario.n_robots
+        end = self.begin + (step + 1) * self.settings.period
+        poses = self._poses(end)
+        groups = sorted(self.world.communication(poses, self.attack).groups(), key=min)
+        running = frozenset(int(i) for i in np.flatnonzero(plan % 2))
+        whole, made = Pieces.none(n_robots, self.memory.base), np.zeros(n_robots, dtype=np.bool_)
+        counts = []
+        for group in groups:
+            see = sorted((group & running) - self.attack.sensing)
+            belief = self.memory.belief(min(group))
+            ahead = belief.predicted(self.world.motion, self.settings.period, step * self.settings.period)
+            readings = {i: self._sightings(i, end) for i in see}
+            seen = sum(int(reading.seen.sum()) for reading, _ in readings.values())
+            usable = {i: self._gated(i, reading, at, ahead) for i, (reading, at) in readings.items()}
+            paths = {i: at for i, (_, at) in readings.items()}
+            pieces, innovation = group_pieces(self.world, ahead, paths, usable, see)
+            whole.information[see], whole.vector[see] = pieces.information[see], pieces.vector[see]
+            made[see] = True
+            used = innovation.count // 2
+            counts.append((used, seen - sum(int(reading.seen.sum()) for reading in usable.values())))
+        self.memory = self.memory.advanced(whole, made).shared(groups)
+        beliefs = [self.memory.belief(min(group)) for group in groups]
+        best = int(np.argmin([belief.trace for belief in beliefs]))
+        record = ReplayStep(
+            running=running,
+            attack=self.attack,
+            group=groups[best],
+            belief=beliefs[best],
+            errors=readonly(beliefs[best].mean - self.truth),
+            used=counts[best][0],
+            gated=counts[best][1],
+        )
+        self.steps.append(record)
+
+    def _poses(self, time: float) -> FloatArray:
+        return np.concatenate([pose_at(poses, np.array([time])) for poses in self.data.poses])
+
+    def _sightings(self, robot: int, end: float) -> tuple[Reading, FloatArray]:
+        """The last sighting of each landmark in the step that ends then, and the poses (M, 3) they were made from."""
+        rows = self.data.measurements[robot]
+        rows = rows[(rows[:, 0] > end - self.settings.period) & (rows[:, 0] <= end)]
+        values, seen = np.zeros((len(self.subjects), 2)), np.zeros(len(self.subjects), dtype=np.bool_)
+        times = np.full(len(self.subjects), end)
+        for time, code, distance, bearing in rows:
+            subject = self.data.subject_of.get(int(code), -1)
+            if subject in self.data.landmarks:
+                j = self.subjects.index(subject)
+                values[j], seen[j], times[j] = (distance, bearing), True, time
+        return Reading(values, seen), pose_at(self.data.poses[robot], times)
+
+    def _gated(self, robot: int, reading: Reading, at: FloatArray, ahead: Belief) -> Reading:
+        """The reading without what is more likely an outlier, seen from what is believed."""
+        sensor = self.world.sensors[robot]
+        slope = sensor.jacobian(at, ahead.positions)
+        spread = slope @ ahead.position_covariance @ np.swapaxes(slope, -1, -2)
+        spread = spread + sensor.noise_covariance(at, ahead.positions, ahead.position_covariance)
+        surprise = sensor.surprise(reading.values, sensor.measure(at, ahead.positions))
+        squared = np.einsum("mi,mij,mj->m", surprise, np.linalg.inv(spread), surprise)
+        return Reading(reading.values, reading.seen & (squared <= self.sensor.gate))

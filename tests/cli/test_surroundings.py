@@ -1,0 +1,125 @@
+"""Whatever the machine is like: locales, terminals, streams, homes."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import pty
+import struct
+import subprocess
+import sys
+import termios
+from typing import TYPE_CHECKING
+
+import pytest
+
+from ratt_opt import _cache, random_scenario, save_scenario
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PROGRAM = [sys.executable, "-c", "from ratt_opt.cli import main; main()"]
+NOTHING_CAN_BE_WRITTEN = """
+import os, sys, tempfile
+from pathlib import Path
+import ratt_opt
+home = str(Path(ratt_opt.__file__).parent), "/dev/null"
+def refused(path):
+    return str(path).startswith(home)
+access, made, opened = os.access, os.makedirs, tempfile.TemporaryFile
+def makedirs(path, *given, **named):
+    if refused(path):
+        raise OSError(30, "Read-only file system")
+    return made(path, *given, **named)
+def temporary(*given, dir=None, **named):
+    if refused(dir):
+        raise OSError(30, "Read-only file system")
+    return opened(*given, dir=dir, **named)
+os.access = lambda path, mode, **named: not refused(path) and access(path, mode, **named)
+os.makedirs, tempfile.TemporaryFile = makedirs, temporary
+sys.argv[1:] = ["schema"]
+from ratt_opt.cli import run
+assert run(sys.argv[1:]) == 0
+from ratt_opt.graph import compiled_threshold
+print(compiled_threshold.__name__, os.environ["NUMBA_CACHE_DIR"], file=sys.stderr)
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scenario whose names no ASCII locale can print, and a plan."""
+    made = tmp_path_factory.mktemp("robots")
+    scenario = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=5)
+    named = [robot.replace(name=name) for robot, name in zip(scenario.robots, ("Zoë", "机器人", "[b]"), strict=True)]
+    save_scenario(scenario.replace(robots=tuple(named)), made / "scenario.json")
+    (made / "plan.json").write_text('{"controls": [0, 1, 2]}')
+    return made
+
+
+@pytest.mark.parametrize("locale", ["C", "tr_TR.ISO-8859-9"])
+def test_any_locale(locale: str, folder: Path, tmp_path: Path) -> None:
+    encoding = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": locale, "LANG": locale}
+    command = [*PROGRAM, "bound", str(folder / "scenario.json"), "--out", str(tmp_path / "ö"), "--no-certificate"]
+    done = subprocess.run(command, env={**os.environ, **encoding}, capture_output=True, check=False)
+    assert done.returncode == 0
+    assert b"Traceback" not in done.stderr
+    report = json.loads((tmp_path / "ö" / "report.json").read_text(encoding="utf-8"))
+    assert report["robot_names"] == ["Zoë", "机器人", "[b]"]
+    assert "机器人" in (tmp_path / "ö" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("columns", [1, 20, 200])
+def test_terminals_of_any_width(columns: int, folder: Path) -> None:
+    """With a terminal of so many columns: tables, colours and a spinner, and still exit 0."""
+    leader, follower = pty.openpty()
+    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    command = [*PROGRAM, "attack", str(folder / "scenario.json"), "--plan", str(folder / "plan.json")]
+    with subprocess.Popen(command, stdin=follower, stdout=follower, stderr=follower, close_fds=True) as process:
+        os.close(follower)
+        shown = b""
+        while True:
+            try:
+                piece = os.read(leader, 65536)
+            except OSError:  # the program has ended, and its terminal with it
+                break
+            if not piece:
+                break
+            shown += piece
+        assert process.wait(60) == 0
+    os.close(leader)
+    assert b"Traceback" not in shown
+    assert len(shown) > 100
+
+
+@pytest.mark.parametrize(
+    ("closed", "code"), [("<&-", 0), ("2>&-", 0), (">&-", 74), ("<&- >&- 2>&-", 74), ("</dev/null 2>/dev/full", 0)]
+)
+def test_closed_streams(closed: str, code: int, folder: Path, tmp_path: Path) -> None:
+    """The exit code says whether the result arrived, and no file gets what belongs to a stream."""
+    out = tmp_path / "new.json"
+    numbers = "--robots 2 --targets 1 --sensing-attacks 0 --link-attacks 0 --seed 1 --out"
+    command = ["/bin/sh", "-c", f'exec "$0" "$@" {closed}', *PROGRAM, "new", *numbers.split(), str(out)]
+    assert subprocess.run(command, cwd=folder, check=False, capture_output=True).returncode == code
+    assert json.loads(out.read_text())["format"] == "ratt-opt scenario"
+
+
+def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
+    known = {_cache.VARIABLE, "XDG_CACHE_HOME"}
+    environment = {name: value for name, value in os.environ.items() if name not in known} | {"HOME": "/dev/null"}
+    done = subprocess.run(
+        [sys.executable, "-c", NOTHING_CAN_BE_WRITTEN], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    name, folder = done.stderr.split()[-2:]
+    assert name == "ratt_opt.graph.compiled_threshold"
+    assert "ratt-opt-compiled-" in folder
+    assert not os.path.exists(folder)
+
+
+def test_a_place_that_exists_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(_cache.VARIABLE, raising=False)
+    monkeypatch.setattr(_cache, "__file__", str(tmp_path / "none" / "x.py"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache" / "of" / "mine"))
+    _cache.provide_cache()
+    assert _cache.VARIABLE not in os.environ
