@@ -46,7 +46,8 @@ def rooms(root: Path = ROOT) -> list[Room]:
     """The rooms in the order of the import contract, the top layer first."""
     contracts = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     layers = next(c for c in contracts["contracts"] if c["type"] == "layers")["layers"]
-    names = [layer.strip("()").removeprefix("ratt_opt.") for layer in layers]
+    parts = [part.strip() for layer in layers for part in layer.strip("()").split("|")]
+    names = [part.removeprefix("ratt_opt.") for part in parts]
     return [_room(root / "ratt_opt", name) for name in names]
 
 
@@ -138,7 +139,7 @@ def draw(out: Path) -> Path:
     figure, axes = plt.subplots(figsize=(11, 0.42 * (len(layers) + 2)), constrained_layout=True)
     _draw(axes, layers)
     path = out / "architecture.png"
-    figure.savefig(path, dpi=130)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
     return path
 

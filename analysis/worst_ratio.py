@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt import caa, worst_case_ratio
 from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
+from ratt_opt.report.palette import PLANNERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -113,21 +114,26 @@ def draw(points: Sequence[Point]) -> Figure:
     return figure
 
 
+COLOURS = [PLANNERS[name].colour for name in ("maxmin", "ratt", "greedy", "nonrobust", "myopic")]
+"""As the cases are drawn: each narrower than the one before, so that equal curves lie inside one another."""
+
+
 def _panel(axis: Axes, points: Sequence[Point]) -> None:
     cases = list(dict.fromkeys((p.n_robots, p.alpha_s, p.alpha_c, p.planner) for p in points))
-    widths = [4.5, 3.4, 2.6, 1.9, 1.3]
+    widths = [8.5, 6.0, 4.0, 2.4, 1.2]
     for index, case in enumerate(cases):
         line = [p for p in points if (p.n_robots, p.alpha_s, p.alpha_c, p.planner) == case]
-        x = [p.curvature for p in line]
+        x, colour = [p.curvature for p in line], COLOURS[index % 5]
         label = rf"{case[3]}, N={case[0]}, $\alpha_s$={case[1]}, $\alpha_c$={case[2]}"
-        drawn = axis.plot(x, [p.upper for p in line], lw=widths[index % 5], label=label, zorder=2 + index)
-        axis.fill_between(x, [p.lower for p in line], [p.upper for p in line], color=drawn[0].get_color(), alpha=0.3)
+        axis.plot(x, [p.upper for p in line], lw=widths[index % 5], color=colour, label=label, zorder=2 + index)
+        axis.fill_between(x, [p.lower for p in line], [p.upper for p in line], color=colour, alpha=0.3)
     grid = sorted({p.curvature for p in points})
     one = {p.curvature: p for p in points}
     axis.plot(grid, [one[k].pattern_free for k in grid], "k--", lw=1.4, label="pattern-free theorem", zorder=20)
     best = [max(p.theorem1 for p in points if p.curvature == k) for k in grid]
     axis.plot(grid, best, "k:", lw=1.8, label="Theorem 1 (its largest over these cases)", zorder=20)
     axis.set(xlim=(0, 1), ylim=(0, 1.02), xlabel="curvature", ylabel="worst value / optimum")
+    axis.spines[["top", "right"]].set_visible(False)
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8, loc="upper right")
 

@@ -13,7 +13,12 @@ release = ratt_opt.__version__
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery", "ratt_pages"]
 exclude_patterns = ["_build", "_extension", "examples", "gallery/*.ipynb", "gallery/*.py"]
 html_theme = "pydata_sphinx_theme"
-html_theme_options = {"show_toc_level": 2, "navigation_with_keys": False, "show_prev_next": False}
+html_theme_options = {
+    "show_toc_level": 2,
+    "navigation_with_keys": False,
+    "show_prev_next": False,
+    "header_links_before_dropdown": 6,
+}
 html_sidebars = {"**": ["sidebar-nav-bs"]}
 html_copy_source = False
 html_math_renderer = "mathml"  # browsers draw it themselves: nothing is fetched

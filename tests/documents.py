@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 __all__ = ["ROOT", "Block", "blocks", "documents"]
 
 ROOT = Path(__file__).parents[1]
-MADE = ("api", "gallery", "notebooks")
+MADE = ("api", "gallery", "notebooks", "schemas")
 """Folders of docs that building the site writes."""
 BLOCK = re.compile(
     r"(?:^<!-- (?P<mark>[^>]*?) -->\n)?^```(?P<language>\w+)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL

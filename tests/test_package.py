@@ -40,3 +40,12 @@ def test_every_name_has_one_topic() -> None:
     assert ["__version__", *listed] == ratt_opt.__all__
     assert sorted(ratt_opt.__all__) == dir(ratt_opt)
     assert all(names for names in ratt_opt.TOPICS.values())
+
+
+def test_the_house_has_every_room_once() -> None:
+    from analysis.architecture import ROOT, rooms
+
+    names = [room.name for room in rooms()]
+    assert len(names) == len(set(names))
+    folders = {path.name for path in (ROOT / "ratt_opt").iterdir() if (path / "__init__.py").exists()}
+    assert folders <= set(names)

@@ -12,6 +12,7 @@ from urllib.parse import unquote, urlparse
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.report.schemas import OUTPUTS
 from tests.documents import ROOT
 
 NEEDED = ("sphinx", "pydata_sphinx_theme", "myst_nb", "sphinx_gallery", "latex2mathml")
@@ -82,6 +83,11 @@ def test_every_link_inside_leads_to_a_place_that_is_there(site):
 def test_the_interface_pages_list_every_name_by_topic(site):
     places = {place for path, page in site.items() if path.parent.name == "api" for place in page.places}
     assert {f"ratt_opt.{name}" for names in ro.TOPICS.values() for name in names} <= places
+
+
+def test_every_format_has_a_page(site):
+    pages = {path.stem for path in site if path.parent.name == "schemas"}
+    assert {"scenario", "information", *OUTPUTS} <= pages
 
 
 def test_every_example_and_notebook_is_a_page_with_a_picture(site):

@@ -36,7 +36,7 @@ def draw_comparison(
     note = f"{attacker.replace('_', '-')} attack; mean of {len(select(rows, case=panels[0][0].name))} trials"
 
     def draw(suffix: str, label: str, shown: Mapping[str, str], *, paired: bool) -> None:
-        figure = new_figure(3.2 * len(panels) + 0.6, 5.4)
+        figure = new_figure(sum(max(3.2, 1.7 * len(cases)) for cases in panels) + 0.6, 5.4)
         axes = figure.subplots(2, len(panels), squeeze=False, sharey="row")
         for across, cases in enumerate(panels):
             groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]

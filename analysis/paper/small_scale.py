@@ -28,9 +28,10 @@ STUDY = Study(
 
 
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
-    """One panel per budget pair; trace above, mean squared error below, as in the paper."""
-    panels = [[case] for case in STUDY.cases]
-    draw_comparison(rows, folder, name="small_scale", panels=panels, planners=STUDY.planner_names, attacker="exact")
+    """One group of bars a budget pair; trace above, mean squared error below, as in the paper."""
+    draw_comparison(
+        rows, folder, name="small_scale", panels=[STUDY.cases], planners=STUDY.planner_names, attacker="exact"
+    )
 
 
 ENTRY = Entry(STUDY, draw)

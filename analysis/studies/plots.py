@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.report.palette import Look
 
-__all__ = ["LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save"]
+__all__ = ["LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save", "use_palette"]
 
 LOOKS = {
     "optimum": PLANNERS["maxmin"],
@@ -35,6 +35,18 @@ LABELS = {
     "random": "Random",
     "myopic": "Myopic",
 }
+
+
+IN_TURN = ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")
+"""Whose colours plain curves and bars take, one after the other: neighbours differ in lightness too."""
+
+
+def use_palette() -> None:
+    """Let plain matplotlib calls take the library's colours, which stay apart for colour-blind readers and in grey."""
+    import matplotlib as mpl
+    from matplotlib.rcsetup import cycler
+
+    mpl.rcParams["axes.prop_cycle"] = cycler(color=[PLANNERS[name].colour for name in IN_TURN])
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import re
 import shutil
 from pathlib import Path
@@ -14,27 +15,72 @@ from matplotlib.figure import Figure
 from sphinx_gallery.scrapers import figure_rst
 
 import ratt_opt
+from ratt_opt.report.schemas import OUTPUTS, output_schema
+from ratt_opt.scenario.files import scenario_schema
 
 DOCS = Path(__file__).parents[1]
+INPUTS = ("scenario", "information")
 SLUG = re.compile(r"[^a-z]+")
 
 
 def setup(app: Any) -> dict[str, bool]:
     """Write the pages that are made of other things, before Sphinx looks for pages."""
     write_interface(DOCS / "api")
+    write_schemas(DOCS / "schemas")
     copy_notebooks(DOCS / "notebooks")
     app.add_html_math_renderer("mathml", (formula, None), (formula, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
 def write_interface(folder: Path) -> None:
-    """One page a topic of the public names, from their docstrings; unchanged pages keep their time."""
-    folder.mkdir(exist_ok=True)
+    """One page a topic of the public names, from their docstrings."""
     for topic, names in ratt_opt.TOPICS.items():
         text = f"# {topic}\n\n" + "\n".join(map(_entry, names))
-        page = folder / f"{SLUG.sub('_', topic.lower()).strip('_')}.md"
-        if not page.exists() or page.read_text(encoding="utf-8") != text:
-            page.write_text(text, encoding="utf-8")
+        _write(folder / f"{SLUG.sub('_', topic.lower()).strip('_')}.md", text)
+
+
+def write_schemas(folder: Path) -> None:
+    """One page a format: its fields as a table, and its JSON Schema."""
+    for kind in (*INPUTS, *OUTPUTS):
+        schema = scenario_schema(kind) if kind in INPUTS else output_schema(kind)
+        fields = [
+            f"| `{name}` | {'yes' if name in schema.get('required', []) else 'no'} | {_kind(value)} | {_said(value)} |"
+            for name, value in schema["properties"].items()
+        ]
+        head = [
+            f"# ratt-opt {kind}",
+            "",
+            _said(schema),
+            "",
+            "| field | must be there | type | |",
+            "| --- | --- | --- | --- |",
+        ]
+        text = json.dumps(schema, indent=1, ensure_ascii=False)
+        _write(folder / f"{kind}.md", "\n".join([*head, *fields, "", "## JSON Schema", "", "```json", text, "```", ""]))
+
+
+def _kind(value: dict[str, Any]) -> str:
+    """The JSON type of a field in words."""
+    if "const" in value:
+        return f"`{json.dumps(value['const'])}`"
+    if "anyOf" in value:
+        return " or ".join(map(_kind, value["anyOf"]))
+    if "$ref" in value:
+        return value["$ref"].rpartition("/")[2]
+    kind = value.get("type", "any")
+    return " or ".join(kind) if isinstance(kind, list) else str(kind)
+
+
+def _said(value: dict[str, Any]) -> str:
+    text = " ".join(str(value.get("description", "")).split())
+    return "".join(f"\\{letter}" if letter in "|<>*_`[]" else letter for letter in text)
+
+
+def _write(page: Path, text: str) -> None:
+    """Unchanged pages keep their time, so that Sphinx reads only what is new."""
+    page.parent.mkdir(exist_ok=True)
+    if not page.exists() or page.read_text(encoding="utf-8") != text:
+        page.write_text(text, encoding="utf-8")
 
 
 def _entry(name: str) -> str:
