@@ -32,6 +32,7 @@ TRIALS = 20
 
 def sweep() -> int:
     """Run the sweep that cases disturb, as its own command line says."""
+    print(flush=True)  # interrupts of imports are the system's to show
     return main("A sweep to be disturbed.", [Entry(SWEEP, lambda *_: None)], trials=TRIALS)
 
 
@@ -122,7 +123,9 @@ def _disturb(words: list[str], rng: np.random.Generator, folder: Path) -> None:
     """Start a sweep, and kill a worker, kill it or interrupt it once its journal is open."""
     way = str(rng.choice(["worker", "kill", "interrupt"]))
     start_clock()
-    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
         began = monotonic()
         while process.poll() is None and not (folder / "journal.csv").exists() and monotonic() - began < LONGEST:
             sleep(0.01)
@@ -148,9 +151,9 @@ def _workers(parent: int) -> list[int]:
 
 
 PROCESSES: dict[str, tuple[float, Kind]] = {
-    "kill": (0.003, _killed),
-    "interrupt of a process": (0.005, _interrupted),
-    "streams of a process": (0.002, _streams),
-    "disturbed sweep": (0.001, _disturbed_sweep),
+    "kill": (0.001, _killed),
+    "interrupt of a process": (0.002, _interrupted),
+    "streams of a process": (0.001, _streams),
+    "disturbed sweep": (0.0005, _disturbed_sweep),
 }
 """Each kind of case, how often it comes, and what it does."""

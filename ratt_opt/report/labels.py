@@ -42,7 +42,9 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
     for label in labels:
         style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
-        word = axes.annotate(label.text, label.place, (0, 0), textcoords="offset points", **style)
+        word = axes.annotate(
+            label.text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
+        )
         costs = []
         for x, y, side in SPOTS:
             word.set(position=(x, y), ha=side)
