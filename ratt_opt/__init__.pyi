@@ -66,6 +66,7 @@ from .scenario.generator import random_scenario as random_scenario
 from .scenario.information_input import InformationInput as InformationInput
 from .scenario.model import Robot as Robot, Scenario as Scenario, Target as Target
 from .scenario.mrclam import from_mrclam as from_mrclam
+from .scenario.networks import network_scenario as network_scenario
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.sensor import Sensor as Sensor
 from .scenario.simulation import Tracking as Tracking, simulate_tracking as simulate_tracking
