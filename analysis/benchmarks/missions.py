@@ -22,6 +22,7 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt.missions.horizon import Sequences
+    from ratt_opt.missions.planners import Planner
     from ratt_opt.problem import Problem
 
 TEAMS = ((10, 15, 3, 11), (30, 25, 10, 108))
@@ -41,7 +42,10 @@ def flown(steps: int) -> list[dict[str, object]]:
     rows = []
     for n, m, alpha_s, alpha_c in TEAMS:
         scenario = random_scenario(n, m, alpha_s=alpha_s, alpha_c=alpha_c, seed=0)
-        planners = {"ratt": ratt, "maxmin to 1e-3": MaxMinPlanner(gap=1e-3, max_nodes=None, time_limit=60.0)}
+        planners: dict[str, Planner] = {
+            "ratt": ratt,
+            "maxmin to 1e-3": MaxMinPlanner(gap=1e-3, max_nodes=None, time_limit=60.0),
+        }
         for name, planner in planners.items():
             if n > TEAMS[0][0] and name != "ratt":
                 continue

@@ -44,7 +44,7 @@ IN_TURN = ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")
 def use_palette() -> None:
     """Let plain matplotlib calls take the library's colours, which stay apart for colour-blind readers and in grey."""
     import matplotlib as mpl
-    from matplotlib import cycler
+    from matplotlib.rcsetup import cycler
 
     mpl.rcParams["axes.prop_cycle"] = cycler(color=[PLANNERS[name].colour for name in IN_TURN])
 
