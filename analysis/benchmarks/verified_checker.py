@@ -1,7 +1,7 @@
 """``ratt-check``, extracted from its proof, against the Python verifier: the same certificates, processor time of each.
 
 Run as ``python -m analysis.benchmarks.verified_checker [--robots 10 20 30] [--objectives trace logdet maxeig]
-[--networks complete disk-12] [--budgets 0] [--seeds K] [--seconds S]``. The program is found as
+[--networks complete small-world] [--budgets 0] [--seeds K] [--seconds S]``. The program is found as
 ``ratt-opt verify --verified`` finds it. Where the two decide differently the command ends with an error.
 """
 
@@ -68,7 +68,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", type=int, nargs="+", default=[10, 20, 30], choices=sorted(SETTINGS))
     parser.add_argument("--objectives", nargs="+", default=["trace", "logdet", "maxeig"])
-    parser.add_argument("--networks", nargs="+", default=["complete", "disk-12"])
+    parser.add_argument("--networks", nargs="+", default=["complete", "small-world"])
     parser.add_argument("--budgets", type=int, nargs="+", default=[0], help="which of the budgets of the setting")
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of each search")
