@@ -68,6 +68,7 @@ NO_SEARCH = {
     "caa",
     "count_outcomes",
     "find_normalisation_violation",
+    "fit_sensor",
     "from_mrclam",
     "greedy",
     "greedy_attack",
@@ -86,7 +87,9 @@ NO_SEARCH = {
     "ratt",
     "realise",
     "reference",
+    "replay_mrclam",
     "remark1_bound",
+    "run_mission",
     "save_scenario",
     "scenario_schema",
     "sensing_only_bound",
@@ -94,7 +97,8 @@ NO_SEARCH = {
     "survivor_bound",
     "theorem1_bound",
 }
-"""Formulas, files, planners and heuristics of polynomial time, and generators that their caller may leave."""
+"""Formulas, files, planners and heuristics of polynomial time, flights and fits as long as their arguments say, and
+generators that their caller may leave."""
 
 UNDECIDED = (ro.ProofError, ro.InputError)
 """What says that there was no time: for a certificate, there is no bracket."""

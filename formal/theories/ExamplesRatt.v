@@ -103,9 +103,6 @@ rewrite [RHS]filter_map; congr [seq _ | _ <- _]; apply: eq_filter => z /=.
 by rewrite -[inord _]/(owner table_team z) owner_eq ownerE.
 Qed.
 
-Lemma mem_map_val (T : eqType) m (x : 'I_m) (s : seq 'I_m) : (val x \in [seq val e | e <- s]) = (x \in s).
-Proof. by rewrite mem_map //; apply: val_inj. Qed.
-
 (** The lists compute the function. *)
 Theorem listed_rattE default alpha :
   [seq val (ratt table_team table_value default alpha i) | i <- enum R] = listed_ratt alpha.

@@ -204,14 +204,6 @@ Proof.
 apply/mapP/eqP => [[j' _ [-> _]] //|->]; by exists j; rewrite ?mem_enum.
 Qed.
 
-Lemma order_uniq : uniq greedy_order.
-Proof.
-have u1 : uniq removed by rewrite map_inj_uniq ?enum_uniq // => i j [].
-have u2 : uniq victims by rewrite map_inj_uniq ?enum_uniq // => i j [].
-rewrite cat_uniq u1 u2 andbT andTb; apply/hasP => -[[b j]].
-by rewrite mem_victims inE mem_removed => /eqP ->.
-Qed.
-
 Lemma before_removed j x : x \in take (index (Some true, j) greedy_order) greedy_order -> x \in removed.
 Proof.
 have lt : (index (Some true, j) removed < size removed)%N by rewrite index_mem mem_removed.

@@ -22,11 +22,6 @@ Hypotheses (oka : allowed t a) (order_all : perm_eq order (enum R)).
 Let from := enum (blinded a) ++ enum (~: blinded a).
 Definition rename (x : R) : R := nth x order (index x from).
 
-Lemma from_uniq : uniq from.
-Proof.
-rewrite cat_uniq !enum_uniq andbT; apply/hasP => -[x].
-by rewrite mem_enum in_setC => /negP h1 /=; rewrite mem_enum => /h1.
-Qed.
 Lemma mem_from x : x \in from.
 Proof. by rewrite mem_cat !mem_enum inE orbN. Qed.
 Lemma size_from : size from = #|R|.

@@ -31,12 +31,6 @@ move=> kR h; rewrite /n_max; elim: (enum _) => [|D s IH]; first by rewrite big_n
 by rewrite big_cons; case: ifP => ok //; rewrite leq_min h.
 Qed.
 
-Lemma n_max_le_card : (n_max <= #|R|)%N.
-Proof.
-rewrite /n_max; elim: (enum _) => [|D s IH]; first by rewrite big_nil.
-by rewrite big_cons; case: ifP => _ //; rewrite geq_min IH orbT.
-Qed.
-
 (** Where link attacks are worth nothing, none of them splits the team. *)
 Lemma unsplit_of : alpha_cs = 0%N -> forall a, allowed t a -> forall i j, connect (linked t a) i j.
 Proof.

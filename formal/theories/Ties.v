@@ -38,17 +38,11 @@ Proof.
 by rewrite /both filter_cat !filter_map; congr (_ ++ _); congr map; apply: eq_filter => i /=; rewrite owner_second.
 Qed.
 
-Lemma mem_both z rs : z \in both rs -> z.2 \in rs.
-Proof. by rewrite mem_cat => /orP[] /mapP[i ir ->]. Qed.
-
 Lemma own_two i : own t i = [:: (true, i); (false, i)].
 Proof. by rewrite /own enum_both (filter_both (pred1 i)) filter_pred1_uniq ?enum_uniq ?mem_enum. Qed.
 
 Lemma best_first i : phi [set (false, i)] <= phi [set (true, i)] -> best t phi default i = (true, i).
 Proof. by move=> h; rewrite /best own_two; apply: first_max_head => y; rewrite inE => /eqP ->. Qed.
-
-Lemma best_second i : phi [set (true, i)] < phi [set (false, i)] -> best t phi default i = (false, i).
-Proof. by move=> h; rewrite /best own_two /first_max /= /alone h. Qed.
 
 (** Where the best elements are worth the same, the robots keep their order. *)
 Lemma by_value_flat c : (forall i, alone phi (best t phi default i) = c) -> by_value t phi default = enum R.

@@ -137,9 +137,9 @@ def certify_if_possible(
         return Certification(why_not="the search stopped before it proved a bound")
     try:
         return Certification(certificate=certify(problem, result, path, budget=budget))
-    except (UndecidedError, InputError, MemoryError) as error:
-        why = {UndecidedError: "not enough time", MemoryError: "not enough memory"}.get(type(error), str(error))
-        return Certification(why_not=f"could not be made: {why}", final=False)
+    except (InputError, UndecidedError, MemoryError) as error:
+        reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
+        return Certification(why_not=f"could not be made: {reason}", final=False)
 
 
 def certify(

@@ -21,7 +21,9 @@ SIGMAS = 2.4477
 MANY_LINKS = 60
 """Above this many links of a kind they are drawn fainter."""
 MANY_ROBOTS = 20
-"""From so many robots on, only the best group and what is attacked are drawn one by one, the rest as a density."""
+"""From so many robots on, only the best group and what is attacked are drawn one by one, the rest as a density,"""
+SPARSE, MOST_DRAWN = 4, 60
+"""unless there are at most so many links a robot and so many robots: a network is read by all of its links."""
 
 
 def draw_map(axes: Axes, picture: Picture) -> None:
@@ -60,7 +62,9 @@ def name_things(axes: Axes, picture: Picture) -> None:
 
 
 def _is_crowded(picture: Picture) -> bool:
-    return len(picture.places) >= MANY_ROBOTS
+    n_robots = len(picture.places)
+    is_network = n_robots <= MOST_DRAWN and len(picture.links) <= SPARSE * n_robots
+    return n_robots >= MANY_ROBOTS and not is_network
 
 
 def _draw_links(axes: Axes, picture: Picture) -> None:

@@ -85,17 +85,20 @@ def _takes_json(command: Any) -> bool:
     return "as_json" in inspect.signature(command).parameters
 
 
-def test_the_page_about_files_names_every_schema_and_exit_code() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
+def test_the_pages_name_every_schema_and_exit_code() -> None:
+    page, commands = (
+        (Path(__file__).parents[2] / "docs" / name).read_text(encoding="utf-8")
+        for name in ("formats.md", "commands.md")
+    )
     for name in OUTPUTS:
         assert f"`ratt-opt schema {name}`" in page
         about = output_schema(name)["properties"]["format"]["const"]
-        assert f"| `{about}` |" in page
+        assert f'| `"{about}"` |' in page
     with_json = {str(command.callback.__name__) for command in app.registered_commands if _takes_json(command.callback)}
     assert with_json >= {"bound", "track", "verify"}
     assert all(re.search(rf"^\|[^|]*`{name}`[^|]*\| `ratt-opt schema", page, re.MULTILINE) for name in with_json)
     codes = {0, UPPER_ONLY, FAULT, *ERRORS.values()}
-    assert {int(code) for code in re.findall(r"^\| (\d+) \| ", page, re.MULTILINE)} == codes
+    assert {int(code) for code in re.findall(r"^\| (\d+) \| ", commands, re.MULTILINE)} == codes
 
 
 @pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])

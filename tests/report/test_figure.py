@@ -124,6 +124,14 @@ def test_from_twenty_robots_on_only_what_matters_is_drawn():
     assert "link of another group" not in labels
 
 
+def test_every_robot_and_link_of_a_network_is_drawn():
+    scenario = ro.network_scenario("disk-6", 24, 4, alpha_s=3, alpha_c=8, seed=1)
+    report = ro.bound(scenario, time_limit=5)
+    axes = plan_figure(report, picture_of(scenario, report)).axes[0]
+    assert {int(t.get_text()) for t in axes.texts if t.get_text().isdigit()} == set(range(24))
+    assert sum(colours_of(axes).values()) == len(scenario.links) == 72
+
+
 @pytest.mark.parametrize(("n_robots", "n_targets", "seed"), [(4, 4, 14), (8, 10, 0), (30, 25, 1)])
 def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed):
     scenario = ro.random_scenario(n_robots, n_targets, alpha_s=n_robots // 4, alpha_c=n_robots - 1, seed=seed)

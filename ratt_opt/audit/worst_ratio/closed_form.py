@@ -98,6 +98,8 @@ def sensing_ratio(size: int, swapped: int, kept: Fraction) -> Fraction:
     among those left. Without any (``p = 0``) it is ``g / (1 + (g-1)/t)``, greedy's own. Attained by
     ``families.sensing_instance``.
 
+    With more blinded robots than g the rest is bait worth anything, the same in both plans, and blinded.
+
     Proof. All greedy robots are g. Let S, g of them and bait, be left, and in the notation of :func:`survivor_bound`
     let ``x = 1``, M the sum of ``m_(o_i)`` over ``S - r``. There ``phi(u_S) >= 1 + t^2 M`` and ``phi(o_S) <= 1 + M``,
     so the ratio is at least the claim if ``M <= h/t``; and ``M <= (g-1)/t``. Let S have q bait robots, ``1 <= q <=

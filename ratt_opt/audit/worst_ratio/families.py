@@ -135,7 +135,7 @@ def sensing_instance(size: int, swapped: int, curvature: Fraction) -> RatioWitne
     known = {1 << e: weight[e % n] for e in range(2 * n)}
     for count in range(1, n + 1):
         for chosen in combinations(range(n), count):
-            total = sum(weight[i] for i in chosen)
+            total = sum((weight[i] for i in chosen), Fraction(0))
             all_light = max(weight[i] for i in chosen) < 1
             known[_mask(n + i for i in chosen)] = total if all_light else 1 + (total - 1) / kept
     for end in range(swapped + 1, n + 1):
@@ -144,7 +144,7 @@ def sensing_instance(size: int, swapped: int, curvature: Fraction) -> RatioWitne
         known[_mask(first)] = value
         known |= {_mask((*first, e)): value + weight[i] for i in range(end, n) for e in (i, n + i)}
     if swapped:
-        known[_mask(left)] = 1 + (sum(weight[i] for i in left) - 1) * kept
+        known[_mask(left)] = 1 + (sum((weight[i] for i in left), Fraction(-1))) * kept
     largest = weight[:swapped] + [1 / kept] * swapped + last + [w / kept for w in weight]
     part = NonDecreasing(n, curvature, list(known))
     values = scaled_values(part.table([Fraction(0), *largest, *known.values()], list(known)))

@@ -93,12 +93,8 @@ def _shapes(frame: dict[str, Any]) -> dict[str, Any]:
         for place, role in zip(robots, frame["roles"], strict=True)
     ]
     spheres = [
-        {
-            "pose": _pose(place[0], place[1], angle),
-            "size": {"x": 2 * a, "y": 2 * b, "z": 0.1},
-            "color": _colour(TARGET, 0.4),
-        }
-        for place, (a, b, angle) in zip(frame["estimates"], frame["ellipses"], strict=True)
+        {"pose": _pose(x, y, angle), "size": {"x": 2 * a, "y": 2 * b, "z": 0.1}, "color": _colour(TARGET, 0.4)}
+        for (x, y), (a, b, angle) in zip(frame["estimates"], frame["ellipses"], strict=True)
     ]
     lines = [
         {
