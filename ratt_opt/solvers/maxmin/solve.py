@@ -13,7 +13,6 @@ from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
-from ratt_opt.problem import Plan
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.any_function import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.problem import Problem
+    from ratt_opt.problem import Plan, Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
 __all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "solve_maxmin"]
@@ -76,8 +75,8 @@ def solve_maxmin(
 
     Raises
     ------
-    InputError : a limit is negative, ``start`` is a plan but not one element per robot, or the objective is no information
-        criterion and falls where it was looked at.
+    InputError : a limit is negative, ``start`` is a plan but not one element per robot, or the objective is no
+        information criterion and falls where it was looked at.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
