@@ -46,7 +46,7 @@ def rooms(root: Path = ROOT) -> list[Room]:
     """The rooms in the order of the import contract, the top layer first."""
     contracts = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     layers = next(c for c in contracts["contracts"] if c["type"] == "layers")["layers"]
-    parts = [part.strip() for layer in layers for part in layer.strip("()").split("|")]
+    parts = [part.strip(" ()") for layer in layers for part in layer.split("|")]
     names = [part.removeprefix("ratt_opt.") for part in parts]
     return [_room(root / "ratt_opt", name) for name in names]
 

@@ -1,7 +1,7 @@
 """What RATT is guaranteed at the paper's budgets, old bounds beside new: ``python -m analysis.paper_guarantees``.
 
 Prints a Markdown table: one scenario of the paper's kind (seed 0) a budget, shares of the optimum known before any
-search for it. ``g`` is the largest group of seeing robots that an attack can be held to.
+search for it, rounded down. ``g`` is the largest group of seeing robots that an attack can be held to.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from ratt_opt import all_guarantees, curvature, instance_bound, random_scenario, ratt, total_curvature
+from ratt_opt._rounding import down
 from ratt_opt.bounds.group_size import achievable_group_size
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def row(budget: tuple[int, int, int, int]) -> tuple[str, ...]:
     scenario = random_scenario(n, m, alpha_s=alpha_s, alpha_c=alpha_c, seed=0)
     size = achievable_group_size(scenario.problem("trace"))
     shares = [share for kind in ("logdet", "trace") for share in _shares(scenario.problem(kind))]
-    return (str(n), f"{alpha_s}, {alpha_c}", str(size), *(f"{share:.2g}" for share in shares))
+    return (str(n), f"{alpha_s}, {alpha_c}", str(size), *(down(float(share), 2) for share in shares))
 
 
 def _shares(problem: Problem) -> Iterator[float]:

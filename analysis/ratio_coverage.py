@@ -169,7 +169,8 @@ def _others(*, quick: bool) -> Iterator[tuple[str, ...]]:
         known = known_ratio(_question(family, n, alpha_s, alpha_c, k))
         found = worst_case_ratio(n, alpha_s, alpha_c, curvature=k, family=family, time_limit=SECONDS)
         value = str(found.exact_upper) if found.exact_lower == found.exact_upper else "open"
-        yield (family, str(n), f"{alpha_s}, {alpha_c}", str(k), value, str(known.conjectured or "none"))
+        formula = known.lower if known.attained else known.conjectured
+        yield (family, str(n), f"{alpha_s}, {alpha_c}", str(k), value, str(formula or "none"))
 
 
 def _threes(*, quick: bool) -> Iterator[tuple[str, ...]]:

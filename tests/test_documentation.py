@@ -9,9 +9,12 @@ takes minutes.
 from __future__ import annotations
 
 import ast
+import csv
+import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 RESULT = re.compile(r"^(?P<expression>[^#\s][^#\n]*?)\s+# (?P<numbers>-?[\d.]+(?:, -?[\d.]+)*)(?: \D*)?$", re.MULTILINE)
 """A line such as ``f(x), g(x)  # 0.25, 3``: what the expression gives, to the digits shown."""
 NUMBER = re.compile(r"(?<![\w.])-?(?:\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?(?:e-?\d+)?)\b")
+FIRST_HOUR = ROOT / "docs" / "first_hour.md"
 NOISE = 1e-9
 """Numbers this small are rounding, and differ between processors."""
 DATA = ROOT.parent / "shared" / "data" / "mrclam"
@@ -86,11 +90,39 @@ def pages_with_blocks() -> list[Path]:
     return [page for page in documents() if any(True for _ in blocks(page))]
 
 
-@pytest.mark.parametrize("page", pages_with_blocks(), ids=lambda page: page.name)
-def test_blocks_run(page: Path, folder: Path) -> None:
+def run_page(page: Path, folder: Path) -> None:
     names: dict[str, object] = {"__name__": "a page"}
     for block in blocks(page):
         run_block(block, names, folder)
+
+
+@pytest.mark.parametrize("page", [p for p in pages_with_blocks() if p != FIRST_HOUR], ids=lambda page: page.name)
+def test_blocks_run(page: Path, folder: Path) -> None:
+    run_page(page, folder)
+
+
+def test_a_newcomer_s_first_hour(folder: Path) -> None:
+    """Own robots with names, a report that a browser opens, a checked proof, an own set function, an own planner."""
+    run_page(FIRST_HOUR, folder)
+    report = json.loads((folder / "boats" / "report.json").read_text(encoding="utf-8"))
+    assert report["robot_names"] == ["Ada", "Bob", "Cy"]
+    with (folder / "results" / "bays" / "table.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 5
+    assert all(float(row["last/exact/value"]) <= float(row["optimum/upper"]) for row in rows)
+    if (browser := shutil.which("chromium")) is None:
+        assert not os.environ.get("REQUIRE_BROWSER")
+        return
+    flags = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-dev-shm-usage",
+        f"--user-data-dir={folder}/.seen",
+    ]
+    page = (folder / "boats" / "report.html").as_uri()
+    shown = subprocess.run([browser, *flags, "--dump-dom", page], capture_output=True, text=True, check=True).stdout
+    assert all(name in shown for name in ("Ada", "Bob", "Cy", "Moby", "Willy", "verified, both ends proved"))
 
 
 @pytest.mark.slow

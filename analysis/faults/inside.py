@@ -200,14 +200,14 @@ def _closed(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
 
 
 INSIDE: dict[str, tuple[float, Kind]] = {
-    "certificate": (0.5, _verify),
-    "input": (0.189, _attack),
+    "certificate": (0.5115, _verify),
+    "input": (0.194, _attack),
     "flags": (0.1, _flags),
     "journal": (0.1, _journal),
     "full disk": (0.03, _full_disk),
-    "full disk in bound": (0.01, _full_disk_in_bound),
+    "full disk in bound": (0.005, _full_disk_in_bound),
     "interrupt": (0.04, _interrupted),
-    "interrupt of bound": (0.01, _interrupted_bound),
+    "interrupt of bound": (0.005, _interrupted_bound),
     "closed stream": (0.01, _closed),
 }
 """Each kind of case, how often it comes, and what it does."""

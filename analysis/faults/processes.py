@@ -24,8 +24,16 @@ if TYPE_CHECKING:
 
 __all__ = ["PROCESSES", "sweep"]
 
-PROGRAM = [sys.executable, "-c", "print(flush=True); from ratt_opt.cli import main; main()"]
-"""Tells by an empty line when Python itself is ready: what comes before is not ours to guard."""
+_TELLING = """
+import ratt_opt.cli as cli
+def told(arguments, run=cli.run):
+    print(flush=True)
+    return run(arguments)
+cli.run = told
+cli.main()
+"""
+PROGRAM = [sys.executable, "-c", _TELLING]
+"""Tells by an empty line when the program's own guards stand: before, an interrupt is Python's to show."""
 SWEEP_PROGRAM = [sys.executable, "-c", "import sys; from analysis.faults.processes import sweep; sys.exit(sweep())"]
 TRIALS = 20
 
@@ -104,7 +112,7 @@ def _disturbed_sweep(campaign: Campaign, rng: np.random.Generator, place: Path) 
     del campaign
     words = [*SWEEP_PROGRAM, "--out", str(place), "--workers", "2"]
     for _ in range(2):
-        _disturb(words, rng, place / SWEEP.name)
+        _disturb(words, rng)
         with open_journal(SWEEP, place / SWEEP.name) as journal:
             done = journal.done
         lines = (place / SWEEP.name / "journal.csv").read_bytes().count(b"\n")
@@ -118,13 +126,13 @@ def _disturbed_sweep(campaign: Campaign, rng: np.random.Generator, place: Path) 
     return "done"
 
 
-def _disturb(words: list[str], rng: np.random.Generator, folder: Path) -> None:
-    """Start a sweep, and kill a worker, kill it or interrupt it once its journal is open."""
+def _disturb(words: list[str], rng: np.random.Generator) -> None:
+    """Start a sweep, and kill a worker, kill it or interrupt it once it has workers."""
     way = str(rng.choice(["worker", "kill", "interrupt"]))
     start_clock()
     with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         began = monotonic()
-        while process.poll() is None and not (folder / "journal.csv").exists() and monotonic() - began < LONGEST:
+        while process.poll() is None and not _workers(process.pid) and monotonic() - began < LONGEST:
             sleep(0.01)
         sleep(float(rng.uniform(0, 1.5)))
         if way == "kill":
@@ -143,14 +151,17 @@ def _disturb(words: list[str], rng: np.random.Generator, folder: Path) -> None:
 
 def _workers(parent: int) -> list[int]:
     """The processes that run the trials of a sweep, by the system's own list."""
-    text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
-    return [int(child) for child in text.split() if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    try:
+        text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
+        return [int(child) for child in text.split() if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    except OSError:  # one of them has ended meanwhile
+        return []
 
 
 PROCESSES: dict[str, tuple[float, Kind]] = {
-    "kill": (0.003, _killed),
-    "interrupt of a process": (0.005, _interrupted),
-    "streams of a process": (0.002, _streams),
-    "disturbed sweep": (0.001, _disturbed_sweep),
+    "kill": (0.001, _killed),
+    "interrupt of a process": (0.002, _interrupted),
+    "streams of a process": (0.001, _streams),
+    "disturbed sweep": (0.0005, _disturbed_sweep),
 }
 """Each kind of case, how often it comes, and what it does."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import json
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -94,10 +93,9 @@ def _entry(name: str) -> str:
 
 
 def copy_notebooks(folder: Path) -> None:
-    """The notebooks with the outputs they are committed with."""
-    folder.mkdir(exist_ok=True)
+    """The notebooks with the outputs they are committed with; their links to pages lead there from here too."""
     for notebook in (DOCS.parent / "notebooks").glob("*.ipynb"):
-        shutil.copy2(notebook, folder / notebook.name)
+        _write(folder / notebook.name, notebook.read_text(encoding="utf-8").replace("](../docs/", "](../"))
 
 
 def formula(translator: Any, node: nodes.Element) -> None:

@@ -59,7 +59,7 @@ def exchange_attack(task: AttackTask) -> None:
     found = greedy_attack(problem, plan, budget=task.budget)
     task.bracket.offer(found.attack, found.upper)
     search = _Exchanges(problem, task.values, task.bracket.attack)
-    while search.improve(task.budget):
+    while not task.bracket.is_closed and search.improve(task.budget):
         task.bracket.offer(search.attack, search.value)
 
 

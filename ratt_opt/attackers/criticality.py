@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from ratt_opt._validation import check_number
 from ratt_opt.attackers.exact import worst_case_attack
@@ -12,9 +12,10 @@ from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_val
 from ratt_opt.attackers.task import PlanValues
 from ratt_opt.budget import Budget
 from ratt_opt.progress import Step
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     from numpy.typing import ArrayLike
 
@@ -23,6 +24,13 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
 
 __all__ = ["BreakingBudget", "Criticality", "breaking_budgets", "criticality_ranking"]
+
+CERTAIN = 1e-12
+"""Gains below this share of the value are rounding, not gains."""
+BASE_SHARE = 0.3
+"""Of the time, for the plan's own worst attack: which gains are searched for hangs on it. Not measured."""
+ATTACK_SHARE = 0.1
+"""Of the time left, for each attack of a bisection. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,47 +65,61 @@ def criticality_ranking(
     Parameters
     ----------
     links : links to rank; all by default
-    max_nodes, time_limit : for each exact attack
+    max_nodes : for each exact attack
+    time_limit : seconds for all of it; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
-        the attacks left are bounded without a search
+        the gains left are bounded without a search
 
     Raises
     ------
     InputError : the plan is not one element per robot, a link does not exist, or a budget is not a number >= 0.
     """
-    values = PlanValues(problem, elements)
-    plan, whole = values.plan, Budget.inside(budget)
-    attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
-    base = attacked(problem)
+    values, own = PlanValues(problem, elements), Budget.inside(budget, time_limit)
+    attacked = partial(worst_case_attack, elements=values.plan, max_nodes=max_nodes)
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
+    base = attacked(problem, budget=own.part(BASE_SHARE))
     targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
-    untouched = PartialAttack.of(problem)
-    single = [
-        untouched.blind(t) if isinstance(t, int) else PartialAttack.of(problem, cut=frozenset([t])) for t in targets
-    ]
-    worth = team_values(values, [untouched, *single])
-    rows = []
-    for target, left in zip(targets, worth[1:].tolist(), strict=True):
-        after = _protected(problem, target, base, attacked)
-        gain_lower, gain_upper = max(after.lower - base.upper, 0.0), max(after.upper - base.lower, 0.0)
-        if after is base:
-            gain_lower = gain_upper = 0.0
-        loss = float(worth[0]) - left
+    used = [t for t in targets if t in (base.attack.sensing if isinstance(t, int) else base.attack.links)]
+    whole = max(values(group) for group in problem.communication.groups())
+    noise = 2 * problem.objective.rounding + CERTAIN * abs(base.upper)
+    losses, rows = _losses(problem, values, targets), []
+    after = {}
+    for done, target in enumerate(used):
+        if own.is_over:
+            break
+        after[target] = attacked(_protected(problem, target), budget=own.part(1 / (len(used) - done)))
+    for target, loss in zip(targets, losses, strict=True):
+        gain_lower = gain_upper = 0.0
+        if target in after:
+            certain = after[target].lower - base.upper
+            gain_lower = certain if certain > noise else 0.0
+            gain_upper = max(after[target].upper - base.lower, 0.0)
+        elif target in set(used):  # no time for it: no attack leaves more than none does
+            gain_upper = max(whole - base.lower, 0.0)
         rows.append(Criticality(target=target, loss=loss, gain_lower=gain_lower, gain_upper=gain_upper))
     order = sorted(range(len(rows)), key=lambda k: (-rows[k].gain_lower, -rows[k].loss, k))
     return tuple(rows[k] for k in order)
 
 
-def _protected(
-    problem: Problem, target: int | Link, base: AttackResult, attacked: Callable[[Problem], AttackResult]
-) -> AttackResult:
-    """The worst case once ``target`` is protected; ``base`` itself where its attack stays possible."""
-    if target not in (base.attack.sensing if isinstance(target, int) else base.attack.links):
-        return base
+def _losses(problem: Problem, values: PlanValues, targets: list[int | Link]) -> list[float]:
+    """Team value that each target alone costs; a link costs something only where its cut leaves more groups."""
+    import networkx as nx
+
+    graph: nx.Graph = nx.Graph(problem.communication.links)
+    bridges = {(min(i, j), max(i, j)) for i, j in nx.bridges(graph)}
+    untouched = PartialAttack.of(problem)
+    felt = [t for t in targets if isinstance(t, int) or t in bridges]
+    single = [untouched.blind(t) if isinstance(t, int) else PartialAttack.of(problem, cut=frozenset([t])) for t in felt]
+    worth = team_values(values, [untouched, *single])
+    left = dict(zip(felt, worth[1:].tolist(), strict=True))
+    return [float(worth[0]) - left.get(t, float(worth[0])) for t in targets]
+
+
+def _protected(problem: Problem, target: int | Link) -> Problem:
     if isinstance(target, int):
-        return attacked(replace(problem, protected_robots=problem.protected_robots | {target}))
-    return attacked(replace(problem, protected_links=problem.protected_links | {target}))
+        return replace(problem, protected_robots=problem.protected_robots | {target})
+    return replace(problem, protected_links=problem.protected_links | {target})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +137,22 @@ class BreakingBudget:
     is_proved: bool
 
 
+class BreakingBudgets(tuple[BreakingBudget, ...]):
+    """The budgets found; ``stop`` says why no more were looked for (``EXHAUSTED``: there are none)."""
+
+    stop: Stop
+
+    def __new__(cls, found: Iterable[BreakingBudget], stop: Stop) -> Self:
+        """The tuple with its reason."""
+        made = super().__new__(cls, found)
+        made.stop = stop
+        return made
+
+    def __getnewargs__(self) -> tuple[tuple[BreakingBudget, ...], Stop]:
+        """For copies."""
+        return tuple(self), self.stop
+
+
 @Step("the smallest budgets that break the plan")
 def breaking_budgets(
     problem: Problem,
@@ -124,7 +162,7 @@ def breaking_budgets(
     max_nodes: int | None = None,
     time_limit: float | None = None,
     budget: Budget | None = None,
-) -> tuple[BreakingBudget, ...]:
+) -> BreakingBudgets:
     """Smallest attack budgets that push a plan strictly below ``value``: none in the list contains another.
 
     For each number of blinded robots, ascending, the fewest cut links are found by doubling and bisection (a
@@ -134,7 +172,8 @@ def breaking_budgets(
     Parameters
     ----------
     value : [unit of the objective]
-    max_nodes, time_limit, budget : as for :func:`criticality_ranking`
+    max_nodes, time_limit, budget : as for :func:`criticality_ranking`; once time is up no further number of robots is
+        looked at (``stop`` of the result says so), and what is undecided is said to be so
 
     Raises
     ------
@@ -142,12 +181,18 @@ def breaking_budgets(
     """
     plan = problem.check_plan(elements)
     goal = check_number("value", value)
-    whole = Budget.inside(budget)
-    attacked = partial(worst_case_attack, elements=plan, max_nodes=max_nodes, time_limit=time_limit, budget=whole)
+    own = Budget.inside(budget, time_limit)
     found: list[BreakingBudget] = []
     most_links = len(problem.communication.links)
+
+    def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
+        stronger = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
+        return worst_case_attack(stronger, plan, max_nodes=max_nodes, budget=own.part(ATTACK_SHARE))
+
     for alpha_s in range(problem.n_robots + 1):
-        best = attacked(replace(problem, alpha_s=alpha_s, alpha_c=most_links))
+        if own.is_over:
+            break
+        best = attacked(alpha_s, most_links)
         if best.upper >= goal:
             continue
         low, high, proved, step = 0, most_links, True, 1
@@ -155,7 +200,10 @@ def breaking_budgets(
             # From few links upwards: large budgets are slow to attack exactly, and seldom needed.
             middle = min(low + step - 1, (low + high) // 2)
             step *= 2
-            result = attacked(replace(problem, alpha_s=alpha_s, alpha_c=middle))
+            if own.is_over:
+                proved = False
+                break
+            result = attacked(alpha_s, middle)
             if result.upper < goal:
                 best, high = result, middle
             else:
@@ -167,4 +215,4 @@ def breaking_budgets(
         if high == 0:
             break
         most_links = high - 1
-    return tuple(found)
+    return BreakingBudgets(found, own.stop() or Stop.EXHAUSTED)

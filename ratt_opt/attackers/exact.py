@@ -154,6 +154,8 @@ def _any_function(task: AttackTask) -> Stop:
     if n_robots > LARGEST_COMPILED or is_limited:
         any_bound(task)
         exchange_attack(task)
+        if task.bracket.is_closed:
+            return Stop.CLOSED
     if n_robots <= LARGEST_COMPILED and 2**n_robots <= budget.evaluations_left:
         return threshold_search(task)
     return Stop.CLOSED if task.bracket.is_closed else budget.stop() or Stop.HEURISTIC

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from ratt_opt.audit.appendix.size_theorems import size_theorems
 from ratt_opt.audit.appendix.team_lines import team_lines
 from ratt_opt.audit.appendix.theorems import closing_lines, lemmas, theorems
 from ratt_opt.audit.engine.decide import CURVATURE_GRID, Verdict, best_factors, decide
+from ratt_opt.audit.engine.pace import paced
 from ratt_opt.audit.enumeration.arrangement_claims import arrangement_entries, smallest_team_entries
 from ratt_opt.audit.enumeration.clean_witness import clean_witness_entries
 from ratt_opt.audit.enumeration.running_time import running_time_entries
@@ -26,7 +28,7 @@ from ratt_opt.audit.real_objectives.search import search_real_objectives
 from ratt_opt.audit.report.findings import findings
 from ratt_opt.audit.report.pages import html_report, markdown_report, per_chain
 from ratt_opt.audit.report.records import begun, claim_record, factor_record, real_record
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.problem import Problem
 from ratt_opt.progress import Step
 from ratt_opt.solvers.ratt import bait_and_greedy
@@ -176,42 +178,68 @@ def _latest(detours: Iterator[Detour]) -> str | None:
 
 
 def run_audit(
-    out: str | Path, *, quick: bool = False, progress: Callable[[int, int, str], object] | None = None
+    out: str | Path,
+    *,
+    quick: bool = False,
+    progress: Callable[[int, int, str], object] | None = None,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
 ) -> Ledger:
     """Decide every entry and write ``audit.json``, ``audit.html`` and ``audit.md`` to the folder ``out``.
 
-    A keyboard interrupt writes what is decided so far, marked incomplete.
+    A keyboard interrupt, or a spent time limit, writes what is decided so far, marked incomplete.
 
     Parameters
     ----------
     out : folder, created if needed
     quick : only the sizes that take seconds
     progress : called with (entries done, entries in all, label) before each entry
+    time_limit : seconds; unlimited by default
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
     InputError : ``out`` cannot be written.
     """
-    folder, budget = output_directory(out), Budget()
-    entries = list(all_entries())
+    folder, own = output_directory(out), Budget.inside(budget, time_limit)
+    entries: list[Entry] = []
     records: list[EntryRecord] = []
-    try:
-        with Step("the audit") as step:
-            for number, entry in enumerate(entries):
-                step.say(f"{number + 1}/{len(entries)} {entry.label}")
-                if progress is not None:
-                    progress(number, len(entries), entry.label)
-                records.append(decide_entry(entry, quick=quick))
-    except KeyboardInterrupt:
-        budget.interrupt()
+    with suppress(OutOfBudget), paced(own):
+        _decide_all(own, entries, records, quick=quick, progress=progress)
+    complete = bool(entries) and len(records) == len(entries) and own.stop() is None
     _add_other_verdicts(entries[: len(records)], records)
-    ledger = Ledger(records=tuple(records), seconds=budget.elapsed, complete=budget.stop() is None, quick=quick)
+    ledger = Ledger(records=tuple(records), seconds=own.elapsed, complete=complete, quick=quick)
     document = ledger.document()
     write_json(folder / "audit.json", document)
     html, markdown = html_report(document), markdown_report(document)
     write_atomically(folder / "audit.html", lambda file: file.write_text(html, encoding="utf-8"))
     write_atomically(folder / "audit.md", lambda file: file.write_text(markdown, encoding="utf-8"))
     return ledger
+
+
+def _decide_all(
+    budget: Budget,
+    entries: list[Entry],
+    records: list[EntryRecord],
+    *,
+    quick: bool,
+    progress: Callable[[int, int, str], object] | None,
+) -> None:
+    """Fill in the entries, and their records as far as time allows; raises ``OutOfBudget``."""
+    try:
+        budget.check()
+        for entry in all_entries():
+            budget.check()
+            entries.append(entry)
+        with Step("the audit") as step:
+            for number, entry in enumerate(entries):
+                budget.check()
+                step.say(f"{number + 1}/{len(entries)} {entry.label}")
+                if progress is not None:
+                    progress(number, len(entries), entry.label)
+                records.append(decide_entry(entry, quick=quick))
+    except KeyboardInterrupt:
+        budget.interrupt()
 
 
 def _add_other_verdicts(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> None:

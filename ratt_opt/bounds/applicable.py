@@ -17,6 +17,7 @@ from ratt_opt.bounds.guarantees import (
 from ratt_opt.bounds.survivors import largest_survivor_group, survivor_bound
 
 if TYPE_CHECKING:
+    from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
 __all__ = ["all_guarantees", "inapplicable_guarantees"]
@@ -26,7 +27,7 @@ SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
 def all_guarantees(
-    problem: Problem, alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None
+    problem: Problem, alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, budget: Budget | None = None
 ) -> dict[str, Guarantee]:
     """The guarantees that apply to RATT's plan for one problem, strongest first.
 
@@ -34,10 +35,11 @@ def all_guarantees(
     ----------
     alpha_cs : sensing attacks that RATT took the link attacks to be worth
     k : curvature, for a submodular objective; c : total curvature; over feasible sets, numbers or brackets
+    budget : an outer search's budget: once it is spent, groups are cut less cleverly, which weakens what rests on them
     """
     missing = inapplicable_guarantees(problem, alpha_cs)
     seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
-    group_size, survivors = achievable_group_size(problem), largest_survivor_group(problem)
+    group_size, survivors = achievable_group_size(problem, budget), largest_survivor_group(problem)
     found: dict[str, Guarantee] = {}
     if group_size <= 1:
         found[OPTIMAL] = group_size_bound(group_size, c=1.0)

@@ -14,13 +14,13 @@ from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 
 if TYPE_CHECKING:
+    from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
 __all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
 
 SOURCE = "group-size bound (this library)"
 IN_COQ = {"k": "paper_group_size_submodular", "c": "paper_group_size_total_curvature"}
-"""For complete graphs without protected parts."""
 
 
 LARGEST_EXACT = 12
@@ -69,7 +69,8 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
     needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
-    proof = f"group_size_bound; in Coq {'paper_optimal' if g <= 1 and baits_survive else IN_COQ[kind]}"
+    theorem = IN_COQ[kind] if g > 1 else "paper_optimal" if baits_survive else None
+    proof = f"group_size_bound; in Coq {theorem}" if theorem else "group_size_bound"
     return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
 
 
@@ -79,13 +80,13 @@ def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:
     return one if g <= 1 else one / g if submodular else kept / (g - 1 + kept)
 
 
-def achievable_group_size(problem: Problem) -> int:
+def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int:
     """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
     The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
     on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
     largest group small and one that makes the most seeing robots few: the number returned is achievable, and a larger
-    one only weakens the guarantee.
+    one only weakens the guarantee, as a spent ``budget`` does.
     """
     threat = problem.threat
     if threat.links_alike:
@@ -97,7 +98,7 @@ def achievable_group_size(problem: Problem) -> int:
         counts = np.bitwise_count(np.arange(2**problem.n_robots) & seeing).astype(np.float64)
         test = ThresholdTest(cuts_only, counts)
         return next(g for g in range(problem.n_robots + 1) if test.split(float(g)) is not None)
-    cuts = (heuristic_cut(cuts_only), heuristic_cut(cuts_only, ignoring=blinded))
+    cuts = (heuristic_cut(cuts_only, budget), heuristic_cut(cuts_only, budget, ignoring=blinded))
     return min(max(len(group - blinded) for group in graph.groups(cut)) for cut in cuts)
 
 

@@ -89,18 +89,18 @@ def instance_bound(
         own.interrupt()
         value = 0.0
     if np.isfinite(largest).all():
-        value = max(value, _by_group_size(problem, plan, largest))
+        value = max(value, _by_group_size(problem, plan, largest, own))
     needs = (SUBMODULAR if k else NON_DECREASING, "this instance and this plan")
     return Guarantee(min(max(value, 0.0), 1.0), needs, "this instance's marginals and groups", "instance_bound")
 
 
-def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray) -> float:
+def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget: Budget) -> float:
     """What some robot of the plan keeps for sure, over what no plan exceeds; ``largest`` (N,) marginals."""
     single = problem.objective.singletons()
     kept = -np.sort(-np.append(single[plan[_free_robots(problem)]], 0.0))[problem.threat.n_blinded]
     safe = max([kept, *(single[plan[i]] for i in problem.protected_robots)])
     left = np.setdiff1d(np.arange(problem.n_robots), list(strongest_robots(problem)))
-    size = min(achievable_group_size(problem), len(left))
+    size = min(achievable_group_size(problem, budget), len(left))
     if not size:
         return 1.0
     excess = np.maximum(largest[left] - [single[problem.choices[i]].max() for i in left], 0.0)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import islice
+from math import isinf
 from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -43,7 +45,9 @@ class RelaxationBound(ByValue):
     status: str
 
 
-def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationBound:
+def relaxation_bound(
+    problem: Problem, attacks: Sequence[Attack], *, time_limit: float | None = None, budget: Budget | None = None
+) -> RelaxationBound:
     """Bound the optimum by letting every robot mix its elements against the given attacks.
 
     Of an attack's groups the largest enters the program; the value of the others is bounded by itself, and
@@ -55,6 +59,8 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
     ----------
     problem : its objective is an information criterion
     attacks : at least one, within the budgets; the worst attacks on good plans give good bounds
+    time_limit : seconds for the conic solver; the point it has reached by then gives a bound. Unlimited by default
+    budget : an outer search's budget: its seconds count too
 
     Raises
     ------
@@ -69,7 +75,7 @@ def relaxation_bound(problem: Problem, attacks: Sequence[Attack]) -> RelaxationB
     if () in largest:
         nothing, selection = objective([]), uniform_selection(problem)
         return RelaxationBound(upper=nothing, claimed=nothing, selection=selection, status="an attack leaves nobody")
-    claimed, selection, status = _solve(problem, largest)
+    claimed, selection, status = _solve(problem, largest, Budget.inside(budget, time_limit))
     cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection)]
     upper = float(max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)]))
     return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
@@ -87,7 +93,9 @@ def _groups(problem: Problem, attacks: Sequence[Attack]) -> tuple[list[tuple[int
     return list(largest), list(others)
 
 
-def _solve(problem: Problem, groups: Sequence[tuple[int, ...]]) -> tuple[float, FloatArray, str]:
+def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) -> tuple[float, FloatArray, str]:
+    if budget.is_over:
+        return float("nan"), uniform_selection(problem), "not asked: no time"
     import cvxpy as cp
 
     objective = problem.information_objective
@@ -98,14 +106,18 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]]) -> tuple[float, 
     program = cp.Problem(cp.Maximize(t), constraints)
     selection = uniform_selection(problem)
     try:
-        program.solve(solver=cp.CLARABEL)
+        limit = {} if isinf(budget.seconds_left) else {"time_limit": budget.seconds_left}
+        with catch_warnings():
+            simplefilter("ignore", UserWarning)  # an inaccurate point gives a weak bound, never a false one
+            program.solve(solver=cp.CLARABEL, **limit)
     except cp.error.SolverError as error:
         return float("nan"), selection, f"solver error: {error}"
     if z.value is not None:
         selection = np.clip(z.value, 0, None)
         for choice in problem.choices:
             selection[choice] /= selection[choice].sum()
-    return float(program.value), selection, str(program.status)
+    claimed = float("nan") if program.value is None else float(program.value)
+    return claimed, selection, str(program.status)
 
 
 def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:
@@ -168,20 +180,23 @@ MOST_OUTCOMES = 20_000
 
 
 def relaxation_bounds(
-    problem: Problem, *, tolerance: float = 1e-7, budget: Budget | None = None
+    problem: Problem, *, tolerance: float = 1e-7, time_limit: float | None = None, budget: Budget | None = None
 ) -> Iterator[RelaxationBound]:
     """Yield bounds on the optimum as the attack that hurts the relaxed plan most enters, round by round.
 
     Ends once no attack leaves the relaxed plan less than the program claims, up to ``tolerance`` relative to
     the claim: the last item then is the bound of the relaxation over all attacks. Every item is a valid bound.
-    A spent ``budget`` (an outer search's) ends them early.
+    A spent ``time_limit``, or ``budget`` (an outer search's), ends them early.
 
     Raises
     ------
     InputError : the objective is no information criterion, or the team is too large to list its outcomes.
     """
     objective = problem.information_objective
-    whole, outcomes = Budget.inside(budget), list(islice(non_dominated_outcomes(problem.threat), MOST_OUTCOMES + 1))
+    whole, outcomes = (
+        Budget.inside(budget, time_limit),
+        list(islice(non_dominated_outcomes(problem.threat), MOST_OUTCOMES + 1)),
+    )
     if len(outcomes) > MOST_OUTCOMES:
         rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
         raise InputError("problem", rule, f"{problem.n_robots} robots")
@@ -198,6 +213,7 @@ def relaxation_bounds(
         if whole.stop() is not None or worst in entered or left[worst] >= level - tolerance * abs(level):
             return
         entered.append(worst)
-        bound = relaxation_bound(problem, [Attack(*realise(problem.threat, outcomes[k])) for k in entered])
+        attacks = [Attack(*realise(problem.threat, outcomes[k])) for k in entered]
+        bound = relaxation_bound(problem, attacks, budget=whole)
         yield bound
         selection, level = bound.selection, bound.claimed

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 
 if TYPE_CHECKING:
@@ -60,7 +62,7 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 def _attempt(search: _ForcedSize | _AttackTree) -> list[int] | None:
     try:
         return search.run()
-    except _NotClosedError:
+    except (_NotClosedError, UndecidedError):
         return None
 
 
@@ -101,6 +103,7 @@ class _Cases:
         return bool(worth >= self.threshold)
 
     def _count(self, sets: int) -> None:
+        tick()
         self.looked_at += sets * self.objective.n_targets
         if self.looked_at > MOST_CRITERIA:
             raise _NotClosedError
@@ -163,6 +166,7 @@ class _AttackTree:
         tree: list[int] = []
         stack = [_Case()]
         while stack:
+            tick()
             case = stack.pop()
             if self._infeasible(case):
                 tree.append(-1)

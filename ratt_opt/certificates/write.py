@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 from flint import arb, ctx, fmpq
 
 from ratt_opt._files import write_atomically
+from ratt_opt.budget import Budget
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
+from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
@@ -44,6 +46,8 @@ __all__ = [
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
 """How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
 LARGEST_SHAVE = SHAVES[-1]
+LOWER_SHARE = 0.4
+"""Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,7 +118,9 @@ def _is_known(problem: Problem) -> bool:
     return type(problem.objective) in CERTIFIED
 
 
-def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path | None) -> Certification:
+def certify_if_possible(
+    problem: Problem, result: MaxMinResult, path: str | Path | None, budget: Budget | None = None
+) -> Certification:
     """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` where no certificate is wanted.
 
     A file that cannot be written is such a reason too: what the search found does not hang on it.
@@ -130,32 +136,48 @@ def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path
     if result.proof is None:
         return Certification(why_not="the search stopped before it proved a bound")
     try:
-        return Certification(certificate=certify(problem, result, path))
+        return Certification(certificate=certify(problem, result, path, budget=budget))
     except (InputError, UndecidedError, MemoryError) as error:
         reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
         return Certification(why_not=f"could not be made: {reason}", final=False)
 
 
-def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:
+def certify(
+    problem: Problem,
+    result: MaxMinResult,
+    path: str | Path,
+    *,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
+) -> Certificate:
     """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver.
 
     The file is verified under a temporary name first; only then is it renamed to ``path``.
 
     The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
     (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the limits of ``lower.py``, the
-    lower end is stated as enumerated in floating point and ``verified.lower_proved`` is False.
+    lower end is stated as enumerated in floating point and ``verified.lower_proved`` is False, as where
+    two fifths of the time do not do for a cover. An interrupt propagates; no file is left.
+
+    Parameters
+    ----------
+    time_limit : seconds, verification included; unlimited by default
+    budget : an outer search's budget: its seconds count too
 
     Raises
     ------
     InputError : the objective cannot be certified, the result carries no proof, or the file cannot be written.
     ProofError : the result's proof has a fault.
+    UndecidedError : the upper end was not proved and verified in time; no file is left.
     """
     if result.proof is None:
         raise InputError("result", "must carry a proof (from solve_maxmin)", result.stop)
-    record = upper_record(problem, result.proof)
-    return write_certificate(
-        problem, result.elements, lower=result.lower, upper=result.upper, upper_part=record, path=path
-    )
+    with limited(Budget.inside(budget, time_limit).seconds_left):
+        tick()
+        record = upper_record(problem, result.proof)
+        return write_certificate(
+            problem, result.elements, lower=result.lower, upper=result.upper, upper_part=record, path=path
+        )
 
 
 @Step("certificate, written and checked")
@@ -198,8 +220,8 @@ def write_certificate(
         }
         try:
             return _write_verified(document, path, lower - low, high - upper)
-        except ProofError:
-            if lower_part is ENUMERATED:
+        except ProofError as error:
+            if lower_part is ENUMERATED or isinstance(error, UndecidedError):
                 raise
     raise AssertionError  # the last claim is an enumeration
 
@@ -211,7 +233,9 @@ def _write_verified(document: dict[str, Any], path: str | Path, shaved: float, r
     def write(file: Path) -> None:
         """A file that does not stand before the verifier never gets the certificate's name."""
         file.write_text(text, encoding="utf-8")
-        found.append(verify_certificate(file, expected_problem=document["problem"]))
+        tick()
+        seconds = min(SECONDS, seconds_left())
+        found.append(verify_certificate(file, expected_problem=document["problem"], time_limit=seconds or None))
 
     target = write_atomically(path, write)
     return Certificate(
@@ -258,7 +282,8 @@ def _round_up(bound: fmpq | arb) -> float:
 def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterator[tuple[float, dict[str, Any]]]:
     """Floats at or a little below ``lower`` with a cover of all attacks; last ``lower`` with no more than a word."""
     scale = max(abs(lower), abs(problem.objective(elements)))
-    part = lower_proof(problem, elements, lower - LARGEST_SHAVE * scale / 10)
+    with limited(LOWER_SHARE * seconds_left()):
+        part = lower_proof(problem, elements, lower - LARGEST_SHAVE * scale / 10)
     if part is not ENUMERATED:
         yield from ((lower - shave * scale, part) for shave in SHAVES)
     yield lower, ENUMERATED

@@ -25,8 +25,10 @@ def main() -> None:
         ignore_interrupts()
     except KeyboardInterrupt:  # outside of the command's own guards: nothing has begun, or all is done
         from ratt_opt.cli.interrupts import ignore_interrupts
+        from ratt_opt.cli.terminal import fail
 
         ignore_interrupts()
+        code = fail("interrupted", INTERRUPTED)
     if code == INTERRUPTED:
         # What an import left half done may complain on the way out.
         from ratt_opt.cli.terminal import abandon_output

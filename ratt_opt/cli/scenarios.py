@@ -1,5 +1,6 @@
 """``ratt-opt new`` and ``ratt-opt schema``: scenario files, and what they must look like."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -33,6 +34,10 @@ def new(
     communication_range: Annotated[
         float | None, typer.Option("--range", help="Link robots within this distance [m]; all where absent.")
     ] = None,
+    graph: Annotated[
+        str | None,
+        typer.Option("--graph", help="Family of a random network: dense, disk-12, disk-6, small-world or hubs."),
+    ] = None,
     mrclam: Annotated[Path | None, typer.Option("--mrclam", help="Folder of the MRCLAM dataset.")] = None,
     time: Annotated[
         float | None, typer.Option("--time", help="Instant of the dataset: seconds since its start, or Unix time.")
@@ -51,9 +56,11 @@ def new(
     drawn = {"robots": robots, "targets": targets, "seed": seed}
     if mrclam is None:
         _refuse({"time": time}, wants="--mrclam")
-        scenario = _random(drawn, budgets)
+        if graph is not None:
+            _refuse({"range": communication_range}, wants="no --graph")
+        scenario = _random(drawn, budgets, graph)
     else:
-        _refuse(drawn, wants="no --mrclam")
+        _refuse({**drawn, "graph": graph}, wants="no --mrclam")
         scenario = _from_mrclam(mrclam, time, budgets, label_correction=label_correction)
     if communication_range is not None:
         scenario = scenario.replace(communication_range=communication_range)
@@ -75,14 +82,16 @@ def schema(
     print_json(output_schema(kind) if kind in OUTPUTS else scenario_schema(kind))
 
 
-def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int]) -> "Scenario":
+def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int], graph: str | None) -> "Scenario":
     from ratt_opt.scenario.generator import random_scenario
+    from ratt_opt.scenario.networks import network_scenario
 
     for name, value in drawn.items():
         if value is None:
             raise InputError(f"--{name}", "must be given for a random scenario (or give --mrclam)", "nothing")
     robots, targets, seed = (int(value) for value in drawn.values() if value is not None)
-    return random_scenario(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
+    draw = random_scenario if graph is None else partial(network_scenario, graph)
+    return draw(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
 
 
 def _from_mrclam(folder: Path, time: float | None, budgets: tuple[int, int], *, label_correction: bool) -> "Scenario":
@@ -95,7 +104,7 @@ def _from_mrclam(folder: Path, time: float | None, budgets: tuple[int, int], *, 
     return from_mrclam(folder, time, alpha_s=budgets[0], alpha_c=budgets[1], corrections=corrections)
 
 
-def _refuse(given: "Mapping[str, float | None]", wants: str) -> None:
+def _refuse(given: "Mapping[str, float | str | None]", wants: str) -> None:
     for name, value in given.items():
         if value is not None:
             raise InputError(f"--{name}", f"must come with {wants}", value)

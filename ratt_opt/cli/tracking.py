@@ -35,6 +35,9 @@ def track(
         Literal["best group", "all surviving"], typer.Option("--sharing", help="Whose belief lives on.")
     ] = "best group",
     horizon: Annotated[int, typer.Option("--horizon", help="Steps that a plan looks ahead.")] = 1,
+    beam: Annotated[
+        int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all where absent.")
+    ] = None,
     motion: Annotated[
         Literal["known velocity", "constant velocity", "coordinated turn"],
         typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
@@ -62,7 +65,7 @@ def track(
         raise InputError("--time-limit", "must come with --planner maxmin", planner)
     scenario = load_scenario(file)
     folder = output_directory(out)
-    model = MissionModel(motion=motion, linearisation=linearisation)
+    model = MissionModel(motion=motion, linearisation=linearisation, beam=beam)
     chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
     missions = []
     with Step("flying") as shown:

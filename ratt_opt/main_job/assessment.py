@@ -56,7 +56,7 @@ def assess(
 
 
 def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[str, PlanAssessment]:
-    """Return a plan under its worst attack, the worst found that spares part of it, and no attack.
+    """Return a plan under its worst attack, the worst found that spares part of it (if there is time), and no attack.
 
     The bracket of each is still of the plan's worst case: its upper end is the value under the attack shown.
     """
@@ -69,10 +69,11 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
         )
         return assess(problem, worst.name, plan, budget, known=bracket)
 
-    attacks = [
-        worst_case_attack(spared, plan.elements, budget=budget).attack
-        for spared in _spared(problem, worst.worst_case.attack)
-    ]
+    attacks = []
+    for spared in _spared(problem, worst.worst_case.attack):
+        if budget.is_over:
+            break
+        attacks.append(worst_case_attack(spared, plan.elements, budget=budget).attack)
     nexts = sorted((under(attack) for attack in attacks), key=lambda view: view.worst_case.upper)
     return {"worst": worst, **({"next worst": nexts[0]} if nexts else {}), "none": under(Attack())}
 

@@ -9,21 +9,17 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
-import numpy as np
-
 from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
-from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.progress import Step
-from ratt_opt.setfunctions.base import LARGEST_TABLE
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
@@ -81,6 +77,9 @@ ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75,
 on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
 of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
 bracket, so shares trade strength only; the non-robust optimum is a baseline where it is proved in its share."""
+CERTIFICATE_SHARE = 0.25
+"""Of the whole time, kept for writing and verifying a certificate where one is asked for; what the searches leave of
+theirs comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
@@ -114,8 +113,8 @@ def bound(
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
     objective : name of the criterion (trace where ``None``); not with a problem, which has its own
     gap : relative gap at which the search for the optimum stops
-    time_limit : seconds for all searches together, of which that for the optimum may take three quarters of what
-        the attacks on the baselines leave; ``None`` for no limit. Writing and verifying the certificate comes on top.
+    time_limit : seconds for all of it, of which the search for the optimum may take three quarters of what
+        the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit
     certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
 
@@ -127,9 +126,10 @@ def bound(
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
-    budget, steps = Budget(time_limit), Steps(progress)
+    whole, steps = Budget(time_limit), Steps(progress)
+    budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
-        plan = ratt(problem)
+        plan = ratt(problem, budget=budget)
         alpha_cs = plan.alpha_cs
         assert alpha_cs is not None  # RATT's own plan says what it took the link attacks to be worth
         robust = _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
@@ -149,7 +149,7 @@ def bound(
         guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
         interrupted = budget.stop() is Stop.INTERRUPTED
-        proof, failure = (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate)
+        proof, failure = (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate, whole)
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -176,11 +176,11 @@ def bound(
 
 
 def _certified(
-    problem: Problem, optimum: MaxMinResult, path: str | Path | None
+    problem: Problem, optimum: MaxMinResult, path: str | Path | None, budget: Budget
 ) -> tuple[Certification, ProofError | None]:
     """The certificate or why there is none, and the fault that the verifier found in our own proof."""
     try:
-        return certify_if_possible(problem, optimum, path), None
+        return certify_if_possible(problem, optimum, path, budget), None
     except ProofError as failure:
         return Certification(why_not=f"the proof has a fault: {failure}", final=False), failure
 
@@ -205,10 +205,14 @@ def _problem_of(given: HasProblem | Problem, objective: str | None) -> Problem:
 
 
 def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
-    plans = {"greedy": greedy(problem), "myopic": myopic(problem), "random": random_plan(problem, seed=RANDOM_SEED)}
+    plans = {
+        "greedy": greedy(problem, budget=budget),
+        "myopic": myopic(problem, budget=budget),
+        "random": random_plan(problem, seed=RANDOM_SEED),
+    }
     for name, plan in plans.items():
         yield assess(problem, name, plan, budget.part(ATTACK_SHARE))
-    if isinstance(problem.objective, InformationObjective) or problem.objective.n <= LARGEST_TABLE:
+    if not budget.is_over:
         unattacked = nonrobust_search(problem, budget=budget.part(NONROBUST_SHARE))
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
@@ -218,14 +222,8 @@ def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
     """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
     f, owners = problem.objective, problem.robot
-    if isinstance(f, InformationObjective):
-        submodular = f.is_submodular
-    elif np.prod([len(choice) + 1.0 for choice in problem.choices]) <= LARGEST_ENUMERATION:
-        submodular = False
-    else:
-        return None, None
     try:
-        if submodular:
+        if f.is_submodular:
             return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
         return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
     except InputError:
@@ -238,7 +236,7 @@ def _guarantees(
     problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
-    found = all_guarantees(problem, alpha_cs, k=k, c=c)
+    found = all_guarantees(problem, alpha_cs, k=k, c=c, budget=budget)
     if k or c:
         found["this instance"] = instance_bound(problem, robust.elements, k=k, c=c, time_limit=None, budget=budget)
     return dict(sorted(found.items(), key=lambda item: -item[1]))

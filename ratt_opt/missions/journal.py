@@ -63,7 +63,9 @@ class Journal:
         if first.get("format") != head["format"]:
             raise FileFormatError(f"{file} line 1", "must be a mission's journal", first.get("format"))
         if first != head:
-            raise InputError("journal", "must be of the same mission (scenario, seed and all settings)", file)
+            raise InputError(
+                "journal", "must be of the same mission (scenario, seed, all settings), or removed to begin anew", file
+            )
         journal.lines = [_decision(file, number, line) for number, line in enumerate(rest)]
         # Anything after the last whole line goes: the next step is written there.
         file.write_text("".join(line + "\n" for line in whole), encoding="utf-8")

@@ -169,9 +169,9 @@ class Mission(ByValue):
         return write_mission(self, directory)
 
     def animate(self, path: str | Path) -> Path:
-        """Write the animation: ``.gif``, or ``.html`` for a player that needs nothing else.
+        """Write the animation: ``.gif``, ``.html`` for a player that needs nothing else, ``.mcap`` for log viewers.
 
-        InputError : another ending, or the file cannot be written.
+        InputError : another ending, a library that is not installed, or the file cannot be written.
         """
         from ratt_opt.report.mission.write import write_animation
 

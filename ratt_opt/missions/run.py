@@ -163,6 +163,8 @@ class _Flight:
         sensors, links = self.players.model.strikes(
             threatened, len(team.problem.communication.links), self._rng(step, STRIKE)
         )
+        if sensors == 0 and links == 0:
+            return standing
         problem = team.with_budgets(sensors, links)
         new = attack_of(self.players.attack(problem, elements, self._word(step, ATTACKER)), problem)
         return Attack(standing.sensing | new.sensing, standing.links | new.links)

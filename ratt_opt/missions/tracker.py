@@ -57,6 +57,8 @@ class Tracker:
     model : motions, sensors and filter, as in :func:`run_mission`
     state : where to go on; the scenario's start by default
 
+    ``state`` : all it knows; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot executes next.
+
     Raises
     ------
     InputError : an argument breaks its rule, or the state is of another team.
@@ -79,6 +81,7 @@ class Tracker:
         self._plan = planner_called(planner)
         self._running: Future[IntArray] | None = None
         self.state = self._start() if state is None else self._checked(state)
+        self.controls: FloatArray = readonly(self.state.controls[:, 0])
 
     @property
     def beliefs(self) -> Belief:
@@ -133,7 +136,7 @@ class Tracker:
             steps=state.steps + 1,
             missed=state.missed + late,
         )
-        self.controls: FloatArray = readonly(chosen.controls[:, 0])
+        self.controls = readonly(chosen.controls[:, 0])
         return Plan(elements=readonly(elements), evaluations=0)
 
     def _start(self) -> TrackerState:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ratt_opt._validation import FloatArray, check_finite, check_integer, check_number
 from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["Measurement", "TrackerState"]
 
@@ -57,13 +54,15 @@ class TrackerState(ByValue, Shown):
         }
 
     @classmethod
-    def from_dict(cls, document: Mapping[str, Any]) -> TrackerState:
+    def from_dict(cls, document: dict[str, Any]) -> TrackerState:
         """The state that :meth:`to_dict` wrote.
 
         Raises
         ------
         InputError : a field is missing or breaks its rule, as a covariance that is singular.
         """
+        if not isinstance(document, dict):
+            raise InputError("state", "must be a record", type(document).__name__)
         for name, known in (("format", "ratt-opt tracker"), ("version", 1)):
             if document.get(name) != known:
                 raise InputError(name, f"must be {known}", document.get(name))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._files import write_atomically
 from ratt_opt._rounding import down
 from ratt_opt.report.bars import draw_bars
-from ratt_opt.report.map import draw_map
+from ratt_opt.report.map import draw_map, name_things
 from ratt_opt.report.tables import share_text
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ def plan_figure(report: BoundReport, picture: Picture) -> Figure:
         f"It keeps {down(plan.worst_case.lower, 6)}: {share}.",
         fontsize=11.5,
     )
+    name_things(left, picture)
     return figure
 
 

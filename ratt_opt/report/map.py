@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.report.labels import Label, place_labels
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 
 if TYPE_CHECKING:
@@ -13,14 +14,16 @@ if TYPE_CHECKING:
 
     from ratt_opt.report.picture import Picture
 
-__all__ = ["MANY_ROBOTS", "draw_map"]
+__all__ = ["MANY_ROBOTS", "draw_map", "name_things"]
 
 SIGMAS = 2.4477
 """Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
 MANY_LINKS = 60
 """Above this many links of a kind they are drawn fainter."""
 MANY_ROBOTS = 20
-"""From so many robots on, only the best group and what is attacked are drawn one by one, the rest as a density."""
+"""From so many robots on, only the best group and what is attacked are drawn one by one, the rest as a density,"""
+SPARSE, MOST_DRAWN = 4, 60
+"""unless there are at most so many links a robot and so many robots: a network is read by all of its links."""
 
 
 def draw_map(axes: Axes, picture: Picture) -> None:
@@ -44,8 +47,24 @@ def draw_map(axes: Axes, picture: Picture) -> None:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=8.5)
 
 
+def name_things(axes: Axes, picture: Picture) -> None:
+    """Write the names of robots and targets, once everything else of the figure is there."""
+    drawn = sorted(_drawn_robots(picture))
+    names = [Label(text=picture.names[i], place=picture.places[i], colour=INK) for i in drawn if picture.names[i]]
+    targets = () if picture.targets is None else picture.targets
+    weights = np.ones(len(targets)) if picture.weights is None else picture.weights
+    weighted = len(targets) > 0 and bool(np.ptp(weights) > 0)
+    for j, (place, weight) in enumerate(zip(targets, weights, strict=True)):
+        name = picture.target_names[j] if picture.target_names else ""
+        text = f"T{j} {name}".rstrip() + (f" ×{weight:g}" if weighted else "")
+        names.append(Label(text=text, place=place, colour=TARGET))
+    place_labels(axes, names, [*picture.places[drawn], *targets])
+
+
 def _is_crowded(picture: Picture) -> bool:
-    return len(picture.places) >= MANY_ROBOTS
+    n_robots = len(picture.places)
+    is_network = n_robots <= MOST_DRAWN and len(picture.links) <= SPARSE * n_robots
+    return n_robots >= MANY_ROBOTS and not is_network
 
 
 def _draw_links(axes: Axes, picture: Picture) -> None:
@@ -95,18 +114,12 @@ def _draw_targets(axes: Axes, picture: Picture) -> None:
     label = "target (predicted), T: its number" + (", ×: its weight" if weighted else "")
     x, y = picture.targets.T
     axes.scatter(x, y, marker="*", s=70, color=TARGET, zorder=4, label=label)
-    for j, (place, weight) in enumerate(zip(picture.targets, weights, strict=True)):
-        name = picture.target_names[j] if picture.target_names else ""
-        text = f"T{j} {name}".rstrip() + (f" ×{weight:g}" if weighted else "")
-        axes.annotate(text, place, (5, -9), textcoords="offset points", fontsize=7, color=TARGET, zorder=4)
 
 
 def _draw_robots(axes: Axes, picture: Picture) -> None:
     robots, sensing = frozenset(range(len(picture.places))), picture.attack.sensing
-    drawn = robots
+    drawn = _drawn_robots(picture)
     if _is_crowded(picture):
-        hit = sensing | {i for link in picture.attack.links for i in link}
-        drawn = (picture.best | sensing) if picture.attack.links and len(hit) == len(robots) else picture.best | hit
         _draw_density(axes, picture, sorted(robots - drawn))
     _draw_moves(axes, picture, sorted(drawn))
     where = "robot" if picture.before is None else "robot after its move"
@@ -130,16 +143,22 @@ def _draw_robots(axes: Axes, picture: Picture) -> None:
         _number(axes, picture, i)
 
 
+def _drawn_robots(picture: Picture) -> frozenset[int]:
+    """Robots that are drawn one by one: of many only the best group and what is attacked."""
+    robots, sensing = frozenset(range(len(picture.places))), picture.attack.sensing
+    if not _is_crowded(picture):
+        return robots
+    hit = sensing | {i for link in picture.attack.links for i in link}
+    return (picture.best | sensing) if picture.attack.links and len(hit) == len(robots) else picture.best | hit
+
+
 def _number(axes: Axes, picture: Picture, i: int) -> None:
-    """Write a robot's number into its disc (beside it under a cross, which would cover it), its name beside it."""
+    """Write a robot's number into its disc (beside it under a cross, which would cover it)."""
     hit = i in picture.attack.sensing
     colour = BLINDED if hit else "white" if i in picture.best else INK
     style: dict[str, Any] = {"fontsize": 7, "weight": "bold", "zorder": 8, "color": colour}
     shift = (-11, 5) if hit else (0, 0)
     axes.annotate(str(i), picture.places[i], shift, textcoords="offset points", ha="center", va="center", **style)
-    if picture.names[i]:
-        beside: dict[str, Any] = {"fontsize": 7, "color": INK, "zorder": 8}
-        axes.annotate(picture.names[i], picture.places[i], (8, 6), textcoords="offset points", **beside)
 
 
 def _draw_density(axes: Axes, picture: Picture, rest: list[int]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 __all__ = ["OUTPUTS", "output_schema"]
 
-OUTPUTS = ("report", "attack", "verification", "new", "audit", "audit-summary")
+OUTPUTS = ("report", "attack", "mission", "verification", "new", "audit", "audit-summary")
 """The outputs; a schema's ``format`` names each. The inputs' schemas are made from their records instead."""
 
 

@@ -25,6 +25,8 @@ __all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent"]
 
 ROUNDING = 1e-12
 """Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
+INVERSE_ROUNDING = 1e-15
+"""Error of an inverse relative to its size, and to the condition: four units in the last place."""
 VALUE_ROUNDING = 1e-14
 """Error of a value in the same sense: some dozens of units in the last place cover sums over a few hundred targets."""
 
@@ -119,6 +121,7 @@ class CriterionParts(ProofParts):
     prior_information: FloatArray
     information: FloatArray
     _baseline: FloatArray
+    condition: FloatArray
 
     name: ClassVar[str] = ""
     """What files, tables and the command line call it; empty for a criterion that is not registered."""
@@ -195,8 +198,13 @@ class CriterionParts(ProofParts):
 
     @property
     def rounding(self) -> float:
-        """Values are differences of sums of a few hundred numbers from :attr:`prior_magnitude`."""
-        return VALUE_ROUNDING * self.prior_magnitude
+        """Values are differences of sums of a few hundred numbers from :attr:`prior_magnitude`, whose own error is
+        what rounding the information matrices does to their inverses."""
+        return VALUE_ROUNDING * self.prior_magnitude + self.inverse_rounding(np.abs(self._baseline))
+
+    def inverse_rounding(self, scale: FloatArray) -> float:
+        """Error of the sum of targets' criteria of these sizes (M,), by the condition of their matrices."""
+        return INVERSE_ROUNDING * float(scale @ self.condition)
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """(n,) proved lower bounds on the smallest and upper bounds on the largest marginals of the elements.

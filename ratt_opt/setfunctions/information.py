@@ -55,7 +55,7 @@ class InformationObjective(CriterionParts):
     Source: ratt.tex, Section II-A e) and the objective of Section VI.
     """
 
-    __slots__ = ("_baseline", "information", "prior", "prior_information", "weights")
+    __slots__ = ("_baseline", "condition", "information", "prior", "prior_information", "weights")
 
     is_non_decreasing: ClassVar[bool] = True
     """Added information is positive semidefinite, up to the rounding that the input rule admits."""
@@ -69,6 +69,7 @@ class InformationObjective(CriterionParts):
         states_value_alone = self.states("value") and not self.states("criterion")
         baseline = np.zeros(self.n_targets) if states_value_alone else self.criterion(self.prior_information)
         self._baseline: FloatArray = readonly(baseline)
+        self.condition: FloatArray = readonly(self._condition())
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.n} elements, {self.n_targets} targets, d = {self.dimension})"
@@ -88,6 +89,11 @@ class InformationObjective(CriterionParts):
         """Dimension d of a target's state."""
         return int(self.prior.shape[1])
 
+    def _condition(self) -> FloatArray:
+        """(M,) no information matrix of a target has a larger condition: most information over least."""
+        largest = np.linalg.eigvalsh(self.prior_information + self.information.sum(axis=0))[:, -1]
+        return np.asarray(largest * np.linalg.eigvalsh(self.prior)[:, -1])
+
     def restricted_to(self, elements: IntArray) -> Self:
         """The same criterion over some of the elements, in the given order."""
         restricted = copy(self)
@@ -98,6 +104,7 @@ class InformationObjective(CriterionParts):
         """The same criterion of other elements: (E, M, d, d), checked."""
         other = copy(self)
         other.information = readonly(_check_information(information, self.prior))
+        other.condition = readonly(other._condition())
         return other
 
     def posterior_information(self, subset: IntArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -30,6 +30,8 @@ class Modular(SizedFunction):
 
     __slots__ = ("weights",)
 
+    is_submodular: ClassVar[bool] = True
+
     def __init__(self, weights: ArrayLike) -> None:
         self.weights: FloatArray = check_finite("weights", weights, ndim=1)
         self._n = len(self.weights)
@@ -46,6 +48,9 @@ class Coverage(SizedFunction):
     """
 
     __slots__ = ("covers", "item_weights")
+
+    is_non_decreasing: ClassVar[bool] = True
+    is_submodular: ClassVar[bool] = True
 
     def __init__(self, covers: ArrayLike, item_weights: ArrayLike) -> None:
         self.covers: BoolArray = readonly(np.asarray(covers, dtype=np.bool_))
@@ -67,6 +72,9 @@ class PartitionMatroidRank(SizedFunction):
     """
 
     __slots__ = ("_order", "block", "capacity", "weights")
+
+    is_non_decreasing: ClassVar[bool] = True
+    is_submodular: ClassVar[bool] = True
 
     def __init__(self, weights: ArrayLike, block: ArrayLike, capacity: ArrayLike) -> None:
         self.weights: FloatArray = _nonnegative("weights", weights, 1)
@@ -98,6 +106,9 @@ class FacilityLocation(SizedFunction):
     """
 
     __slots__ = ("utility",)
+
+    is_non_decreasing: ClassVar[bool] = True
+    is_submodular: ClassVar[bool] = True
 
     def __init__(self, utility: ArrayLike) -> None:
         self.utility: FloatArray = _nonnegative("utility", utility, 2)

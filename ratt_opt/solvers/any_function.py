@@ -24,6 +24,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.curvatures.domains import domain_of
 from ratt_opt.curvatures.marginals import enumerate_marginals
 from ratt_opt.errors import InputError
+from ratt_opt.graph.outcomes import count_outcomes
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
@@ -43,6 +44,8 @@ CHECKED_SETS, CHECKED_TABLE = 2**12, 2**18
 ENUMERATION_SHARE, PLAN_SHARE, ATTACK_SHARE = 0.5, 0.3, 0.2
 """Shares of the seconds and values left: for the enumeration of a small problem, for RATT's plan, and for each attack
 on a plan. Not measured."""
+MOST_OUTCOMES = 200_000
+"""Outcomes that are gone through: some seconds where plans are few."""
 ROUNDS = 50
 """Plans that are climbed to and attacked, where no limit ends it before."""
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
@@ -91,6 +94,8 @@ def search_any(problem: Problem, budget: Budget, gap: float = 1e-9) -> MaxMinRes
 
 def _enumerated(problem: Problem, budget: Budget) -> MaxMinResult | None:
     """What the enumeration of plans and outcomes says within its share; ``None`` where there are too many."""
+    if problem.threat.links_alike and count_outcomes(problem.threat) > MOST_OUTCOMES:
+        return None
     try:
         return exhaustive_optimum(problem, budget=budget.part(ENUMERATION_SHARE))
     except InputError as error:

@@ -162,8 +162,15 @@ def test_ratt_is_said_to_be_optimal_where_one_robot_sees_in_every_group():
     report = ro.bound(ro.random_scenario(4, 4, alpha_s=2, alpha_c=4, seed=0), time_limit=20)
     assert report.guaranteed_share == 1.0
     assert report.guarantees["one robot a group"].hypotheses[0] == "normalised, non-decreasing"
+    assert report.to_dict()["proofs"]["one robot a group"] == "group_size_bound; in Coq paper_optimal"
     assert "RATT's plan is optimal" in str(list(report_tables(report))[-1].caption)
     assert "RATT&#x27;s plan is optimal" in report_page(report)
+
+
+def test_coq_is_named_for_what_it_covers_only():
+    assert group_size_bound(2, k=0.5).proof.endswith("paper_group_size_submodular")
+    assert group_size_bound(2, k=0.5, baits_survive=False).proof.endswith("paper_group_size_submodular")
+    assert group_size_bound(1, k=0.5, baits_survive=False).proof == "group_size_bound"
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,15 @@ import pytest
 from ratt_opt import (
     breaking_budgets,
     criticality_ranking,
+    load_scenario,
+    network_scenario,
     random_scenario,
     save_scenario,
     worst_case_attack,
 )
 from ratt_opt.certificates import write
 from ratt_opt.cli import run
+from ratt_opt.scenario.networks import NETWORK_FAMILIES
 from tests.cli.refusal import refused
 
 if TYPE_CHECKING:
@@ -234,6 +237,14 @@ def test_new_is_reproducible(tmp_path: Path) -> None:
     for name in ("a.json", "b.json"):
         assert run(["new", *common, "--out", str(tmp_path / name)]) == 0
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+
+
+def test_new_draws_the_network_of_its_family(tmp_path: Path) -> None:
+    common = ["--robots", "9", "--targets", "3", "--sensing-attacks", "1", "--link-attacks", "2", "--seed", "7"]
+    for family in NETWORK_FAMILIES:
+        path = tmp_path / f"{family}.json"
+        assert run(["new", "--graph", family, *common, "--out", str(path)]) == 0
+        assert load_scenario(path) == network_scenario(family, 9, 3, alpha_s=1, alpha_c=2, seed=7)
 
 
 def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:

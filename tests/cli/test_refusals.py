@@ -28,6 +28,15 @@ BAD = [
     ([*NEW, "--robots", "2", "--targets", "0", "--seed", "1"], "n_targets must be an integer >= 1; got 0"),
     ([*NEW, "--robots", "1", "--targets", "1", "--seed", "1"], "alpha_c must be an integer in [0, 0]; got 1"),
     ([*NEW, "--robots", "2", "--mrclam", "OUT", "--time", "0"], "--robots must come with no --mrclam"),
+    (
+        [*NEW, "--graph", "ring", "--robots", "2", "--targets", "2", "--seed", "1"],
+        "graph must be one of dense, disk-12",
+    ),
+    (
+        [*NEW, "--graph", "hubs", "--range", "9", "--robots", "4", "--targets", "2", "--seed", "1"],
+        "--range must come with no --graph; got 9.0",
+    ),
+    ([*NEW, "--graph", "hubs", "--mrclam", "OUT", "--time", "0"], "--graph must come with no --mrclam; got hubs"),
     ([*NEW, "--mrclam", "OUT"], "--time must be given with --mrclam"),
     ([*NEW, "--mrclam", "OUT", "--time", "0"], "Landmark_Groundtruth.dat"),
     (

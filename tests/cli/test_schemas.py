@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import re
 from copy import deepcopy
@@ -16,7 +17,7 @@ from ratt_opt.audit import ledger
 from ratt_opt.audit.ledger import all_entries
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.cli import FAULT, run
-from ratt_opt.cli.program import ERRORS
+from ratt_opt.cli.program import ERRORS, app
 from ratt_opt.cli.proofs import UPPER_ONLY
 from ratt_opt.main_job import bound as main_job
 from ratt_opt.report.schemas import OUTPUTS, output_schema
@@ -80,14 +81,24 @@ def test_schemas_are_schemas_and_say_what_every_field_is(name: str, capsys: pyte
     assert json.loads(capsys.readouterr().out) == schema
 
 
-def test_the_page_about_files_names_every_schema_and_exit_code() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
+def _takes_json(command: Any) -> bool:
+    return "as_json" in inspect.signature(command).parameters
+
+
+def test_the_pages_name_every_schema_and_exit_code() -> None:
+    page, commands = (
+        (Path(__file__).parents[2] / "docs" / name).read_text(encoding="utf-8")
+        for name in ("formats.md", "commands.md")
+    )
     for name in OUTPUTS:
         assert f"`ratt-opt schema {name}`" in page
         about = output_schema(name)["properties"]["format"]["const"]
-        assert f"| `{about}` |" in page
+        assert f'| `"{about}"` |' in page
+    with_json = {str(command.callback.__name__) for command in app.registered_commands if _takes_json(command.callback)}
+    assert with_json >= {"bound", "track", "verify"}
+    assert all(re.search(rf"^\|[^|]*`{name}`[^|]*\| `ratt-opt schema", page, re.MULTILINE) for name in with_json)
     codes = {0, UPPER_ONLY, FAULT, *ERRORS.values()}
-    assert {int(code) for code in re.findall(r"^\| (\d+) \| ", page, re.MULTILINE)} == codes
+    assert {int(code) for code in re.findall(r"^\| (\d+) \| ", commands, re.MULTILINE)} == codes
 
 
 @pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])
@@ -141,6 +152,14 @@ def test_attacks_with_all_that_may_be_asked_for(
     assert {"robot", "link"} <= {name for row in found["critical"] for name in row}
     assert found["breaking_budgets"]
     _check(found, "attack")
+
+
+def test_a_mission(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "o"
+    found = _printed(capsys, "track", str(scenario_file), "--steps", "2", "--attacker", "greedy", "--out", str(out))
+    _check(found, "mission")
+    assert found == json.loads((out / "mission.json").read_text())
+    assert len(found["rmse"]) == 2
 
 
 def test_a_half_proved_certificate(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import json
 import re
 
@@ -59,6 +60,27 @@ def test_the_animation_has_a_picture_a_step(mission, tmp_path) -> None:
         assert picture.n_frames == 4
     with pytest.raises(InputError, match="path must end in"):
         mission.animate(tmp_path / "mission.mp4")
+
+
+def test_the_log_holds_every_step(mission, tmp_path) -> None:
+    path = tmp_path / "mission.mcap"
+    if importlib.util.find_spec("mcap") is None:
+        with pytest.raises(InputError, match="needs the extra viewers"):
+            mission.animate(path)
+        assert not path.exists()
+        return
+    from mcap.reader import make_reader
+
+    mission.animate(path)
+    with path.open("rb") as stream:
+        read = [(c.topic, m.log_time, json.loads(m.data)) for _, c, m in make_reader(stream).iter_messages()]
+    assert len(read) == 4 * 5
+    for k, step in enumerate(mission.steps):
+        now = {topic: message for topic, time, message in read if time == (k + 1) * 10**9}
+        places = [[p["position"]["x"], p["position"]["y"]] for p in now["/robots"]["poses"]]
+        assert places == step.poses[:, :2].tolist()
+        assert now["/mission"]["rmse"] == mission.rmse[k]
+        assert len(now["/scene"]["entities"][0]["lines"][1]["points"]) == 2 * len(step.attack.links)
 
 
 def test_the_player_needs_nothing_else(mission, tmp_path) -> None:

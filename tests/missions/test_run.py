@@ -132,6 +132,26 @@ def test_surviving_measurements_are_worth_at_least_the_best_groups() -> None:
     assert together.traces[-1] <= apart.traces[-1] * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("motion", ["known velocity", "constant velocity"])
+def test_groups_that_meet_again_believe_what_a_team_does_that_never_split(motion: str) -> None:
+    """Robots 0 and 1 are cut off for three steps, each with its measurements; when links return nothing was lost."""
+    cuts = iter([Attack(links={(0, 1), (0, 2), (0, 3), (1, 2), (1, 3)}), Attack()])
+    arguments = {
+        "steps": 4,
+        "planner": lambda problem: np.array([choice[0] for choice in problem.choices]),
+        "attacks": PersistentAttacks(hold=3),
+        "sharing": "all surviving",
+        "model": MissionModel(sensor=PositionSensor(2.0), motion=motion),
+    }
+    scenario = scenario_of(alpha_s=0, alpha_c=5)
+    split = run_mission(scenario, attacker=lambda *_: next(cuts), **arguments)
+    whole = run_mission(scenario, attacker="none", **arguments)
+    assert [len(step.groups) for step in split.steps] == [3, 3, 3, 1]
+    assert split.steps[2].team.belief.trace > whole.steps[2].team.belief.trace * 1.01
+    np.testing.assert_allclose(split.steps[3].team.belief.mean, whole.steps[3].team.belief.mean, rtol=1e-9)
+    np.testing.assert_allclose(split.steps[3].team.belief.covariance, whole.steps[3].team.belief.covariance, rtol=1e-8)
+
+
 @pytest.mark.parametrize("motion", ["constant velocity", "coordinated turn"])
 def test_other_motions_and_sensors(motion: str) -> None:
     scenario = scenario_of()

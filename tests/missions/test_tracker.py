@@ -164,6 +164,8 @@ def test_bad_states_and_arguments() -> None:
             Tracker(scenario, state=TrackerState.from_dict(good | {name: value}))
     with pytest.raises(InputError, match="covariance is missing"):
         TrackerState.from_dict({k: v for k, v in good.items() if k != "covariance"})
+    with pytest.raises(InputError, match="state must be a record"):
+        TrackerState.from_dict([good])  # type: ignore[arg-type]
     for limit in (0, -1, float("nan")):
         with pytest.raises(InputError, match="time_limit"):
             Tracker(scenario, time_limit=limit)

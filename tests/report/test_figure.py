@@ -41,7 +41,7 @@ def test_links_groups_and_blinded_robots_are_the_worst_attack_s(drawn):
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert "blinded robot" in labels
     written = [text.get_text() for text in figure.axes[0].texts]
-    assert written == [*(f"T{j}" for j in range(4)), *"01234"]
+    assert written == [*"01234", *(f"T{j}" for j in range(4))]
     assert labels[-1] == "heading"
 
 
@@ -124,6 +124,14 @@ def test_from_twenty_robots_on_only_what_matters_is_drawn():
     assert "link of another group" not in labels
 
 
+def test_every_robot_and_link_of_a_network_is_drawn():
+    scenario = ro.network_scenario("disk-6", 24, 4, alpha_s=3, alpha_c=8, seed=1)
+    report = ro.bound(scenario, time_limit=5)
+    axes = plan_figure(report, picture_of(scenario, report)).axes[0]
+    assert {int(t.get_text()) for t in axes.texts if t.get_text().isdigit()} == set(range(24))
+    assert sum(colours_of(axes).values()) == len(scenario.links) == 72
+
+
 @pytest.mark.parametrize(("n_robots", "n_targets", "seed"), [(4, 4, 14), (8, 10, 0), (30, 25, 1)])
 def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed):
     scenario = ro.random_scenario(n_robots, n_targets, alpha_s=n_robots // 4, alpha_c=n_robots - 1, seed=seed)
@@ -143,6 +151,23 @@ def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed):
         assert figure.bbox.x0 <= box.x0 <= box.x1 <= figure.bbox.x1
         assert figure.bbox.y0 <= box.y0 <= box.y1 <= figure.bbox.y1
     assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
+
+
+def test_names_cover_neither_each_other_nor_what_they_name():
+    """Five robots two steps apart among six targets, all with long names."""
+    grid = [[float(x), float(y)] for y in (0, 12, 24, 36) for x in (0, 30, 60)]
+    given = ro.InformationInput(
+        prior=[[[2.0]]] * 6, information=[[[[1.0 + e]]] * 6 for e in range(5)], robot=range(5), alpha_s=1, alpha_c=0,
+        robot_names=[f"robot number {i}" for i in range(5)], target_names=[f"landmark number {j}" for j in range(6)],
+        robot_positions=grid[:5], target_positions=grid[5:11],
+    )  # fmt: skip
+    figure = ro.bound(given).plot()
+    figure.draw_without_rendering()
+    words = [text for text in figure.axes[0].texts if "number" in text.get_text()]
+    assert len(words) == 11
+    assert not any(a.get_window_extent().overlaps(b.get_window_extent()) for a, b in combinations(words, 2))
+    places = figure.axes[0].transData.transform(grid[:11])
+    assert not any(word.get_window_extent().contains(*place) for word in words for place in places)
 
 
 def test_a_file_is_the_same_each_time(drawn, tmp_path):

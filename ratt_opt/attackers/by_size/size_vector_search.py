@@ -124,7 +124,9 @@ class SizeVectorSearch:
                 break
             family = GroupExchanges(self.team, sizes, must)
             family.weakest(self.task.budget)
-            for largest in self._weak_largest(sizes):
+            for largest in () if self.task.budget.is_over else self._weak_largest(sizes):
+                if self.task.budget.is_over:
+                    break
                 family.around(largest, self.task.budget)
             families.append(family)
         families.sort(key=lambda family: family.value)
@@ -141,7 +143,7 @@ class SizeVectorSearch:
         if others and 2 * others[0] > largest:
             return []
         if largest not in self._weak:
-            self._weak[largest] = weak_sets_of_size(self.team, largest)[:WEAK_SETS]
+            self._weak[largest] = weak_sets_of_size(self.team, largest, self.task.budget)[:WEAK_SETS]
         return self._weak[largest]
 
     def _accept(self, groups: Iterable[frozenset[int]]) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ratt_opt.audit.engine.claim import elementary, elementary_keys
 from ratt_opt.audit.engine.evidence import Proof, ProofStep, check_proof
+from ratt_opt.audit.engine.pace import program_seconds
 from ratt_opt.audit.engine.rationals import ONE, ZERO, Polynomial, T, constant, solve_exactly
 from ratt_opt.errors import ProofError
 from ratt_opt.highs import LinearProgram, Rows
@@ -28,10 +29,8 @@ if TYPE_CHECKING:
     Entries = dict[tuple[Key, int], Fraction]
     """Coefficients by value and power of ``t``: the rows of the linear program."""
 
-__all__ = ["SECONDS", "find_proof"]
+__all__ = ["find_proof"]
 
-SECONDS = 60.0
-"""Longest that one linear program may take: it stops a runaway only, as the chains' programs take 0.1 s at most."""
 DENOMINATORS = (1, 12, 1000)
 """Rounded multipliers are tried over these, simplest first: a proof in twelfths is shorter to read than the vertex."""
 NONZERO = 1e-9
@@ -114,7 +113,8 @@ def _claimed_multipliers(columns: Sequence[_Column], target: Entries) -> FloatAr
         values=np.array([float(value) for column in columns for value in column.entries.values()]),
         by_columns=True,
     )
-    claimed = LinearProgram(np.ones(len(columns)), rows=matrix).solve(SECONDS)
+    claimed = LinearProgram(np.ones(len(columns)), rows=matrix).solve(program_seconds())
+    program_seconds()  # a program that was cut short says nothing
     return claimed.x if claimed.is_optimal else None
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ratt_opt.audit.engine.claim import elementary, elementary_keys, largest_marginal
 from ratt_opt.audit.engine.evidence import Witness, check_witness, values_of
-from ratt_opt.audit.engine.prover import SECONDS
+from ratt_opt.audit.engine.pace import program_seconds
 from ratt_opt.audit.engine.rationals import solve_exactly
 from ratt_opt.errors import ProofError
 from ratt_opt.highs import LinearProgram, rows_of
@@ -77,7 +77,8 @@ class _Cone:
             rows, least, most = [*rows, unit], np.append(least, 1.0), np.append(most, 1.0)
             lower, upper = np.where(free, -inf, 0.0), np.full(len(free), inf)
         entries = [(list(row), [float(value) for value in row.values()]) for row in rows]
-        claimed = LinearProgram(cost, lower, upper, rows=rows_of(entries, least, most)).solve(SECONDS)
+        claimed = LinearProgram(cost, lower, upper, rows=rows_of(entries, least, most)).solve(program_seconds())
+        program_seconds()  # a program that was cut short says nothing
         return claimed.x if claimed.is_optimal else None
 
 

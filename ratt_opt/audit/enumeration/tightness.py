@@ -15,6 +15,7 @@ from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, R
 from ratt_opt.audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
+from ratt_opt.audit.worst_ratio.closed_form import sensing_ratio
 from ratt_opt.audit.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
@@ -34,8 +35,8 @@ REPLAYED = tuple((size, Fraction(part, 4)) for size, part in ((1, 2), (2, 1), (2
 ATTAINED = tuple((size, Fraction(*k)) for size, k in ((2, (1, 4)), (2, (1, 2)), (3, (3, 5)), (3, (2, 3))))
 """Sizes m and curvatures k."""
 SHRINKING = (Fraction(1, 10), Fraction(1, 100))
-SENSING = tuple((g, p, Fraction(*c)) for g, p, c in ((2, 1, (1, 4)), (3, 1, (1, 4)), (4, 1, (1, 2)), (3, 2, (9, 10))))
-"""Robots left, robots blinded, and total curvatures, with ``g - 1 <= p (1 + 1/(1-c))``."""
+SENSING = tuple((g, p, Fraction(*c)) for g, p, c in ((2, 1, (1, 4)), (3, 1, (1, 4)), (4, 1, (1, 4)), (3, 2, (9, 10))))
+"""Robots left, robots blinded, and total curvatures."""
 SUB_TIGHT, ND_TIGHT = (Reference(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
 GIVEN = "all set functions of the class, complete graph"
 _claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="tightness", hypotheses=GIVEN)
@@ -59,8 +60,10 @@ def tightness_entries() -> Iterator[EnumeratedEntry]:
     yield _claim(label=f"{SUB_TIGHT.label}_n4", statement=text, enumerate_cases=_attained)
     text = "RATT's worst ratio comes as close to (1-c)^2 as wanted, as N grows"
     yield _claim(label=ND_TIGHT.label, statement=text, enumerate_cases=_approached)
-    text = "without links cut the survivor bound is attained for total curvature c wherever g-1 <= p (1 + 1/(1-c))"
-    yield _claim(label="survivors_nd_tight", statement=text, enumerate_cases=_survivors_attained)
+    text = (
+        "without links cut RATT's worst ratio for total curvature c is (1+th)/(1+h/t), h = min(g-1, p (1+1/t)), t = 1-c"
+    )
+    yield _claim(label="sensing_nd_exact", statement=text, enumerate_cases=_sensing_attained)
     text = "without links cut the survivor bound is attained for curvature k and groups of two: (1 + (1-k)^2)/2"
     yield _claim(label="survivors_sub_tight", statement=text, enumerate_cases=_pairs_attained)
 
@@ -119,10 +122,9 @@ def _attained_by_links() -> Counted:
     return _replayed({f"k = {k}": (link_only_instance(k), 1 - k) for k in (Fraction(1, 2), Fraction(2, 5))})
 
 
-def _survivors_attained() -> Counted:
+def _sensing_attained() -> Counted:
     cases = {
-        f"(g, p, c) = ({g}, {p}, {c})": (sensing_instance(g, p, c), survivor_share(g, 1 - c, submodular=False))
-        for g, p, c in SENSING
+        f"(g, p, c) = ({g}, {p}, {c})": (sensing_instance(g, p, c), sensing_ratio(g, p, 1 - c)) for g, p, c in SENSING
     }
     return _replayed(cases)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.audit.engine.pace import program_seconds
 from ratt_opt.audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.generator import random_scenario
@@ -153,6 +154,7 @@ def _climb(start: Trial | None, sized: SizedClaim, steps: int) -> Trial | None:
     origin = Origin(len(_team(sized).robots), SEEDS[0]) if start is None else start.origin
     base = _section_vi(origin)
     for step in range(steps):
+        program_seconds()  # asks whether there is time
         try:
             moved = _moved(base, rng, SPREAD[step % len(SPREAD)])
         except InputError:  # a robot landed on a target

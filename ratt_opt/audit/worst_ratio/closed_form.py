@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.worst_ratio.families import is_attained
 from ratt_opt.bounds.group_size import group_size_share
 from ratt_opt.bounds.survivors import survivor_share
 from ratt_opt.graph.survivor_sizes import forced_group_size, non_dominated_sizes
@@ -76,8 +75,7 @@ def _unsplit(question: RatioQuestion, lower: Fraction, kept: Fraction, *, submod
         guess = three_left_ratio(kept) if size == 3 else None
         return KnownRatio(lower=lower, attained=size == 2, conjectured=guess)
     found = sensing_ratio(size, swapped, kept)
-    by_family = swapped > 0 and kept > 0 and is_attained(size, swapped, kept)
-    return KnownRatio(lower=max(lower, found), attained=by_family or found == 1, conjectured=found)
+    return KnownRatio(lower=max(lower, found), attained=kept > 0 or found == 1)
 
 
 def three_left_ratio(kept: Fraction) -> Fraction:
@@ -94,10 +92,13 @@ def three_left_ratio(kept: Fraction) -> Fraction:
 
 
 def sensing_ratio(size: int, swapped: int, kept: Fraction) -> Fraction:
-    """``(1 + t h) / (1 + h/t)``, ``h = min(g-1, p (1 + 1/t))``: RATT's share for total curvature ``1-t``, unsplit team.
+    """``(1 + t h) / (1 + h/t)``, ``h = min(g-1, p (1 + 1/t))``: RATT's ratio for total curvature ``1-t``, unsplit team.
 
     ``size`` is g, the robots left, ``swapped`` is p, the robots blinded but at most g: as many bait robots can stand
-    among those left. Without any (``p = 0``) it is ``g / (1 + (g-1)/t)``, greedy's own.
+    among those left. Without any (``p = 0``) it is ``g / (1 + (g-1)/t)``, greedy's own. Attained by
+    ``families.sensing_instance``.
+
+    With more blinded robots than g the rest is bait worth anything, the same in both plans, and blinded.
 
     Proof. All greedy robots are g. Let S, g of them and bait, be left, and in the notation of :func:`survivor_bound`
     let ``x = 1``, M the sum of ``m_(o_i)`` over ``S - r``. There ``phi(u_S) >= 1 + t^2 M`` and ``phi(o_S) <= 1 + M``,

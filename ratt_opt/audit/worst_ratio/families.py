@@ -19,7 +19,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-__all__ = ["is_attained", "link_only_instance", "pair_instance", "sensing_instance", "shared_plan_instance"]
+__all__ = ["link_only_instance", "pair_instance", "sensing_instance", "shared_plan_instance"]
 
 
 def pair_instance(curvature: Fraction) -> RatioWitness:
@@ -98,53 +98,54 @@ def _coverage(
     return question.witness(readonly(np.asarray(values, dtype=np.int64)))
 
 
-def is_attained(size: int, swapped: int, kept: Fraction) -> bool:
-    """Whether ``g - 1 <= p (1 + 1/t)`` for g, p and t: see :func:`sensing_instance`."""
-    return (size - 1) * kept <= swapped * (kept + 1)
-
-
 def sensing_instance(size: int, swapped: int, curvature: Fraction) -> RatioWitness:
-    """Return the instance with ``N = g + p``, ``alpha_s = p``, no link cut, on which RATT attains the survivor bound.
+    """Return the instance with ``N = g + p``, ``alpha_s = p``, no link cut, on which RATT keeps :func:`sensing_ratio`.
 
-    ``g = size`` robots are left, ``1 <= p = swapped <= g``, ``t = 1-c``. Largest marginals are 1 for the p bait
-    elements and the last ``g - p`` greedy ones, ``1/t`` for the first p greedy ones and the others. Prescribed: the
-    first i greedy elements are worth i, with one element of another greedy robot ``i + 1``; bait and the last ``g - p``
-    greedy ones together ``1 + (g-1) t``; ``d >= 1`` others ``1 + (d-1)/t``; single elements 1. Ties go to RATT's
-    elements. Blinding the first p greedy robots leaves ``1 + (g-1) t``; the others keep ``1 + (g-1)/t`` after every
-    attack. Such values extend to a function of total curvature c (see ``NonDecreasing``) if ``g - 1 <= p (1 + 1/t)``:
-    that is the pair of all greedy elements and the set left, the other pairs hold for every g.
+    ``g = size`` robots are left, ``p = swapped <= g``, ``t = 1-c``, ``h = min(g-1, p (1 + 1/t))`` or ``g - 1`` where p
+    is 0. Robots have weights w: 1, but the last ``g - p`` greedy ones, in order, as much as leaves them ``h + 1 - p``
+    in all, so at most one is between 0 and 1. Largest marginals are w for bait and for those greedy elements, ``1/t``
+    for the first p greedy ones, and ``w/t`` for the others'. Prescribed: an element alone is worth w; the first greedy
+    elements are worth their weight, and with one element of a later robot its weight more; bait and the last ``g - p``
+    greedy ones together ``1 + t h`` (for ``p > 0``); others of weight W in all ``1 + (W-1)/t``, or W if none of them
+    has weight 1. Ties go to RATT's elements. Blinding the first p greedy robots leaves ``1 + t h``, without any ``g``;
+    blinding any p leaves the others a weight of at least ``h + 1``, hence ``1 + h/t``.
 
-    Conversely, with ``alpha_c = 0 < alpha_s`` no instance attains the bound, for 0 < c < 1, unless
-    ``g - 1 <= min(alpha_s, g) (1 + 1/t)``. Equality in the bound's proof, for the set S left with p baits and
-    ``x = 1``, needs ``m_(o_i) = 1/t`` for all but one robot of S, ``m_(u_i) = 1`` for the same, and ``phi(u_S) = 1 +
-    (g-1) t``. So every greedy element up to the last one of S adds at least ``t/t = 1`` when it is picked. Let q of
-    these be outside S; ``q <= p``, as g robots are greedy. None is worth more than 1, so none has marginals above
-    ``1/t``. Taking them away and putting the p baits in, ``phi(u_S) >= g - p + q - q/t + p t >= g - p/t + p t``, and
-    that this is at most ``1 + (g-1) t`` is the condition. (A set left without bait holds all greedy robots, and keeps
-    ``g / (1 + (g-1)/t)``, which is more.) With more than g blinded robots, g of them are as here and the rest are bait
-    of any value, the same in both plans.
+    Such values extend to a function of total curvature c if ``f(X) - f(Y) <= m(X-Y) - t m(Y-X)`` for all prescribed X,
+    Y (see ``NonDecreasing``). Two sets of a kind differ by elements that add at least t and at most 1 times their m.
+    Let G be r of the first p greedy elements and others of weight j, L the set left, of weight ``h + 1``, D others of
+    weight W. G, L: ``(j-1)(1-t) <= r (1/t - 1)``, as ``j <= 1 + p/t``, and j is 0 unless r is p; this is what bounds
+    the weights. L, G: ``1 + t h <= h + 1``. D, L: ``t <= 1/t``. L, D: ``(W-1)(1-1/t) <= h (1-t)``. D, G: ``1 - 1/t <=
+    j (1-t)``. G, D: ``r (1-1/t) + (W-1)(1-1/t) <= 0``. G with one more element e of weight w adds w on the left, and w
+    or ``w/t`` on the right; D with e in it, the same but w: ``(1-w)(1-1/t) <= j (1-t)``. Single elements are among
+    these or simpler, and so is D without weight 1.
 
     Raises
     ------
-    InputError : the condition fails, or ``swapped`` or ``curvature`` is out of range.
+    InputError : ``swapped`` is not in ``[0, g]`` or ``curvature`` not in [0, 1).
     """
-    kept = 1 - curvature
-    if not 1 <= swapped <= size:
-        raise InputError("swapped", f"must be in [1, {size}]", swapped)
-    if not 0 <= curvature < 1 or not is_attained(size, swapped, kept):
-        raise InputError("curvature", "must be in [0, 1) with g - 1 <= p (1 + 1/(1-c))", curvature)
-    n = size + swapped
-    bait, greedy, others = range(swapped), range(swapped, n), range(n, 2 * n)
-    known = {1 << e: Fraction(1) for e in range(2 * n)}
+    kept, n = 1 - curvature, size + swapped
+    if not 0 <= swapped <= size:
+        raise InputError("swapped", f"must be in [0, {size}]", swapped)
+    if not 0 <= curvature < 1:
+        raise InputError("curvature", "must be in [0, 1)", curvature)
+    whole = 1 + swapped / kept if swapped else Fraction(size)
+    last = [max(min(Fraction(1), whole - i), Fraction(0)) for i in range(size - swapped)]
+    weight = [Fraction(1)] * (2 * swapped) + last
+    left = (*range(swapped), *range(2 * swapped, n))
+    known = {1 << e: weight[e % n] for e in range(2 * n)}
     for count in range(1, n + 1):
-        for chosen in combinations(others, count):
-            known[_mask(chosen)] = 1 + (count - 1) / kept
-    for count in range(1, size + 1):
-        first, rest = greedy[:count], (*greedy[count:], *others[swapped + count :])
-        known[_mask(first)] = Fraction(count)
-        known |= {_mask((*first, other)): Fraction(count + 1) for other in rest}
-    known[_mask((*bait, *greedy[swapped:]))] = 1 + (size - 1) * kept
-    largest = [Fraction(1)] * swapped + [1 / kept] * swapped + [Fraction(1)] * (size - swapped) + [1 / kept] * n
+        for chosen in combinations(range(n), count):
+            total = sum((weight[i] for i in chosen), Fraction(0))
+            all_light = max(weight[i] for i in chosen) < 1
+            known[_mask(n + i for i in chosen)] = total if all_light else 1 + (total - 1) / kept
+    for end in range(swapped + 1, n + 1):
+        first = range(swapped, end)
+        value = sum((weight[i] for i in first), Fraction(0))
+        known[_mask(first)] = value
+        known |= {_mask((*first, e)): value + weight[i] for i in range(end, n) for e in (i, n + i)}
+    if swapped:
+        known[_mask(left)] = 1 + (sum((weight[i] for i in left), Fraction(-1))) * kept
+    largest = weight[:swapped] + [1 / kept] * swapped + last + [w / kept for w in weight]
     part = NonDecreasing(n, curvature, list(known))
     values = scaled_values(part.table([Fraction(0), *largest, *known.values()], list(known)))
     assert values is not None, "small integers"

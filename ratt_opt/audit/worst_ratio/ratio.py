@@ -65,6 +65,7 @@ def worst_case_ratio(
     domain: str = "elements",
     time_limit: float | None = None,
     use_theorem: bool = True,
+    budget: Budget | None = None,
 ) -> WorstCaseRatio:
     """Return a proved bracket on the smallest ratio that ``planner`` can have, over all instances of a class.
 
@@ -86,6 +87,7 @@ def worst_case_ratio(
     time_limit : seconds of wall time; the bracket stays valid
     use_theorem : start from the largest bound with a written proof (``proved_ratio``) and stop once it is attained;
         ``False`` proves the lower end by multipliers alone
+    budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
     ------
@@ -107,17 +109,17 @@ def worst_case_ratio(
     for name, value, known in choices:
         if value not in known:
             raise InputError(name, f"must be one of {', '.join(known)}", value)
-    budget = Budget(time_limit)
+    own = Budget.inside(budget, time_limit)
     parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
     floor = proved_ratio(question) if use_theorem else Fraction(0)
     search = RatioSearch(parts, class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
     stop = Stop.EXHAUSTED
     try:
-        search.run(budget)
+        search.run(own)
     except OutOfBudget as spent:
         stop = spent.stop
     except KeyboardInterrupt:
-        stop = budget.interrupt()
+        stop = own.interrupt()
     return _result(search, question, stop)
 
 

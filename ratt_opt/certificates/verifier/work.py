@@ -9,6 +9,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from math import inf
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from flint import fmpq, fmpq_mat
 
-__all__ = ["SECONDS", "hold", "limited", "refuse_wide", "tick"]
+__all__ = ["SECONDS", "hold", "limited", "refuse_wide", "seconds_left", "tick"]
 
 SECONDS = 600.0
 """For one file, unless the caller says otherwise; what the library writes for 30 robots takes seconds."""
@@ -49,6 +50,12 @@ def limited(seconds: float) -> Iterator[None]:
         yield
     finally:
         _CURRENT.reset(token)
+
+
+def seconds_left() -> float:
+    """Seconds that are left of the block that limits what is checked; infinite outside of one."""
+    work = _CURRENT.get()
+    return inf if work is None else max(work.ends - monotonic(), 0.0)
 
 
 def tick() -> None:

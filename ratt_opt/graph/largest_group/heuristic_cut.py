@@ -108,4 +108,4 @@ def cheapest_cut(weights: FloatArray) -> BoolArray:
         weights[before, before] = 0.0
         merged[before] |= merged[last]
         alive[last] = False
-    return side
+    return np.asarray(side)

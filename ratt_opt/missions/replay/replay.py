@@ -190,9 +190,10 @@ class _Replay:
         attacker, model = players
         rng = np.random.default_rng([self.settings.seed, step])
         sensors, links = model.strikes(self.threatened, len(problem.communication.links), rng)
-        limited = replace(problem, alpha_s=sensors, alpha_c=links)
-        new = attack_of(attacker(limited, plan, self.settings.seed + step), limited)
         standing = self.threatened.standing
+        limited = replace(problem, alpha_s=sensors, alpha_c=links)
+        found = attacker(limited, plan, self.settings.seed + step) if sensors or links else Attack()
+        new = attack_of(found, limited)
         self.attack = Attack(standing.sensing | new.sensing, standing.links | new.links)
 
     def measure(self, step: int, plan: IntArray) -> None:

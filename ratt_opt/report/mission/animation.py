@@ -21,6 +21,8 @@ __all__ = ["save_gif"]
 
 MILLISECONDS = 250
 """Each picture is shown so long."""
+WIDTH = 6.4
+"""Of the picture [inch]."""
 ROLES = {"best group": (SURVIVING, "o"), "cut off": (LOST, "s"), "blinded": (BLINDED, "X")}
 
 
@@ -31,9 +33,10 @@ def save_gif(mission: Mission, path: Path) -> None:
 
     frames = frames_of(mission)
     view = limits(frames)
+    height = min(max(WIDTH * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 2 * WIDTH) + 1.2
     pictures = []
     for frame, rmse in zip(frames, mission.rmse, strict=True):
-        figure = Figure(figsize=(6.4, 6.4), layout="constrained")
+        figure = Figure(figsize=(WIDTH, height), layout="constrained")
         axes = figure.subplots()
         _draw(axes, frame)
         axes.set_xlim(view[0], view[1])
@@ -41,6 +44,7 @@ def save_gif(mission: Mission, path: Path) -> None:
         axes.set_aspect("equal")
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
+        figure.legend(loc="outside lower center", ncols=5, frameon=False, fontsize=8)
         axes.set_title(f"step {frame['step']}: RMSE {rmse:.3g} m", fontsize=10)
         buffer = BytesIO()
         figure.savefig(buffer, dpi=80, format="png")
@@ -56,7 +60,7 @@ def _draw(axes: Axes, frame: dict[str, Any]) -> None:
     robots = np.array(frame["robots"])
     for links, colour, style in ((frame["links"], LOST, "solid"), (frame["cut"], CUT, (0, (4, 3)))):
         segments = [(robots[i, :2], robots[j, :2]) for i, j in links]
-        axes.add_collection(LineCollection(segments, colors=colour, linestyles=[style], linewidths=0.8, alpha=0.5))
+        axes.add_collection(LineCollection(segments, colors=colour, linestyles=[style], linewidths=0.9, alpha=0.7))
     for place, (long, short, angle) in zip(frame["estimates"], frame["ellipses"], strict=True):
         look: dict[str, Any] = {"angle": float(np.degrees(angle)), "color": TARGET, "alpha": 0.25}
         axes.add_patch(Ellipse(place, 2 * long, 2 * short, **look))
@@ -68,4 +72,3 @@ def _draw(axes: Axes, frame: dict[str, Any]) -> None:
         axes.scatter(chosen[:, 0], chosen[:, 1], s=70, color=colour, marker=marker, label=role, zorder=4)
     turn: dict[str, Any] = {"units": "inches", "scale_units": "inches", "scale": 1 / 0.18, "width": 0.014, "zorder": 5}
     axes.quiver(robots[:, 0], robots[:, 1], np.cos(robots[:, 2]), np.sin(robots[:, 2]), **turn)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=5, frameon=False, fontsize=8)

@@ -11,6 +11,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.report.figure import save_figure
 from ratt_opt.report.mission.animation import save_gif
 from ratt_opt.report.mission.figures import mission_figure
+from ratt_opt.report.mission.log import save_log
 from ratt_opt.report.mission.player import player_page
 from ratt_opt.report.mission.tables import MISSION_COLUMNS, TRACK_COLUMNS, mission_rows, track_rows
 
@@ -46,18 +47,20 @@ def write_mission(mission: Mission, folder: str | Path, others: Sequence[Mission
 
 
 def write_animation(mission: Mission, path: str | Path) -> Path:
-    """Write the animation (``.gif``) or the player (``.html``).
+    """Write the animation (``.gif``), the player (``.html``) or a log for viewers (``.mcap``, the extra ``viewers``).
 
     Raises
     ------
-    InputError : another ending, or the file cannot be written.
+    InputError : another ending, a library that is not installed, or the file cannot be written.
     """
     target = Path(path)
     if target.suffix == ".gif":
         return write_atomically(target, lambda file: save_gif(mission, file))
     if target.suffix == ".html":
         return write_atomically(target, lambda file: file.write_text(player_page(mission), encoding="utf-8"))
-    raise InputError("path", "must end in .gif or .html", target)
+    if target.suffix == ".mcap":
+        return write_atomically(target, lambda file: save_log(mission, file))
+    raise InputError("path", "must end in .gif, .html or .mcap", target)
 
 
 def _write_table(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:

@@ -38,7 +38,7 @@ class LogDetObjective(InformationObjective):
     @property
     def rounding(self) -> float:
         """Beside what the prior's log-determinants round off, every logarithm has an error of its own."""
-        return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum()))
+        return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum())) + self.inverse_rounding(self.weights)
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted log-determinants of the posterior covariances."""

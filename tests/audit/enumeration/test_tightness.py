@@ -16,6 +16,6 @@ def test_verdicts() -> None:
         "pattern_free_sub_tight_links": Verdict.PROVED,
         "pattern_free_sub_tight_n4": Verdict.PROVED,
         "pattern_free_nd_tight": Verdict.PROVED,
-        "survivors_nd_tight": Verdict.PROVED,
+        "sensing_nd_exact": Verdict.PROVED,
         "survivors_sub_tight": Verdict.PROVED,
     }

@@ -10,7 +10,7 @@ import pytest
 
 from ratt_opt import InputError, Problem, ProofError, TableFunction, exhaustive_optimum, ratt, worst_case_attack
 from ratt_opt.audit.worst_ratio.closed_form import known_ratio, proved_ratio, sensing_ratio, three_left_ratio
-from ratt_opt.audit.worst_ratio.families import is_attained, link_only_instance, pair_instance, sensing_instance
+from ratt_opt.audit.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import attaining_instance, replay
 from ratt_opt.bounds.survivors import survivor_share
@@ -28,7 +28,9 @@ HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
         (sensing_instance(2, 1, QUARTER), Fraction(3, 4)),
         (sensing_instance(3, 1, QUARTER), Fraction(15, 22)),
         (sensing_instance(4, 1, HALF), Fraction(5, 14)),
-        pytest.param(sensing_instance(4, 2, QUARTER), Fraction(13, 20), marks=pytest.mark.slow),
+        (sensing_instance(4, 1, QUARTER), Fraction(99, 148)),
+        (sensing_instance(4, 1, Fraction(1, 10)), Fraction(2349, 2710)),
+        (sensing_instance(3, 0, QUARTER), Fraction(9, 11)),
     ],
 )
 def test_the_ratio_is_attained_and_the_curvature_is_no_smaller(witness, ratio) -> None:
@@ -37,14 +39,17 @@ def test_the_ratio_is_attained_and_the_curvature_is_no_smaller(witness, ratio) -
         replay(replace(witness, curvature=witness.curvature - Fraction(1, 1000)))
 
 
-def test_outside_its_condition_the_survivor_bound_is_not_attained() -> None:
-    """N = 5, one robot blinded, c = 1/4: four robots left, of which one swap for bait is not enough."""
-    assert not is_attained(4, 1, 1 - QUARTER)
-    found = worst_case_ratio(5, 1, 0, curvature=QUARTER, family="nondecreasing")
+def test_the_survivor_bound_is_the_ratio_only_where_bait_can_replace_enough_greedy_robots() -> None:
+    """N = 5, one robot blinded, c = 1/4: with four robots left one swap for bait is not enough."""
+    found = worst_case_ratio(5, 1, 0, curvature=QUARTER, family="nondecreasing", use_theorem=False)
     assert found.exact_lower == found.exact_upper == Fraction(99, 148)
     assert found.exact_upper > survivor_share(4, 1 - QUARTER, submodular=False)
-    with pytest.raises(InputError, match="g - 1 <= p"):
-        sensing_instance(4, 1, QUARTER)
+
+
+@pytest.mark.parametrize(("swapped", "c"), [(-1, QUARTER), (3, QUARTER), (1, Fraction(1))])
+def test_what_the_sensing_family_has_no_instance_for(swapped, c) -> None:
+    with pytest.raises(InputError, match="must be in"):
+        sensing_instance(2, swapped, c)
 
 
 @pytest.mark.parametrize("curvature", [Fraction(3, 8), Fraction(51, 100)])
@@ -81,12 +86,13 @@ def test_a_written_proof_is_never_above_what_is_attained() -> None:
 
 
 @pytest.mark.parametrize("c", [QUARTER, Fraction(1, 5), Fraction(1, 10)])
-def test_the_closed_form_without_links_is_the_ratio_where_no_family_attains_it(c) -> None:
+def test_the_closed_form_without_links_is_the_ratio(c) -> None:
     """Each is computed by multipliers and by a witness of its own, neither of which knows the formula."""
     found = worst_case_ratio(5, 1, 0, curvature=c, family="nondecreasing", use_theorem=False)
     known = known_ratio(found.witness)
     assert found.exact_lower == found.exact_upper == known.lower == sensing_ratio(4, 1, 1 - c)
-    assert not known.attained
+    assert known.attained
+    assert replay(sensing_instance(4, 1, c)) == known.lower
 
 
 def test_what_is_known_agrees_with_what_is_computed() -> None:

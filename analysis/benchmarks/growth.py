@@ -1,0 +1,90 @@
+"""From ten robots to a thousand: ``python -m analysis.benchmarks.growth [--robots 10 100] [--seconds 60] [--out DIR]``.
+
+Complete graph, 12 controls, 0.3 targets a robot, a tenth of the robots blinded, a twentieth of the links cut. RATT
+(processor seconds) beside the ``O(N^2)`` evaluations of Theorem 2; then the bracket of its worst case, and of the
+optimum, after so many seconds, and the memory of the process. ``--out`` writes the growth as a figure.
+"""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from analysis.tables import print_table
+from ratt_opt import random_scenario, ratt, solve_maxmin, worst_case_attack
+
+if TYPE_CHECKING:
+    from ratt_opt import Problem
+
+SIZES = (10, 20, 50, 100, 200, 500, 1000)
+OBJECTIVES = ("trace", "logdet", "maxeig")
+WARM = 200
+"""Robots of a problem that compiles what larger ones need, not counted."""
+
+
+def problem_of(robots: int, objective: str) -> Problem:
+    """The problem of one size."""
+    links = robots * (robots - 1) // 2
+    targets = max(3, 3 * robots // 10)
+    return random_scenario(robots, targets, alpha_s=robots // 10, alpha_c=links // 20, seed=0).problem(objective)
+
+
+def measure(robots: int, objective: str, seconds: float) -> dict[str, Any]:
+    """One row: RATT's processor seconds and evaluations, and relative widths of the brackets after some seconds."""
+    problem = problem_of(robots, objective)
+    began = time.process_time()
+    plan = ratt(problem)
+    row: dict[str, Any] = {"robots": robots, "objective": objective, "ratt_s": time.process_time() - began}
+    row["evaluations"] = plan.evaluations
+    if seconds:
+        began = time.monotonic()
+        attack = worst_case_attack(problem, plan.elements, time_limit=seconds)
+        row |= {"attack_s": time.monotonic() - began, "attack_gap": (attack.upper - attack.lower) / attack.upper}
+        began = time.monotonic()
+        found = solve_maxmin(problem, gap=1e-4, time_limit=seconds)
+        row |= {"maxmin_s": time.monotonic() - began, "maxmin_gap": (found.upper - found.lower) / found.upper}
+    return row | {"memory_GiB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20}
+
+
+def draw(rows: list[dict[str, Any]], path: Path) -> None:
+    """RATT's seconds over the number of robots, and its evaluations scaled to the first criterion's last point."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    axes = figure.subplots()
+    for objective, marker in zip(OBJECTIVES, "os^", strict=True):
+        own = [row for row in rows if row["objective"] == objective]
+        axes.loglog([row["robots"] for row in own], [row["ratt_s"] for row in own], marker=marker, label=objective)
+    own = [row for row in rows if row["objective"] == rows[0]["objective"]]
+    sizes, last = [row["robots"] for row in own], own[-1]
+    square = [last["ratt_s"] * (n / last["robots"]) ** 2 for n in sizes]
+    axes.loglog(sizes, square, "k--", linewidth=1, label="$N^2$ (evaluations, Theorem 2)")
+    axes.loglog(sizes, [s * n / last["robots"] for s, n in zip(square, sizes, strict=True)], "k:", linewidth=1,
+                label="$N^3$ (with 0.3 N targets a value)")  # fmt: skip
+    axes.set(xlabel="robots N", ylabel="RATT, processor seconds", title="12 controls, 0.3 N targets, complete graph")
+    axes.grid(visible=True, which="both", linewidth=0.3)
+    axes.legend()
+    figure.savefig(path, dpi=110)
+
+
+def main() -> None:
+    """Print the table; draw the figure where asked."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--robots", type=int, nargs="*", default=list(SIZES))
+    parser.add_argument("--objectives", nargs="*", default=list(OBJECTIVES), choices=OBJECTIVES)
+    parser.add_argument("--seconds", type=float, default=0.0, help="limit of each search; 0 plans only")
+    parser.add_argument("--out", type=Path, help="folder for growth.png")
+    options = parser.parse_args()
+    for objective in options.objectives:
+        ratt(random_scenario(WARM, WARM, alpha_s=1, alpha_c=0, seed=0).problem(objective))
+    rows = [measure(n, objective, options.seconds) for objective in options.objectives for n in options.robots]
+    print_table("Growth", rows)
+    if options.out is not None:
+        draw(rows, options.out / "growth.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,185 @@
+"""Any set function, known by its values alone: brackets hold against brute force, values are counted and checked."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+from tests.oracles import brute_force_optimum, brute_force_worst_case
+from tests.strategies import SEEDED, Drawn, monotone_table, random_problem
+
+
+class Opaque(ro.SetFunction):
+    """Values of another function, counted; nothing else is known of it."""
+
+    def __init__(self, f):
+        self.f, self.asked = f, 0
+
+    @property
+    def n(self):
+        return self.f.n
+
+    def evaluate(self, membership):
+        self.asked += len(membership)
+        return self.f.evaluate(membership)
+
+
+class Submodular(Opaque):
+    """The same of a function that theory proves submodular."""
+
+    is_submodular = True
+
+
+class Curved(Opaque):
+    """The same of a function whose total curvature is at most a half."""
+
+    most_total_curvature = 0.5
+
+
+@st.composite
+def drawn_functions(draw, n):
+    """A non-decreasing function of ``n`` elements that says as much of itself as is true, or nothing."""
+    rng, kind = Drawn(draw), draw(st.sampled_from(["table", "submodular", "curved"]))
+    if kind == "table":
+        return Opaque(ro.TableFunction(monotone_table(rng, n)))
+    weights = np.array([draw(st.integers(0, 4)) for _ in range(n)], dtype=float)
+    if kind == "submodular":
+        return Submodular(ro.ConcaveOfModular(weights, np.sqrt))
+    size = np.bitwise_count(np.arange(2**n)).astype(float)
+    return Curved(ro.TableFunction(size + np.maximum(size - 2, 0)))  # marginals are 1 or 2
+
+
+@st.composite
+def drawn_problems(draw, largest=4):
+    """A small problem of such a function on any graph."""
+    drawn = random_problem(Drawn(draw), draw(st.integers(1, largest)), kind="trace", controls=2)
+    return replace(drawn, objective=draw(drawn_functions(drawn.objective.n)))
+
+
+@pytest.fixture
+def nothing_is_enumerated(monkeypatch):
+    """As for problems too large for it."""
+    monkeypatch.setattr("ratt_opt.solvers.exhaustive.LARGEST_SEARCH", 0)
+    monkeypatch.setattr("ratt_opt.attackers.exact.LARGEST_COMPILED", 0)
+
+
+LIMITS = [{}, {"time_limit": 0}, {"max_evaluations": 0}, {"max_evaluations": 7}, {"max_evaluations": 60}]
+
+
+def check_brackets(problem, limits):
+    found, best = ro.solve_maxmin(problem, **limits), brute_force_optimum(problem)
+    assert found.lower <= brute_force_worst_case(problem, found.elements) + 1e-9
+    assert found.lower - 1e-9 <= best <= found.upper + 1e-9
+    attack = ro.worst_case_attack(problem, found.elements, **limits)
+    worst = brute_force_worst_case(problem, found.elements)
+    assert attack.lower - 1e-9 <= worst <= attack.upper + 1e-9
+    assert problem.team_value(found.elements, attack.attack) == attack.upper
+
+
+@pytest.mark.usefixtures("nothing_is_enumerated")
+@SEEDED
+@given(drawn_problems(), st.sampled_from(LIMITS))
+def test_brackets_of_what_is_too_large_to_enumerate_hold(problem, limits):
+    check_brackets(problem, limits)
+
+
+@SEEDED
+@given(drawn_problems(), st.sampled_from(LIMITS))
+def test_brackets_of_what_is_enumerated_hold(problem, limits):
+    check_brackets(problem, limits)
+
+
+@SEEDED
+@given(drawn_problems())
+def test_small_problems_are_solved(problem):
+    found = ro.solve_maxmin(problem)
+    assert found.stop is ro.Stop.EXHAUSTED
+    assert found.lower == found.upper == brute_force_optimum(problem)
+
+
+ALWAYS = 16
+"""Values that are asked for whatever the limit: both ends, one of each of ten groups, a scale."""
+
+
+@settings(SEEDED, max_examples=30)
+@given(st.integers(0, 400), st.integers(0, 20), st.integers(2, 10), st.booleans())
+def test_values_are_counted_and_limited(limit, cut, robots, is_known):
+    f = (Submodular if is_known else Opaque)(ro.ConcaveOfModular(np.arange(3.0 * robots), np.sqrt))
+    owners = np.repeat(np.arange(robots), 3)
+    problem = ro.Problem(f, owners, None, robots // 3, min(cut, robots * (robots - 1) // 2))
+    for search in (
+        lambda: ro.solve_maxmin(problem, max_evaluations=limit),
+        lambda: ro.worst_case_attack(problem, 3 * np.arange(robots), max_evaluations=limit),
+        lambda: ro.nonrobust_optimum(problem, max_evaluations=limit),
+        lambda: ro.total_curvature(f, owners, max_evaluations=limit),
+        lambda: ro.curvature(f, max_evaluations=limit),
+        lambda: ro.submodularity_ratio(f, owners, max_evaluations=limit),
+    ):
+        f.asked = 0
+        search()
+        assert f.asked <= limit + ALWAYS
+    f.asked = 0
+    found = ro.find_monotonicity_violation(f, max_evaluations=limit)
+    assert not found
+    assert f.asked <= limit + ALWAYS
+
+
+@pytest.mark.parametrize(
+    ("bad", "text"),
+    [
+        (lambda v: np.where(v > 2, np.nan, v), "finite values.*nan for the set"),
+        (lambda v: np.where(v > 2, np.inf, v), "finite values.*inf for the set"),
+        (lambda v: v[:, None], "one number for each of"),
+        (lambda v: v[:1] if len(v) > 1 else v[:, None], "one number for each of"),
+        (lambda v: v.astype(complex), "one number for each of"),
+    ],
+)
+def test_values_that_are_no_numbers_are_refused_at_the_call_that_produced_them(bad, text):
+    class Wrong(Opaque):
+        def evaluate(self, membership):
+            return bad(super().evaluate(membership))
+
+    f = Wrong(ro.Modular([1.0] * 8))
+    problem = ro.Problem(f, np.repeat(np.arange(4), 2), None, 1, 2)
+    for call in (
+        lambda: ro.solve_maxmin(problem),
+        lambda: ro.exhaustive_optimum(problem),
+        lambda: ro.worst_case_attack(problem, [0, 2, 4, 6]),
+        lambda: ro.ratt(problem),
+        lambda: ro.find_submodularity_violation(f),
+        lambda: ro.total_curvature(f),
+        lambda: f(range(8)),
+        f.table,
+    ):
+        with pytest.raises(InputError, match=text):
+            call()
+
+
+@SEEDED
+@given(drawn_problems(), st.data())
+def test_small_functions_that_fall_are_refused_with_the_witness(problem, data):
+    values = problem.objective.f.table().copy()
+    top = problem.choices[0][0]
+    values[1 << int(top)] = -1.0 - data.draw(st.integers(0, 3))  # below nothing at all
+    falling = replace(problem, objective=ro.TableFunction(values))
+    with pytest.raises(InputError, match=r"must be non-decreasing.*changes it by -"):
+        ro.solve_maxmin(falling)
+
+
+@settings(SEEDED, max_examples=6)
+@given(st.integers(21, 40), st.data())
+def test_large_modular_teams_without_link_attacks_close(robots, data):
+    """Their worst case is known: the strongest are blinded."""
+    weights = np.array([data.draw(st.integers(0, 5)) for _ in range(robots)], dtype=float)
+    blinded = data.draw(st.integers(0, robots))
+    problem = ro.Problem(Submodular(ro.Modular(weights)), np.arange(robots), None, blinded, 0)
+    attack = ro.worst_case_attack(problem, np.arange(robots))
+    truth = np.sort(weights)[: robots - blinded].sum()
+    assert attack.lower == attack.upper == truth
+    assert ro.solve_maxmin(problem).upper == truth
