@@ -78,6 +78,7 @@ NO_SEARCH = {
     "load_plan",
     "load_scenario",
     "myopic",
+    "network_scenario",
     "non_dominated_outcomes",
     "pattern_free_bound",
     "problem_document",
