@@ -52,7 +52,7 @@ def name_things(axes: Axes, picture: Picture) -> None:
     drawn = sorted(_drawn_robots(picture))
     names = [Label(text=picture.names[i], place=picture.places[i], colour=INK) for i in drawn if picture.names[i]]
     targets = () if picture.targets is None else picture.targets
-    weights = np.ones(len(targets)) if picture.weights is None else picture.weights
+    weights = np.ones(len(targets)) if picture.weights is None else picture.weights[: len(targets)]
     weighted = len(targets) > 0 and bool(np.ptp(weights) > 0)
     for j, (place, weight) in enumerate(zip(targets, weights, strict=True)):
         name = picture.target_names[j] if picture.target_names else ""
