@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.graph.survivor_sizes import forced_group_size
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ class _Cases:
         return bool(worth >= self.threshold)
 
     def _count(self, sets: int) -> None:
+        tick()
         self.looked_at += sets * self.objective.n_targets
         if self.looked_at > MOST_CRITERIA:
             raise _NotClosedError

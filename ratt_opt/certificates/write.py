@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
@@ -16,7 +17,8 @@ from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
-from ratt_opt.errors import InputError, ProofError
+from ratt_opt.certificates.verifier.work import SECONDS, limited
+from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
 
@@ -43,6 +45,8 @@ __all__ = [
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
 """How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
 LARGEST_SHAVE = SHAVES[-1]
+UPPER_AGAIN = 2.5
+"""Time that is kept for verifying a file without lower proof, in times of what checking the upper one took."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,10 +117,13 @@ def _is_known(problem: Problem) -> bool:
     return type(problem.objective) in CERTIFIED
 
 
-def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path | None) -> Certification:
+def certify_if_possible(
+    problem: Problem, result: MaxMinResult, path: str | Path | None, *, time_limit: float | None = None
+) -> Certification:
     """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` where no certificate is wanted.
 
-    A file that cannot be written is such a reason too: what the search found does not hang on it.
+    A file that cannot be written, or not within the time, is such a reason too: what the search found does not hang on
+    it.
 
     Raises
     ------
@@ -129,32 +136,46 @@ def certify_if_possible(problem: Problem, result: MaxMinResult, path: str | Path
     if result.proof is None:
         return Certification(why_not="the search stopped before it proved a bound")
     try:
-        return Certification(certificate=certify(problem, result, path))
-    except InputError as error:
+        return Certification(certificate=certify(problem, result, path, time_limit=time_limit))
+    except (InputError, UndecidedError) as error:
         return Certification(why_not=f"could not be made: {error}", final=False)
     except MemoryError:
         return Certification(why_not="could not be made: not enough memory", final=False)
 
 
-def certify(problem: Problem, result: MaxMinResult, path: str | Path) -> Certificate:
+def certify(
+    problem: Problem, result: MaxMinResult, path: str | Path, *, time_limit: float | None = None
+) -> Certificate:
     """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver.
 
     The file is verified under a temporary name first; only then is it renamed to ``path``.
 
     The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
-    (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the limits of ``lower.py``, the
-    lower end is stated as enumerated in floating point and ``verified.lower_proved`` is False.
+    (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found and verified within the time and the
+    limits of ``lower.py``, the lower end is stated as enumerated in floating point and ``verified.lower_proved`` is
+    False.
+
+    Parameters
+    ----------
+    time_limit : seconds for writing and verifying; the verifier's own limit where ``None``
 
     Raises
     ------
     InputError : the objective cannot be certified, the result carries no proof, or the file cannot be written.
     ProofError : the result's proof has a fault.
+    UndecidedError : not even the upper end was verified in time; a file at ``path`` is as it was.
     """
     if result.proof is None:
         raise InputError("result", "must carry a proof (from solve_maxmin)", result.stop)
     record = upper_record(problem, result.proof)
     return write_certificate(
-        problem, result.elements, lower=result.lower, upper=result.upper, upper_part=record, path=path
+        problem,
+        result.elements,
+        lower=result.lower,
+        upper=result.upper,
+        upper_part=record,
+        path=path,
+        time_limit=time_limit,
     )
 
 
@@ -166,6 +187,7 @@ def write_certificate(
     upper: float,
     upper_part: dict[str, Any],
     path: str | Path,
+    time_limit: float | None = None,
 ) -> Certificate:
     """Write a certificate of the bracket, verify the file, and say how far its claim had to move.
 
@@ -174,17 +196,23 @@ def write_certificate(
     elements : (N,) the plan
     lower, upper : the bracket as computed in floating point [unit of the objective]
     upper_part : the record of the upper proof
+    time_limit : seconds; the lower end stays unproved where its proof takes longer
 
     Raises
     ------
     InputError : the objective cannot be certified, or the file cannot be written.
     ProofError : the upper proof has a fault.
+    UndecidedError : not even the upper end was verified in time.
     """
+    began, seconds = monotonic(), SECONDS if time_limit is None else time_limit
     record, plan = problem_document(problem), problem.check_plan(elements).tolist()
-    prior_range = _prior_range(problem, record, plan)
-    check = UpperCheck(Statement(record, plan, prior_range))
-    high = max(float(upper), _proved_upper(check, upper_part), 0.0)
-    for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
+    with limited(seconds):
+        prior_range = _prior_range(problem, record, plan)
+        check = UpperCheck(Statement(record, plan, prior_range))
+        high = max(float(upper), _proved_upper(check, upper_part), 0.0)
+    # The verifier decides the upper end again, together with the lower one; without that it needs as long as here.
+    for_lower = began + seconds - UPPER_AGAIN * (monotonic() - began)
+    for low, lower_part in _lower_claims(problem, elements, float(min(lower, high)), for_lower):
         document = {
             "format": FORMAT,
             "version": VERSION,
@@ -195,22 +223,28 @@ def write_certificate(
             "upper": upper_part,
             "lower": lower_part,
         }
+        ends = began + seconds if lower_part is ENUMERATED else for_lower
         try:
-            return _write_verified(document, path, lower - low, high - upper)
+            return _write_verified(document, path, lower - low, high - upper, ends)
         except ProofError:
             if lower_part is ENUMERATED:
                 raise
     raise AssertionError  # the last claim is an enumeration
 
 
-def _write_verified(document: dict[str, Any], path: str | Path, shaved: float, raised: float) -> Certificate:
+def _write_verified(
+    document: dict[str, Any], path: str | Path, shaved: float, raised: float, ends: float
+) -> Certificate:
+    """``ends`` : when the time for it is up."""
+    if (left := ends - monotonic()) <= 0:
+        raise UndecidedError("not verified within the time limit")
     text = "{" + ",\n".join(f"{json.dumps(name)}:{_compact(value)}" for name, value in document.items()) + "}\n"
     found: list[Verified] = []
 
     def write(file: Path) -> None:
         """A file that does not stand before the verifier never gets the certificate's name."""
         file.write_text(text, encoding="utf-8")
-        found.append(verify_certificate(file, expected_problem=document["problem"]))
+        found.append(verify_certificate(file, expected_problem=document["problem"], time_limit=left))
 
     target = write_atomically(path, write)
     return Certificate(
@@ -254,10 +288,19 @@ def _round_up(bound: fmpq | arb) -> float:
     return value
 
 
-def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterator[tuple[float, dict[str, Any]]]:
-    """Floats at or a little below ``lower`` with a cover of all attacks; last ``lower`` with no more than a word."""
+def _lower_claims(
+    problem: Problem, elements: IntArray, lower: float, ends: float
+) -> Iterator[tuple[float, dict[str, Any]]]:
+    """Floats at or a little below ``lower`` with a cover of all attacks; last ``lower`` with no more than a word.
+
+    ``ends`` : when the time for covers is up
+    """
     scale = max(abs(lower), abs(problem.objective(elements)))
-    part = lower_proof(problem, elements, lower - LARGEST_SHAVE * scale / 10)
+    try:
+        with limited(max(ends - monotonic(), 0.0)):
+            part = lower_proof(problem, elements, lower - LARGEST_SHAVE * scale / 10)
+    except UndecidedError:
+        part = ENUMERATED
     if part is not ENUMERATED:
-        yield from ((lower - shave * scale, part) for shave in SHAVES)
+        yield from ((lower - shave * scale, part) for shave in SHAVES if monotonic() < ends)
     yield lower, ENUMERATED

@@ -15,10 +15,10 @@ from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import INTERRUPTED, certify_if_possible
+from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION
-from ratt_opt.errors import InputError
+from ratt_opt.errors import InputError, ProofError
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.problem import Plan, Problem
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
 
@@ -78,6 +79,8 @@ bracket, so shares trade strength only; the non-robust optimum is a baseline whe
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
+CERTIFICATE_SHARE = 1 / 6
+"""Of the time, kept for writing and verifying a certificate where one is wanted."""
 RANDOM_SEED = 0
 """Seed of the random baseline, so that a report is reproducible."""
 
@@ -109,19 +112,19 @@ def bound(
     objective : name of the criterion (trace where ``None``); not with a problem, which has its own
     gap : relative gap at which the search for the optimum stops
     time_limit : seconds for all searches together, of which that for the optimum may take three quarters of what
-        the attacks on the baselines leave; ``None`` for no limit. Writing and verifying the certificate comes on top.
+        the attacks on the baselines leave; ``None`` for no limit. A certificate gets what they leave, a sixth at least
     certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
 
     Raises
     ------
-    InputError : an argument breaks its rule. A certificate that cannot be written is a reason in the report.
-    ProofError : the verifier finds a fault in the search's own proof.
+    InputError : an argument breaks its rule. A certificate that cannot be made is a reason in the report.
     """
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
-    budget, steps = Budget(time_limit), Steps(progress)
+    whole, steps = Budget(time_limit), Steps(progress)
+    budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
         plan = ratt(problem)
         alpha_cs = plan.alpha_cs
@@ -143,7 +146,7 @@ def bound(
         guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
     with steps("certificate"):
         interrupted = budget.stop() is Stop.INTERRUPTED
-        proof = INTERRUPTED if interrupted else certify_if_possible(problem, optimum, certificate)
+        proof = INTERRUPTED if interrupted else _certification(problem, optimum, certificate, whole.seconds_left)
     return BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -161,8 +164,19 @@ def bound(
         source=None if isinstance(scenario_or_problem, Problem) else scenario_or_problem,
         views=views,
         seeds={"random": RANDOM_SEED},
-        interrupted=interrupted,
+        interrupted=interrupted or proof is INTERRUPTED,
     )
+
+
+def _certification(problem: Problem, optimum: MaxMinResult, path: str | Path | None, seconds: float) -> Certification:
+    """The certificate, or why there is none: whatever happens to it, the search's results are kept."""
+    try:
+        limit = None if seconds == np.inf else seconds
+        return certify_if_possible(problem, optimum, path, time_limit=limit)
+    except ProofError as error:
+        return Certification(why_not=f"the proof has a fault: {error}", final=False)
+    except KeyboardInterrupt:
+        return INTERRUPTED
 
 
 def _kept(budget: Budget, step: Callable[[], T]) -> T:
