@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,7 +19,6 @@ from ratt_opt import (
     ProofError,
     TableFunction,
     TraceObjective,
-    bound,
     exhaustive_optimum,
     random_scenario,
     solve_maxmin,
@@ -30,14 +28,10 @@ from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.verifier.lower import LowerCheck, is_forced
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.write import _prior_range, certify, problem_document
-from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_problem
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 KINDS = list(OBJECTIVES)
 
@@ -202,43 +196,3 @@ def test_public_names():
     assert ratt_opt.certify is certify
     assert ratt_opt.verify_certificate is verify_certificate
     assert issubclass(FileFormatError, InputError)
-
-
-@pytest.mark.parametrize("kind", OBJECTIVES)
-def test_where_time_ends_the_certificate_says_which_end_is_proved(
-    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The lower proof is given up, the file stands; without time for the upper end there is none."""
-    problem = random_scenario(6, 4, alpha_s=2, alpha_c=5, seed=3).problem(kind)
-    result = solve_maxmin(problem)
-
-    def late(*_: object) -> None:
-        raise UndecidedError("not decided in time")
-
-    with pytest.raises(UndecidedError):
-        certify(problem, result, tmp_path / "none.json", time_limit=0)
-    assert not list(tmp_path.iterdir())
-    assert certify(problem, result, tmp_path / "c.json", time_limit=60).verified.lower_proved
-    monkeypatch.setattr("ratt_opt.certificates.write.lower_proof", late)
-    verified = certify(problem, result, tmp_path / "c.json").verified
-    assert not verified.lower_proved
-    assert verify_certificate(tmp_path / "c.json") == verified
-    assert verified.upper >= result.upper
-
-
-def test_a_finished_search_is_kept_whatever_happens_to_its_certificate(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scenario = random_scenario(4, 3, alpha_s=1, alpha_c=2, seed=17)
-    expected = solve_maxmin(scenario.problem())
-    for failure in (ProofError("a fault"), UndecidedError("late"), KeyboardInterrupt(), MemoryError()):
-
-        def failing(*_: object, failure: BaseException = failure, **__: object) -> None:
-            raise failure
-
-        monkeypatch.setattr("ratt_opt.certificates.write.certify", failing)
-        report = bound(scenario, certificate=tmp_path / "c.json")
-        assert report.optimum.upper == expected.upper
-        assert report.certificate.certificate is None
-        assert report.certificate.why_not
-        assert report.interrupted is isinstance(failure, KeyboardInterrupt)
