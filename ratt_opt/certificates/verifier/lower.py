@@ -13,6 +13,7 @@ from ratt_opt.certificates.verifier.exact_matrices import (
     total,
     trace_of_inverse,
 )
+from ratt_opt.certificates.verifier.fixed_point import FixedPoint
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
 from ratt_opt.certificates.verifier.statement import PRECISIONS
 from ratt_opt.certificates.verifier.work import tick
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from flint import fmpq, fmpq_mat
 
+    from ratt_opt.certificates.verifier.fixed_point import Sums
     from ratt_opt.certificates.verifier.statement import Statement
 
 __all__ = ["LowerCheck", "is_forced"]
@@ -65,24 +67,34 @@ class LowerCheck:
         forced = complete and is_forced(self.about.n, self.about.alpha_s, self.about.alpha_c, size)
         need(forced, f"lower proof: not every attack is shown to leave a group of {size}")
 
+        quick = FixedPoint(self.about, start) if FixedPoint.serves(self.about) else None
+
+        def require(inside: tuple[int, ...], sums: Sums, others: list[int], count: int) -> None:
+            """Check the robots inside with ``count`` copies of each of the others; alone where there are none."""
+            more = [quick.copies(i, count) for i in others] or [quick.none] if quick else []
+            if quick is None or not quick.are_worth(sums, more, count or 1, lower):
+                posterior = self._with(start, list(inside))
+                cases = [self._with(posterior, [i], count) for i in others] or [posterior]
+                self._require(cases, count or 1, lower)
+
         def expand(node: Any, case: Any) -> Iterator[Any]:
-            posterior, decided, out = case
+            inside, sums, decided, out = case
             if node == -1:
-                self._require([posterior], 1, lower)
+                require(inside, sums, [], 0)
             elif node == -3:
                 missing = size - len(decided) + out
                 need(missing > 0, "lower proof: no robot is missing")
                 rest = [i for i in range(self.about.n) if i not in decided]
-                self._require([self._with(posterior, [i], missing) for i in rest], missing, lower)
+                require(inside, sums, rest, missing)
             elif node == -2:
                 need(out > self.about.n - size, "lower proof: a leaf is not impossible")
             else:
                 i = index("lower tree", node, self.about.n)
                 need(i not in decided, f"lower proof: robot {i} is decided twice")
-                yield self._with(posterior, [i]), decided | {i}, out
-                yield posterior, decided | {i}, out + 1
+                yield (*inside, i), quick.plus(sums, i) if quick else sums, decided | {i}, out
+                yield inside, sums, decided | {i}, out + 1
 
-        return walk("lower", tree, (start, frozenset(), 0), expand)
+        return walk("lower", tree, ((), quick.start if quick else [], frozenset(), 0), expand)
 
     def _check_attack_tree(self, tree: object, start: list[fmpq_mat], lower: fmpq) -> int:
         """Cases over attacks; ``parts`` are pairwise in different groups, each within one.

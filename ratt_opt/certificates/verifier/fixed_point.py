@@ -1,0 +1,130 @@
+"""Lower bounds on the value of many sets of one plan's robots, in integers: targets of two coordinates.
+
+A matrix is replaced by ``[[a, b], [b, c]] / 2^BITS`` in integers: ``a`` and ``c`` one below what they round down to,
+``b`` rounded down. What that takes off, times ``2^BITS``, has a diagonal of at least 1 and an entry in ``[0, 1)``
+beside it, so it is positive semidefinite, and so is the sum of such losses. The criteria do not decrease with the
+information, so where what is left is positive definite, its value is at most the true one. Values are then
+rounded down once more. What these bounds do not decide is left to exact arithmetic.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import arb, ctx, fmpq, fmpz
+
+from ratt_opt.certificates.verifier.exact_matrices import total
+from ratt_opt.certificates.verifier.work import tick
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from flint import fmpq_mat
+
+    from ratt_opt.certificates.verifier.statement import Statement
+
+__all__ = ["FixedPoint", "Sums"]
+
+BITS, OF_VALUES, OF_WEIGHTS = 96, 64, 64
+"""Binary places of matrices, values and weights: sums of usual size lose less than a claim's last digit says."""
+OF_PRODUCTS = 128
+"""Leading bits that are kept of products of determinants."""
+
+Sums = list[tuple[int, int, int]]
+"""One symmetric matrix per target."""
+
+
+class FixedPoint:
+    """The robots of a plan in integers.
+
+    ``start`` : what a set has without any robot; ``none`` : what no robot adds
+    """
+
+    def __init__(self, about: Statement, start: list[fmpq_mat]) -> None:
+        self.about = about
+        self.start: Sums = [_lowered(m) for m in start]
+        self.none: Sums = [(0, 0, 0)] * len(start)
+        self._own = [[_lowered(m) for m in about.information[e]] for e in about.plan]
+        self._copies: dict[tuple[int, int], Sums] = {}
+        self._weights = [int(fmpq(w * (1 << OF_WEIGHTS)).ceil()) for w in about.weights]
+        self._whole = int(fmpq(about.prior_trace * (1 << OF_VALUES + OF_WEIGHTS)).floor())
+        self._of_weight: dict[fmpq, tuple[list[int], arb]] = {}
+        if about.objective == "logdet":
+            self._group_by_weight()
+
+    def _group_by_weight(self) -> None:
+        """Weight -> targets, and the sum of ``log det`` of their priors."""
+        for weight in dict.fromkeys(self.about.weights):
+            own = [j for j, w in enumerate(self.about.weights) if w == weight]
+            with ctx.workprec(OF_PRODUCTS):
+                self._of_weight[weight] = own, total(arb(self.about.prior[j].det()).log() for j in own)
+
+    @staticmethod
+    def serves(about: Statement) -> bool:
+        """Whether there are formulas for this criterion."""
+        return about.d == 2 and about.output is None
+
+    def copies(self, robot: int, times: int = 1) -> Sums:
+        """So many copies of a robot's information."""
+        if (robot, times) not in self._copies:
+            self._copies[robot, times] = [(times * a, times * b, times * c) for a, b, c in self._own[robot]]
+        return self._copies[robot, times]
+
+    def plus(self, sums: Sums, robot: int) -> Sums:
+        """The sums with one more robot."""
+        own = self._own[robot]
+        return [(a + x, b + y, c + z) for (a, b, c), (x, y, z) in zip(sums, own, strict=True)]
+
+    def are_worth(self, sums: Sums, more: list[Sums], count: int, lower: fmpq) -> bool:
+        """Whether any ``count`` of ``sums`` with one of ``more`` each are shown to be worth ``lower`` on average."""
+        cases = ([(a + x, b + y, c + z) for (a, b, c), (x, y, z) in zip(sums, own, strict=True)] for own in more)
+        if self.about.objective == "maxeig":
+            return self._are_large(cases, lower)
+        is_log = self.about.objective == "logdet"
+        values: list[int | arb] = []
+        for case in cases:
+            tick()
+            determinants = [a * c - b * b for a, b, c in case]
+            if min(determinants) <= 0 or min(case)[0] <= 0:
+                return False
+            values.append(self._log(determinants) if is_log else self._trace(case, determinants))
+        least = total(sorted(values)[:count])
+        return bool(least >= lower * count * (1 if is_log else 1 << OF_VALUES + OF_WEIGHTS))
+
+    def _trace(self, sums: Sums, determinants: list[int]) -> int:
+        """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``."""
+        shift, pairs = BITS + OF_VALUES, zip(sums, determinants, strict=True)
+        terms = [((a + c) << shift) // det + 1 for (a, _, c), det in pairs]
+        return self._whole - sum(w * x for w, x in zip(self._weights, terms, strict=True))
+
+    def _log(self, determinants: list[int]) -> arb:
+        """A lower bound on ``sum_j w_j log det(L_j P_j)``: one logarithm for all targets of a weight."""
+        with ctx.workprec(OF_PRODUCTS):
+            value = arb(0)
+            for weight, (targets, priors) in self._of_weight.items():
+                product, exponent = 1, -2 * BITS * len(targets)
+                for j in targets:
+                    product *= determinants[j]
+                    spare = max(product.bit_length() - OF_PRODUCTS, 0)
+                    product, exponent = product >> spare, exponent + spare
+                value += weight * (arb(product).log() + exponent * arb(2).log() + priors)
+            return value.lower()
+
+    def _are_large(self, cases: Iterable[Sums], lower: fmpq) -> bool:
+        """Whether each case is worth it: ``lambda_max(L^-1) <= room / w`` where ``L - (w / room) I >= 0``."""
+        room = self.about.prior_low - lower
+        if room <= 0:
+            return False
+        floors = [int(fmpq(w / room * (1 << BITS)).ceil()) for w in self.about.weights]
+        for case in cases:
+            tick()
+            for (a, b, c), t in zip(case, floors, strict=True):
+                if a <= t or (a - t) * (c - t) < b * b:
+                    return False
+        return True
+
+
+def _lowered(matrix: fmpq_mat) -> tuple[int, int, int]:
+    scale = fmpz(1) << BITS
+    a, b, c = (int(fmpq(x * scale).floor()) for x in (matrix[0, 0], matrix[0, 1], matrix[1, 1]))
+    return a - 1, b, c - 1
