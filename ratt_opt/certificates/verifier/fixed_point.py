@@ -9,6 +9,7 @@ rounded down once more. What these bounds do not decide is left to exact arithme
 
 from __future__ import annotations
 
+from math import isqrt
 from typing import TYPE_CHECKING
 
 from flint import arb, ctx, fmpq, fmpz
@@ -17,7 +18,7 @@ from ratt_opt.certificates.verifier.exact_matrices import total
 from ratt_opt.certificates.verifier.work import tick
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable
 
     from flint import fmpq_mat
 
@@ -47,7 +48,8 @@ class FixedPoint:
         self._own = [[_lowered(m) for m in about.information[e]] for e in about.plan]
         self._copies: dict[tuple[int, int], Sums] = {}
         self._weights = [int(fmpq(w * (1 << OF_WEIGHTS)).ceil()) for w in about.weights]
-        self._whole = int(fmpq(about.prior_trace * (1 << OF_VALUES + OF_WEIGHTS)).floor())
+        whole = about.prior_low if about.objective == "maxeig" else about.prior_trace
+        self._whole = int(fmpq(whole * (1 << OF_VALUES + OF_WEIGHTS)).floor())
         self._of_weight: dict[fmpq, tuple[list[int], arb]] = {}
         if about.objective == "logdet":
             self._group_by_weight()
@@ -78,27 +80,28 @@ class FixedPoint:
     def are_worth(self, sums: Sums, more: list[Sums], count: int, lower: fmpq) -> bool:
         """Whether any ``count`` of ``sums`` with one of ``more`` each are shown to be worth ``lower`` on average."""
         cases = ([(a + x, b + y, c + z) for (a, b, c), (x, y, z) in zip(sums, own, strict=True)] for own in more)
-        if self.about.objective == "maxeig":
-            return self._are_large(cases, lower)
-        is_log = self.about.objective == "logdet"
+        kinds: dict[str, Callable[[Sums], int | arb | None]]
+        kinds = {"trace": self._trace, "logdet": self._log, "maxeig": self._largest}
+        value = kinds[self.about.objective]
         values: list[int | arb] = []
         for case in cases:
             tick()
-            determinants = [a * c - b * b for a, b, c in case]
-            if min(determinants) <= 0 or min(case)[0] <= 0:
+            if min(a * c - b * b for a, b, c in case) <= 0 or min(case)[0] <= 0:
                 return False
-            values.append(self._log(determinants) if is_log else self._trace(case, determinants))
+            if (shown := value(case)) is None:
+                return False
+            values.append(shown)
         least = total(sorted(values)[:count])
-        return bool(least >= lower * count * (1 if is_log else 1 << OF_VALUES + OF_WEIGHTS))
+        return bool(least >= lower * count * (1 if self.about.objective == "logdet" else 1 << OF_VALUES + OF_WEIGHTS))
 
-    def _trace(self, sums: Sums, determinants: list[int]) -> int:
+    def _trace(self, sums: Sums) -> int:
         """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``."""
-        shift, pairs = BITS + OF_VALUES, zip(sums, determinants, strict=True)
-        terms = [((a + c) << shift) // det + 1 for (a, _, c), det in pairs]
+        terms = [((a + c) << BITS + OF_VALUES) // (a * c - b * b) + 1 for a, b, c in sums]
         return self._whole - sum(w * x for w, x in zip(self._weights, terms, strict=True))
 
-    def _log(self, determinants: list[int]) -> arb:
+    def _log(self, sums: Sums) -> arb:
         """A lower bound on ``sum_j w_j log det(L_j P_j)``: one logarithm for all targets of a weight."""
+        determinants = [a * c - b * b for a, b, c in sums]
         with ctx.workprec(OF_PRODUCTS):
             value = arb(0)
             for weight, (targets, priors) in self._of_weight.items():
@@ -110,18 +113,18 @@ class FixedPoint:
                 value += weight * (arb(product).log() + exponent * arb(2).log() + priors)
             return value.lower()
 
-    def _are_large(self, cases: Iterable[Sums], lower: fmpq) -> bool:
-        """Whether each case is worth it: ``lambda_max(L^-1) <= room / w`` where ``L - (w / room) I >= 0``."""
-        room = self.about.prior_low - lower
-        if room <= 0:
-            return False
-        floors = [int(fmpq(w / room * (1 << BITS)).ceil()) for w in self.about.weights]
-        for case in cases:
-            tick()
-            for (a, b, c), t in zip(case, floors, strict=True):
-                if a <= t or (a - t) * (c - t) < b * b:
-                    return False
-        return True
+    def _largest(self, sums: Sums) -> int | None:
+        """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``; ``None`` where none is shown.
+
+        The largest eigenvalue of an inverse is one over the least: ``2 / (a + c - sqrt((a - c)^2 + 4 b^2))``.
+        """
+        largest = 0
+        for (a, b, c), weight in zip(sums, self._weights, strict=True):
+            twice_least = a + c - isqrt((a - c) ** 2 + 4 * b * b) - 1
+            if twice_least <= 0:
+                return None
+            largest = max(largest, weight * ((1 << BITS + 1 + OF_VALUES) // twice_least + 1))
+        return self._whole - largest
 
 
 def _lowered(matrix: fmpq_mat) -> tuple[int, int, int]:
