@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -28,7 +29,7 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
 
 def _close(low: float, rounding: int) -> float:
     """A float a little above another one, as ends of brackets that are nearly closed."""
-    return low + abs(low) * 10.0**-rounding
+    return min(low + abs(low) * 10.0**-rounding, sys.float_info.max)
 
 
 NEARLY_CLOSED = st.builds(_close, st.floats(-1e300, 1e300), st.integers(1, 17))
