@@ -46,6 +46,15 @@ def draw_scene(axes: Axes, picture: dict[str, Any]) -> None:
         axes.plot(*after[robot, :2], "o", markersize=11, color=colour)
         heading = 5 * np.array([np.cos(after[robot, 2]), np.sin(after[robot, 2])])
         axes.arrow(*after[robot, :2], *heading, width=0.25, head_width=1.6, color=colour, length_includes_head=True)
+        number: dict[str, Any] = {
+            "color": "white",
+            "fontsize": 7,
+            "fontweight": "bold",
+            "ha": "center",
+            "va": "center",
+            "zorder": 6,
+        }
+        axes.text(after[robot, 0], after[robot, 1], str(robot), **number)
         if robot in picture["blinded"]:
             axes.plot(*after[robot, :2], "x", markersize=19, color="#d00000", markeredgewidth=3)
     axes.set_aspect("equal")
@@ -75,7 +84,7 @@ def legend() -> list[Line2D]:
 
     signs: list[tuple[str, dict[str, Any]]] = [
         ("robot now", {"marker": "o", "markersize": 10, "alpha": 0.3}),
-        ("robot next, with heading", {"marker": "o", "markersize": 10}),
+        ("robot next, with number and heading", {"marker": "o", "markersize": 10}),
         ("true position", {"marker": "*", "markersize": 12, "markeredgecolor": "black"}),
         ("estimate", {"marker": "s", "markersize": 7, "markerfacecolor": "none"}),
         ("covariance, 2 standard deviations", {"linestyle": "-"}),
