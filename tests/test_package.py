@@ -45,6 +45,8 @@ def test_every_name_has_one_topic() -> None:
 def test_the_house_has_every_room_once() -> None:
     from analysis.architecture import ROOT, rooms
 
+    if not (ROOT / "ratt_opt").is_dir():
+        pytest.skip("an installed package is tested: its source is not here")
     names = [room.name for room in rooms()]
     assert len(names) == len(set(names))
     folders = {path.name for path in (ROOT / "ratt_opt").iterdir() if (path / "__init__.py").exists()}
