@@ -80,28 +80,27 @@ class FixedPoint:
     def are_worth(self, sums: Sums, more: list[Sums], count: int, lower: fmpq) -> bool:
         """Whether any ``count`` of ``sums`` with one of ``more`` each are shown to be worth ``lower`` on average."""
         cases = ([(a + x, b + y, c + z) for (a, b, c), (x, y, z) in zip(sums, own, strict=True)] for own in more)
-        kinds: dict[str, Callable[[Sums], int | arb | None]]
+        kinds: dict[str, Callable[[Sums, list[int]], int | arb | None]]
         kinds = {"trace": self._trace, "logdet": self._log, "maxeig": self._largest}
         value = kinds[self.about.objective]
         values: list[int | arb] = []
         for case in cases:
             tick()
-            if min(a * c - b * b for a, b, c in case) <= 0 or min(case)[0] <= 0:
-                return False
-            if (shown := value(case)) is None:
+            determinants = [a * c - b * b for a, b, c in case]
+            if min(determinants) <= 0 or min(case)[0] <= 0 or (shown := value(case, determinants)) is None:
                 return False
             values.append(shown)
         least = total(sorted(values)[:count])
         return bool(least >= lower * count * (1 if self.about.objective == "logdet" else 1 << OF_VALUES + OF_WEIGHTS))
 
-    def _trace(self, sums: Sums) -> int:
+    def _trace(self, sums: Sums, determinants: list[int]) -> int:
         """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``."""
-        terms = [((a + c) << BITS + OF_VALUES) // (a * c - b * b) + 1 for a, b, c in sums]
+        pairs = zip(sums, determinants, strict=True)
+        terms = [((a + c) << BITS + OF_VALUES) // det + 1 for (a, _, c), det in pairs]
         return self._whole - sum(w * x for w, x in zip(self._weights, terms, strict=True))
 
-    def _log(self, sums: Sums) -> arb:
+    def _log(self, _: Sums, determinants: list[int]) -> arb:
         """A lower bound on ``sum_j w_j log det(L_j P_j)``: one logarithm for all targets of a weight."""
-        determinants = [a * c - b * b for a, b, c in sums]
         with ctx.workprec(OF_PRODUCTS):
             value = arb(0)
             for weight, (targets, priors) in self._of_weight.items():
@@ -113,7 +112,7 @@ class FixedPoint:
                 value += weight * (arb(product).log() + exponent * arb(2).log() + priors)
             return value.lower()
 
-    def _largest(self, sums: Sums) -> int | None:
+    def _largest(self, sums: Sums, _: list[int]) -> int | None:
         """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``; ``None`` where none is shown.
 
         The largest eigenvalue of an inverse is one over the least: ``2 / (a + c - sqrt((a - c)^2 + 4 b^2))``.
