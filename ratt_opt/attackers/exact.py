@@ -105,8 +105,7 @@ def worst_case_attack(
         first = bounded_rational_attack(asked, values.plan)
         bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
-        patient = time_limit is not None and budget is None
-        stop = _search(AttackTask(asked, values, bracket, own), patient=patient)
+        stop = _search(AttackTask(asked, values, bracket, own), patient=time_limit is not None)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
