@@ -14,6 +14,7 @@ from ratt_opt.attackers.by_prices.blinding import ABSENT, WEAK, weak_subset
 from ratt_opt.attackers.by_prices.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
 from ratt_opt.attackers.by_prices.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.cover import next_cover
+from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup
 from ratt_opt.attackers.by_prices.team import Links, Team
@@ -53,7 +54,7 @@ def run_prices(problem, plan, **limits):
     bracket, budget = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0), Budget(**limits)
     search = PriceSearch(AttackTask(problem, values, bracket, budget), Team.of(problem.objective, values.plan))
     try:
-        search.anneal()
+        search.anneal(4)
         stop = search.run()
     except OutOfBudget as out:
         stop = out.stop
@@ -245,3 +246,43 @@ def test_every_choice_of_prices_claims_what_it_says_and_no_known_group_pays_it(s
         assert chosen.links == pytest.approx(chosen.robot.sum() - chosen.blinded * threat.n_blinded)
         paid = [chosen.robot[group.robots].sum() - chosen.blinded * group.need for group in groups]
         assert all(p <= prices.half_cut(group.robots) + 1e-6 for p, group in zip(paid, groups, strict=True))
+
+
+def least_cost(problem, plan, threshold, prices):
+    """The cheapest reduced cost by the definition: every set of robots, connected or not, and every blinding of it."""
+    n_robots, least = problem.n_robots, np.inf
+    for size in range(1, n_robots + 1):
+        for group in combinations(range(n_robots), size):
+            crossing = {link for link in problem.communication.links if len(set(group) & set(link)) == 1}
+            if crossing & problem.protected_links:
+                continue
+            free = [i for i in group if i not in problem.protected_robots]
+            for blinded in range(min(problem.threat.n_blinded, len(free)) + 1):
+                for out in combinations(free, blinded):
+                    if problem.objective([plan[i] for i in group if i not in out]) < threshold:
+                        cost = len(crossing) / 2 + prices[1] * blinded - prices[0][list(group)].sum()
+                        least = min(least, cost)
+    return least
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed):
+    rng = np.random.default_rng(seed)
+    problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    team, links, threat = Team.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    threshold, prices = problem.objective(plan) * rng.uniform(0.4, 0.9), (rng.uniform(0, 2, 6), rng.uniform(0.0, 2))
+    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    raised = max(least_cost(problem, plan, threshold, prices), 0) + 0.5  # some groups pay
+    prices = (prices[0] + raised, prices[1])
+    least = least_cost(problem, plan, threshold, prices)
+    assert least < 0
+    at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1))
+    for limit, room in ((least - 1e-6, 5), (least + 1e-6, 5), (-1e-6, 3)):
+        question = Question(threshold, threat.n_blinded, limit, np.arange(6), 0, 0)
+        found = find_paying_groups(team, links, at, question, Budget(), nodes=10**6, room=room)
+        assert (len(found.groups) > 0) == (least <= limit)
+        assert found.is_complete or len(found.groups) == room
+        for group in found.groups:
+            assert group.need <= threat.n_blinded
+            assert reduced_cost(problem, group.robots.astype(int), (prices[0], 0.0)) + prices[1] * group.need <= limit
+    assert not find_paying_groups(team, links, at, question, Budget(), nodes=0, room=3).is_complete

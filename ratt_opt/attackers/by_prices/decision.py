@@ -1,7 +1,8 @@
 """Is there an attack worth less than a threshold? By prices, enumeration and covers.
 
-1. Prices (``prices.py``) that claim more links than the budget refute the threshold once the enumeration
-   (``columns.py``) has found no group that pays them; groups that do are added to the program.
+1. Prices (``prices.py``) that claim more links than the budget refute the threshold once a search over the robots
+   that see (``seeing_sets.py``) or over those inside (``columns.py``) has found no group that pays them; groups that
+   do are added to the program.
 2. Prices that claim ``gap`` links less leave the groups of reduced cost at most ``gap``: they are listed, and the
    partitions into them tried (``cover.py``). Either one is an attack, or the threshold is refuted.
 
@@ -20,6 +21,7 @@ import numpy as np
 from ratt_opt.attackers.by_prices.cheap_groups import BLINDED, cheap_group
 from ratt_opt.attackers.by_prices.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.cover import FOUND, PAUSED, next_cover
+from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.starts import Split
 
@@ -48,8 +50,9 @@ stays well below MARGIN."""
 LOWERED = 0.01
 """By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
-FIRST_ATTEMPT, LONGER = 1_000, 3
-"""Nodes of the first enumeration at each of a few prices, and their growth while none of them ends."""
+FIRST_ATTEMPT, LONGER, DEARER = 50_000, 3, 200
+"""Nodes of the first search over seeing robots at each of a few prices, their growth while none of them ends, and how
+many such nodes one of the search over robots inside counts for: 20 microseconds against up to 3,000, at 30 robots."""
 
 MOVES, WARM, COLD = 4_000, 2.0, 0.05
 """Moves around each robot to find groups that pay the prices, and the temperatures [links] they cool between. Measured
@@ -134,13 +137,13 @@ class Decision:
                 if verdict is not None:
                     return Answer(verdict=verdict)
                 continue
-            listed = self._list(found, (threshold, size, -LOWERED), budget, (nodes, NEW_GROUPS))
-            if len(listed.cost) == 0:
-                if listed.code != FINISHED:
-                    break
+            verdict = self._answered(found, (threshold, size, -LOWERED), budget)
+            if verdict is Verdict.REFUTED:
                 return self._cover(found.lowered(LOWERED), threshold, size, budget, nodes)
-            if not self._teach(listed, threshold):
+            if verdict is Verdict.OPEN:
                 break
+            if verdict is None:
+                self._attempt *= LONGER
         return Answer(verdict=Verdict.OPEN)
 
     def _refute(self, found: PriceVector, asked: tuple[float, int], budget: Budget) -> Verdict | None:
@@ -155,13 +158,34 @@ class Decision:
                 continue
             if self.prices.add(self._cheap(prices, threshold, budget)):
                 return None
-            listed = self._list(prices, (threshold, size, -TOLERANCE), budget, (self._attempt, NEW_GROUPS))
-            if len(listed.cost):
-                return None if self._teach(listed, threshold) else Verdict.OPEN
-            if listed.code == FINISHED:
-                return Verdict.REFUTED
+            answer = self._answered(prices, (threshold, size, -TOLERANCE), budget)
+            if answer is not None:
+                return answer if answer is not Verdict.REACHED else None
         self._attempt *= LONGER
         return None
+
+    def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Verdict | None:
+        """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
+        threshold, size, limit = asked
+        at, question = self._asked(prices, asked)
+        found = find_paying_groups(self.team, self.links, at, question, budget, nodes=self._attempt, room=NEW_GROUPS)
+        if found.groups:
+            return Verdict.REACHED if self.prices.add(found.groups) else Verdict.OPEN
+        if found.is_complete:
+            return Verdict.REFUTED
+        listed = self._list(prices, (threshold, size, limit), budget, (self._attempt // DEARER, NEW_GROUPS))
+        if len(listed.cost):
+            return Verdict.REACHED if self._teach(listed, threshold) else Verdict.OPEN
+        return Verdict.REFUTED if listed.code == FINISHED else None
+
+    def _asked(self, prices: PriceVector, asked: tuple[float, int, float]) -> tuple[Prices, Question]:
+        """The compiled searches' arguments for ``asked`` = (threshold, largest weak size, limit)."""
+        threshold, size, limit = asked
+        at = Prices(prices.robot, prices.blinded, np.ones(self._n_robots), float(size), prices.blinded, SHARES)
+        order = np.argsort(-prices.robot, kind="stable")
+        if self._shuffled:  # the groups listed last all began with the same robots
+            order = self._rng.permutation(self._n_robots)
+        return at, Question(threshold, self.threat.n_blinded, limit, order, QUICK, THOROUGH)
 
     def _settled(self, threshold: float, budget: Budget) -> PriceVector:
         """Prices that no group found by annealing pays, or not enough to claim more links than the budget."""
@@ -195,12 +219,8 @@ class Decision:
         self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget, most: tuple[int, int]
     ) -> _Listed:
         """Groups of ``asked`` = (threshold, largest weak size, limit), within ``most`` = (nodes, groups)."""
-        n_robots, (threshold, size, limit), (nodes, room) = self._n_robots, asked, most
-        at = Prices(prices.robot, prices.blinded, np.ones(n_robots), float(size), prices.blinded, SHARES)
-        order = np.argsort(-prices.robot, kind="stable")
-        if self._shuffled:  # the groups listed last all began with the same robots
-            order = self._rng.permutation(n_robots)
-        question = Question(threshold, self.threat.n_blinded, limit, order, QUICK, THOROUGH)
+        n_robots, (nodes, room) = self._n_robots, most
+        at, question = self._asked(prices, asked)
         stack = Stack.of(n_robots, len(self.links.robot), len(SHARES))
         shape = (room, n_robots)
         listed = (np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros((room, 2), np.int64), np.zeros(room))

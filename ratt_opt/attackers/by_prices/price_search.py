@@ -19,14 +19,13 @@ if TYPE_CHECKING:
 
 __all__ = ["PriceSearch"]
 
-FIRST_STARTS, FURTHER_STARTS = 12, 4
-"""Annealed attacks before the first threshold, and whenever the thresholds get harder: about every fourth start finds
-the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third of the robots blinded)."""
+FURTHER_STARTS = 4
+"""Annealed attacks whenever the thresholds get harder."""
 
 ANNEALING_SHARE = 0.3
 """Of the seconds left that the first starts may take, where the limit is short."""
 
-FIRST_EFFORT, HARDER = 50_000, 4
+FIRST_EFFORT, HARDER = 500_000, 4
 """Nodes of one enumeration before a threshold is left open, and their growth when the lower ones are exhausted."""
 
 NEAR, BISECTED = 2e-2, 2e-3
@@ -51,9 +50,9 @@ class PriceSearch:
         planar = PlanarTeam.of(task.problem.objective, task.values.plan)
         self._decision = Decision(team, links, threat, WeakSizes(team, planar))
 
-    def anneal(self) -> None:
+    def anneal(self, starts: int) -> None:
         """Offer the first annealed attacks."""
-        self._anneal(FIRST_STARTS, ANNEALING_SHARE)
+        self._anneal(starts, ANNEALING_SHARE)
 
     def run(self) -> Stop:
         """Refute or reach thresholds; the bracket is valid whenever this stops."""
