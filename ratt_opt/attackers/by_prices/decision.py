@@ -50,11 +50,14 @@ stays well below MARGIN."""
 LOWERED = 0.01
 """By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
-FIRST_ATTEMPT, LONGER, DEARER = 50_000, 3, 200
-"""Nodes of the first search over seeing robots at each of a few prices, their growth while none of them ends, and how
-many such nodes one of the search over robots inside counts for: 20 microseconds against up to 3,000, at 30 robots."""
+FIRST_ATTEMPT, LONGER = 50_000, 3
+"""Nodes of the first search over seeing robots at each of a few prices, and their growth while none of them ends."""
 
-MOVES, WARM, COLD = 4_000, 2.0, 0.05
+DEARER, LISTING = 200, 10
+"""Nodes of the search over seeing robots that one of the search over robots inside counts for (20 microseconds against
+up to 3,000, at 30 robots), when it looks for groups that pay, and when it lists those that nearly do."""
+
+MOVES, WARM, COLD = 1_500, 2.0, 0.05
 """Moves around each robot to find groups that pay the prices, and the temperatures [links] they cool between. Measured
 at 30 and 50 robots of five families: the program's prices settle in 2 to 50 rounds of some hundredths of a second."""
 
@@ -133,7 +136,7 @@ class Decision:
         while budget.nodes - spent < nodes:
             found = self._settled(threshold, budget)
             if found.links > self.threat.alpha_c + MARGIN:
-                verdict = self._refute(found, (threshold, size), budget)
+                verdict = self._refute(threshold, size, budget)
                 if verdict is not None:
                     return Answer(verdict=verdict)
                 continue
@@ -146,19 +149,25 @@ class Decision:
                 self._attempt *= LONGER
         return Answer(verdict=Verdict.OPEN)
 
-    def _refute(self, found: PriceVector, asked: tuple[float, int], budget: Budget) -> Verdict | None:
+    def _refute(self, threshold: float, size: int, budget: Budget) -> Verdict | None:
         """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
 
-        Which of these prices prune the enumeration best is not known beforehand: all in turn, and ever longer.
+        The prices furthest below what known groups cost prune best, once the groups that pay them are known: they soon
+        are. Where they do not end, others may: all in turn, and ever longer.
         """
-        links, (threshold, size) = self.threat.alpha_c + MARGIN, asked
-        candidates = [found.scaled(links), self.prices.slackest(threshold, links)]
-        for prices in [*candidates, found.for_robots(links, self.threat.n_blinded)]:
-            if prices is None:
-                continue
-            if self.prices.add(self._cheap(prices, threshold, budget)):
-                return None
-            answer = self._answered(prices, (threshold, size, -TOLERANCE), budget)
+        links, asked = self.threat.alpha_c + MARGIN, (threshold, size, -TOLERANCE)
+        while (slackest := self.prices.slackest(threshold, links, budget.seconds_left)) is not None:
+            budget.check()
+            answer = self._answered(slackest, asked, budget)
+            if answer is None:
+                break
+            if answer is not Verdict.REACHED:
+                return answer
+        found = self._settled(threshold, budget)
+        if found.links <= links:
+            return None
+        for prices in (found.scaled(links), found.for_robots(links, self.threat.n_blinded)):
+            answer = self._answered(prices, asked, budget)
             if answer is not None:
                 return answer if answer is not Verdict.REACHED else None
         self._attempt *= LONGER
@@ -167,6 +176,8 @@ class Decision:
     def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Verdict | None:
         """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
         threshold, size, limit = asked
+        if self.prices.add(self._cheap(prices, threshold, budget)):
+            return Verdict.REACHED
         at, question = self._asked(prices, asked)
         found = find_paying_groups(self.team, self.links, at, question, budget, nodes=self._attempt, room=NEW_GROUPS)
         if found.groups:
@@ -191,7 +202,7 @@ class Decision:
         """Prices that no group found by annealing pays, or not enough to claim more links than the budget."""
         while True:
             budget.check()
-            found, links = self.prices.solve(threshold), self.threat.alpha_c + MARGIN
+            found, links = self.prices.solve(threshold, budget.seconds_left), self.threat.alpha_c + MARGIN
             if not self.prices.add(
                 self._cheap(found.scaled(links) if found.links > links else found, threshold, budget)
             ):
@@ -241,7 +252,7 @@ class Decision:
         """Try all partitions into groups of small reduced cost."""
         gap = self.threat.alpha_c - prices.links + TOLERANCE
         self._shuffled = False
-        listed = self._list(prices, (threshold, size, gap), budget, (nodes, ROOM))
+        listed = self._list(prices, (threshold, size, gap), budget, (nodes // LISTING, ROOM))
         if listed.code != FINISHED:
             return Answer(verdict=Verdict.OPEN)
         for members in self._partitions(listed, gap, budget):

@@ -89,12 +89,12 @@ class GroupPrices:
             self._append([group for group in fresh if group.value < self._threshold])
         return len(fresh)
 
-    def solve(self, threshold: float) -> PriceVector:
-        """Best prices that no known group of this threshold pays."""
+    def solve(self, threshold: float, seconds: float = np.inf) -> PriceVector:
+        """Best prices that no known group of this threshold pays, as far as so many seconds reach."""
         if self._program is None or threshold != self._threshold:
             self._start(threshold)
         assert self._program is not None
-        claim = self._program.solve()
+        claim = self._program.solve(seconds)
         n_robots = len(self._adjacent)
         if len(claim.x) != n_robots + 1:
             return PriceVector(robot=np.zeros(n_robots), blinded=0.0, links=0.0)
@@ -104,7 +104,7 @@ class GroupPrices:
             self._forget(robot, blinded)
         return PriceVector(robot=robot, blinded=blinded, links=links)
 
-    def slackest(self, threshold: float, links: float) -> PriceVector | None:
+    def slackest(self, threshold: float, links: float, seconds: float = np.inf) -> PriceVector | None:
         """Prices that claim so many links and are furthest below what known groups cost; ``None`` where none are found.
 
         Blinded robots count more than links: prices of theirs prune the enumeration most.
@@ -120,7 +120,7 @@ class GroupPrices:
         rows = rows_of([*entries, claim], [-np.inf] * (len(known) + 1), [*half, -links])
         cost, most = np.append(np.zeros(n_robots + 1), 1.0), self._most()
         low, high = np.append(np.full(n_robots, -most), [0.0, 0.0]), np.append(np.full(n_robots, most), [most, most])
-        x = LinearProgram(cost, low, high, rows=rows, maximise=True).solve().x
+        x = LinearProgram(cost, low, high, rows=rows, maximise=True).solve(seconds).x
         if len(x) != n_robots + 2:
             return None
         blinded = max(float(x[n_robots]), 0.0)
