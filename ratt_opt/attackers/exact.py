@@ -45,6 +45,10 @@ FIRST_STARTS, INNER_STARTS = 12, 3
 """Annealed attacks before the first threshold, and where only nodes are limited or another search asks: about every
 fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded)."""
 
+INNER_NODES = 500_000
+"""Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
+teams, none of which need ever close."""
+
 EXACT_SHARE = 0.9
 """Of the seconds of a survey; the heuristics need little."""
 
@@ -76,7 +80,8 @@ def worst_case_attack(
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, and prices that
       no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of the budget: give one,
-      as sparse graphs of 50 robots can take hours to close. Relies on a non-decreasing objective, as above; targets of
+      as graphs of 50 robots can take hours to close (of another search's budget that limits nothing, half a million
+      nodes). Relies on a non-decreasing objective, as above; targets of
       any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
@@ -174,6 +179,8 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
 
         stop = forced_group_bound(task, team)
         return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
+    if is_brief and task.budget.max_nodes is None and math.isinf(task.budget.seconds_left):
+        task.budget.max_nodes = task.budget.nodes + INNER_NODES
     prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
         return forced_group_bound(task, team)
