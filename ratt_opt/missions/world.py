@@ -20,7 +20,7 @@ from ratt_opt.missions.horizon import (
     undominated,
 )
 from ratt_opt.missions.models.robots import robot_motion
-from ratt_opt.missions.models.sensors import SensorModel, sensors_of
+from ratt_opt.missions.models.sensors import SensorModel, robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.criteria.registry import criterion_called
@@ -97,11 +97,14 @@ class World:
     motion: TargetMotion = field(init=False)
     sensors: tuple[SensorModel, ...] = field(init=False)
     move: RobotMotion = field(init=False)
+    alike: tuple[tuple[SensorModel, IntArray], ...] = field(init=False)
+    """Every different sensor with the robots that have it: what they measure is worked out together."""
 
     def __post_init__(self) -> None:
         check_integer("horizon", self.horizon, low=1)
         object.__setattr__(self, "motion", target_motion(self.model.motion, self.scenario))
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
+        object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
         if self.model.objective != "trace" and (self.horizon > 1 or self.motion.dimension > 2):
             raise InputError(
@@ -203,8 +206,8 @@ class World:
         points = ahead.positions
         spread = None if self.model.linearisation == "first order" else ahead.position_covariance
         information = np.empty((len(sequences.owner), len(points), 2, 2))
-        for i, sensor in enumerate(self.sensors):
-            own = sequences.owner == i
+        for sensor, robots in self.alike:
+            own = np.isin(sequences.owner, robots)
             with np.errstate(divide="ignore", invalid="ignore"):  # on top of a target there is no bearing
                 information[own] = sensor.information(sequences.poses[own, h], points, spread)
         usable = np.asarray(np.isfinite(information).all(axis=(-1, -2)))
