@@ -120,7 +120,7 @@ MILD = Study(
     measure=measure,
 )
 """What planning for the worst costs where nobody attacks, or somebody who does not see what hurts most."""
-NAMES = {"maxmin": "optimum"}
+NAMES = {"maxmin": "optimum", "nonrobust": "nonrobust_optimum"}
 """Planners whose look in figures goes by another name."""
 
 

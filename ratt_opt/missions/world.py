@@ -11,13 +11,13 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.missions.dominance import undominated
 from ratt_opt.missions.horizon import (
     OUTPUTS,
     Sequences,
     control_sequences,
     joint_covariance,
     output_matrix,
-    undominated,
 )
 from ratt_opt.missions.models.robots import robot_motion
 from ratt_opt.missions.models.sensors import SensorModel, robots_by_sensor, sensors_of

@@ -12,7 +12,7 @@ import pytest
 from ratt_opt import InputError, random_scenario, ratt, run_mission, solve_maxmin, worst_case_attack
 from ratt_opt.missions.attack_models import RenewedAttacks
 from ratt_opt.missions.beam import beam_sequences, solve_by_columns
-from ratt_opt.missions.horizon import undominated
+from ratt_opt.missions.dominance import undominated
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.problem import Attack
 from tests.oracles import brute_force_worst_case
@@ -115,6 +115,29 @@ def test_dropped_sequences_are_dominated_exactly() -> None:
             assert a >= 0
             assert a * c >= b * b
     assert undominated(information, np.arange(6))[1] == {}
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-160, 1e90])
+def test_floats_never_overrule_fractions(scale: float) -> None:
+    """Differences of rank one but for the last digit, for products that underflow too."""
+    rng = np.random.default_rng(7)
+    base, step = rng.standard_normal((2, 12, 3, 1, 2))
+    information = base[..., :, None] * base[..., None, :]
+    information[4:] = information[:8] + step[4:, ..., :, None] * step[4:, ..., None, :] * rng.choice(
+        [0, 1, 1], (8, 1, 1, 1, 1)
+    )
+    information = (information + np.swapaxes(information, -1, -2)) / 2 * scale
+
+    def below(e: int, f: int) -> bool:
+        for less, more in zip(information[e].reshape(-1, 4), information[f].reshape(-1, 4), strict=True):
+            a, b, _, c = (Fraction(x) - Fraction(y) for x, y in zip(more, less, strict=True))
+            if a < 0 or c < 0 or a * c < b * b:
+                return False
+        return f < e or not np.array_equal(information[e], information[f])
+
+    kept, by = undominated(information, np.zeros(12, dtype=np.int64))
+    assert kept.tolist() == [e for e in range(12) if not any(below(e, f) for f in range(12) if f != e)]
+    assert all(below(e, f) for e, f in by.items())
 
 
 def test_dropping_loses_no_value() -> None:
