@@ -66,6 +66,9 @@ def ahead() -> list[dict[str, object]]:
         (3, "known velocity", BEAM),
     ):
         world = World(scenario, MissionModel(motion=motion, beam=beam), horizon)
+        ratt(
+            first_step(world, offered_sequences(world, world.motion.initial(scenario), scenario.poses, 0.0))
+        )  # compiles
         began = perf_counter()
         problem = first_step(world, offered_sequences(world, world.motion.initial(scenario), scenario.poses, 0.0))
         ratt(problem)

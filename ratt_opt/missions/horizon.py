@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.models.targets import TargetMotion
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covariance", "output_matrix"]
+__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_position_covariance", "output_matrix"]
 
 OUTPUTS = ("mean", "last")
 NOISE_FLOOR = 1e-6
@@ -78,8 +78,8 @@ def extended(scenario: Scenario, sequences: Sequences, motion: RobotMotion) -> S
     return Sequences(readonly(sequences.owner[again]), readonly(controls), readonly(poses))
 
 
-def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:
-    """(M, H d, H d) of the joint state, from the predicted beliefs of its H steps."""
+def joint_position_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:
+    """(M, 2 H, 2 H) of the positions in all steps, from the predicted beliefs of the H steps."""
     n_targets, d = beliefs[0].mean.shape
     horizon = len(beliefs)
     joint = np.zeros((n_targets, horizon * d, horizon * d))
@@ -94,18 +94,16 @@ def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float)
         sizes = np.diagonal(joint, axis1=1, axis2=2).copy()
         sizes[:, :d] = 0.0  # the first step is known as it is
         joint += NOISE_FLOOR * sizes[:, None, :] * np.eye(horizon * d)
-    return joint
+    places = np.array([h * d + axis for h in range(horizon) for axis in range(2)])
+    return joint[:, places[:, None], places]
 
 
-def output_matrix(output: str, horizon: int, dimension: int) -> FloatArray | None:
-    """(q, H d) the part of the joint state that counts; ``None`` where that is the whole of one position.
+def output_matrix(output: str, horizon: int) -> FloatArray | None:
+    """(q, 2 H) the part of all steps' positions that counts; ``None`` where that is the whole of one position.
 
     ``"last"`` : the position at the last step; ``"mean"`` : those of all steps, whose mean trace is the criterion.
     """
-    if horizon == 1 and dimension == 2:
+    if horizon == 1:
         return None
-    steps = range(horizon) if output == "mean" else [horizon - 1]
-    matrix = np.zeros((2 * len(steps), horizon * dimension))
-    for row, h in enumerate(steps):
-        matrix[2 * row : 2 * row + 2, h * dimension : h * dimension + 2] = np.eye(2) / len(steps) ** 0.5
-    return matrix
+    whole = np.eye(2 * horizon)
+    return whole / horizon**0.5 if output == "mean" else whole[-2:]

@@ -16,7 +16,7 @@ from ratt_opt.missions.horizon import (
     OUTPUTS,
     Sequences,
     control_sequences,
-    joint_covariance,
+    joint_position_covariance,
     output_matrix,
 )
 from ratt_opt.missions.models.robots import robot_motion
@@ -106,10 +106,8 @@ class World:
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
         object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
-        if self.model.objective != "trace" and (self.horizon > 1 or self.motion.dimension > 2):
-            raise InputError(
-                "objective", "must be trace for a part of a state (horizon > 1, velocities)", self.model.objective
-            )
+        if self.model.objective != "trace" and self.horizon > 1:
+            raise InputError("objective", "must be trace where a plan looks several steps ahead", self.model.objective)
 
     @property
     def period(self) -> float:
@@ -135,15 +133,19 @@ class World:
         return self.criterion(belief, sequences, time), sequences
 
     def criterion(self, belief: Belief, sequences: Sequences, time: float) -> InformationObjective:
-        """The criterion of these sequences."""
-        predicted, d = self._predictions(belief, time), self.motion.dimension
+        """The criterion of these sequences: of the positions of all steps, which is all that measurements speak of.
+
+        A Gaussian's marginal is updated by what is measured of it alone, so velocities need not be carried along.
+        """
+        predicted = self._predictions(belief, time)
         blocks = self._blocks(sequences, predicted)
-        information = np.zeros((*blocks.shape[:2], self.horizon * d, self.horizon * d))
+        size = 2 * self.horizon
+        information = np.zeros((*blocks.shape[:2], size, size))
         for h in range(self.horizon):
-            information[:, :, h * d : h * d + 2, h * d : h * d + 2] = blocks[:, :, h]
-        prior = joint_covariance(predicted, self.motion, self.period)
+            information[:, :, 2 * h : 2 * h + 2, 2 * h : 2 * h + 2] = blocks[:, :, h]
+        prior = joint_position_covariance(predicted, self.motion, self.period)
         weights = np.array([target.weight for target in self.scenario.targets])
-        output = output_matrix(self.model.output, self.horizon, d)
+        output = output_matrix(self.model.output, self.horizon)
         if output is None:
             return criterion_called(self.model.objective)(prior, information, weights)
         return TraceObjective(prior, information, weights, output=output)

@@ -243,7 +243,7 @@ def test_bad_models_and_journals(tmp_path) -> None:
         MissionModel(linearisation="third order")
     with pytest.raises(InputError, match="area"):
         MissionModel(area=(0, 0, 0, 1))
-    with pytest.raises(InputError, match="objective must be trace for a part"):
+    with pytest.raises(InputError, match="objective must be trace where"):
         run_mission(scenario_of(), steps=1, horizon=2, model=MissionModel(objective="logdet"))
     with pytest.raises(InputError, match="hold must be"):
         PersistentAttacks(hold=0)
