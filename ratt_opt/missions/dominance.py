@@ -9,7 +9,7 @@ are right; where they are not, fractions do.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
@@ -60,8 +60,8 @@ def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dic
     return kept, {e: _last(by, f) for e, f in by.items()}
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
-def _compared(entries: FloatArray) -> IntArray:
+@numba.njit(cache=True)
+def _compared(entries: Any) -> Any:
     """(K, K) whether the first of a pair dominates the second, as far as floats tell; of equal ones the first does."""
     count, size = entries.shape[:2]
     found = np.zeros((count, count), np.int8)

@@ -70,6 +70,13 @@ class Replay(ByValue):
         """(T,) mean over the landmarks; 2 where the filter is consistent."""
         return readonly(np.array([step.belief.nees(step.belief.mean - step.errors).mean() for step in self.steps]))
 
+    @property
+    def log_score(self) -> FloatArray:
+        """(T,) log density that the beliefs gave to where the landmarks are, mean over them; beliefs that claim too
+        much and beliefs that claim too little both score less than honest ones."""
+        sizes = [np.linalg.slogdet(2 * np.pi * step.belief.covariance)[1].mean() for step in self.steps]
+        return readonly(-(self.nees + np.array(sizes)) / 2)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplaySettings:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
@@ -19,8 +19,8 @@ def output_traces(matrices: FloatArray, output: FloatArray) -> FloatArray:
     return np.asarray(_traces(flat, np.ascontiguousarray(output)).reshape(matrices.shape[:-2]))
 
 
-@numba.njit(cache=True)  # type: ignore[untyped-decorator]
-def _traces(matrices: FloatArray, output: FloatArray) -> FloatArray:
+@numba.njit(cache=True)
+def _traces(matrices: Any, output: Any) -> Any:
     """By Cholesky's factor ``L = G G'``: the sum of squares of ``G^{-1} C'``. (K, M, d, d), (M, q, d) -> (K, M)."""
     count, targets, d = matrices.shape[:3]
     q = output.shape[1]
