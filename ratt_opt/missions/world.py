@@ -72,10 +72,15 @@ class MissionModel:
             if getattr(self, name) not in known:
                 raise InputError(name, f"must be {', '.join(known)}", getattr(self, name))
         criterion_called(self.objective)
-        if self.area is not None and not (self.area[0] < self.area[2] and self.area[1] < self.area[3]):
+        if self.area is not None and not _is_rectangle(self.area):
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
         if self.beam is not None:
             check_integer("beam", self.beam, low=1)
+
+
+def _is_rectangle(area: object) -> bool:
+    corners = np.array(area) if isinstance(area, (tuple, list, np.ndarray)) else np.zeros(0)
+    return corners.shape == (4,) and corners.dtype.kind in "iuf" and bool((corners[:2] < corners[2:]).all())
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +106,8 @@ class World:
     """Every different sensor with the robots that have it: what they measure is worked out together."""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.model, MissionModel):
+            raise InputError("model", "must be a MissionModel", type(self.model).__name__)
         check_integer("horizon", self.horizon, low=1)
         object.__setattr__(self, "motion", target_motion(self.model.motion, self.scenario))
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -223,7 +224,8 @@ def sensors_of(
     """
     if sensor is None:
         return tuple(RangeBearing(robot.sensor or scenario.sensor) for robot in scenario.robots)
-    given = (sensor,) * scenario.n_robots if isinstance(sensor, SensorModel) else tuple(sensor)
+    several = tuple(sensor) if isinstance(sensor, Iterable) else ()
+    given = (sensor,) * scenario.n_robots if isinstance(sensor, SensorModel) else several
     if len(given) != scenario.n_robots or not all(isinstance(one, SensorModel) for one in given):
         rule = f"must be a SensorModel, or one for each of {scenario.n_robots} robots"
         raise InputError("sensor", rule, type(sensor).__name__)
