@@ -16,7 +16,7 @@ from analysis.studies.command import Entry, main
 from analysis.studies.plots import new_figure, points, save
 from analysis.studies.statistics import column, estimate, select
 from analysis.studies.study import Case, Study
-from ratt_opt.missions.planners import MaxMinPlanner, RandomPlanner
+from ratt_opt.missions.players.planners import MaxMinPlanner, RandomPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.scenario.generator import random_scenario
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from analysis.studies.study import Cell, Seeds
-    from ratt_opt.missions.planners import Planner
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 

@@ -18,8 +18,8 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_finite, check_integer, check_number, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.missions.planners import MaxMinPlanner, elements_of, planner_called
 from ratt_opt.missions.planning import offered_sequences
+from ratt_opt.missions.players.planners import MaxMinPlanner, elements_of, planner_called
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.tracker_state import Measurement, TrackerState
 from ratt_opt.missions.world import MissionModel, Threatened, World
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from ratt_opt.missions.ahead.horizon import Sequences
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.horizon import Sequences
-    from ratt_opt.missions.planners import Planner
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.scenario.model import Scenario
 

@@ -11,8 +11,8 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.missions.dominance import undominated
-from ratt_opt.missions.horizon import (
+from ratt_opt.missions.ahead.dominance import undominated
+from ratt_opt.missions.ahead.horizon import (
     OUTPUTS,
     Sequences,
     control_sequences,

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, random_scenario, ratt, run_mission, solve_maxmin, worst_case_attack
-from ratt_opt.missions.attack_models import RenewedAttacks
+from ratt_opt.missions.ahead.dominance import undominated
 from ratt_opt.missions.beam import beam_sequences, solve_by_columns
-from ratt_opt.missions.dominance import undominated
+from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.problem import Attack
 from tests.oracles import brute_force_worst_case
@@ -142,7 +142,7 @@ def test_floats_never_overrule_fractions(scale: float) -> None:
 
 def test_dropping_loses_no_value() -> None:
     from ratt_opt import Sensor
-    from ratt_opt.missions.horizon import control_sequences
+    from ratt_opt.missions.ahead.horizon import control_sequences
 
     sensor = Sensor(bearing_noise_slope=0.0)
     scenario = random_scenario(

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import Attack, InputError, random_scenario, ratt, worst_case_attack
-from ratt_opt.missions.attack_models import PermanentFailures, PersistentAttacks
 from ratt_opt.missions.models.sensors import PositionSensor
-from ratt_opt.missions.planners import MaxMinPlanner
+from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
+from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle

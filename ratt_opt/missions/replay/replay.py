@@ -10,10 +10,10 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, check_number, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
-from ratt_opt.missions.attack_models import AttackModel, attack_model
-from ratt_opt.missions.attackers import attack_of, attacker_called
 from ratt_opt.missions.belief import Belief
 from ratt_opt.missions.memory import Memory, Pieces
+from ratt_opt.missions.players.attack_models import AttackModel, attack_model
+from ratt_opt.missions.players.attackers import attack_of, attacker_called
 from ratt_opt.missions.replay.cameras import camera_planner
 from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor
 from ratt_opt.missions.sensing import Reading, group_pieces
@@ -26,7 +26,7 @@ from ratt_opt.setfunctions.criteria.trace import TraceObjective
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ratt_opt.missions.attackers import Attacker, OwnAttacker
+    from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
     from ratt_opt.scenario.mrclam_reader import MrclamData
 
 __all__ = ["Replay", "ReplaySettings", "ReplayStep", "replay_mrclam"]
