@@ -117,6 +117,26 @@ def test_dropped_sequences_are_dominated_exactly() -> None:
     assert undominated(information, np.arange(6))[1] == {}
 
 
+@pytest.mark.parametrize("objective", ["logdet", "maxeig"])
+def test_one_step_of_moving_targets_takes_any_criterion(objective: str) -> None:
+    """Velocities are not measured: the criterion of the position is that of the position's block of a Kalman filter."""
+    scenario = random_scenario(3, 3, alpha_s=1, alpha_c=2, seed=1)
+    world = World(scenario, MissionModel(motion="constant velocity", objective=objective), 1)
+    problem, kept = problem_of(world)
+    plan = np.array([choice[0] for choice in problem.choices])
+    predicted = world.motion.initial(scenario).predicted(world.motion, world.period, 0.0)
+    information = np.zeros((3, 4, 4))
+    for e in plan:
+        information[:, :2, :2] += world.sensors[0].information(kept.poses[e], predicted.positions)[0]
+    after = np.linalg.inv(np.linalg.inv(predicted.covariance) + information)[:, :2, :2]
+    before = predicted.position_covariance
+    if objective == "logdet":
+        expected = np.linalg.slogdet(before)[1].sum() - np.linalg.slogdet(after)[1].sum()
+    else:
+        expected = np.linalg.eigvalsh(before).max() - np.linalg.eigvalsh(after).max()
+    assert problem.objective(plan) == pytest.approx(expected, rel=1e-9)
+
+
 @pytest.mark.parametrize("scale", [1.0, 1e-160, 1e90])
 def test_floats_never_overrule_fractions(scale: float) -> None:
     """Differences of rank one but for the last digit, for products that underflow too."""
