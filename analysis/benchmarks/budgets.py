@@ -56,8 +56,9 @@ class Case:
     def problem(self) -> Problem:
         """The problem of a random scenario."""
         n_targets = TARGETS.get(self.robots, 5)
-        budgets = {"alpha_s": self.alpha_s, "alpha_c": self.alpha_c}
-        return ro.random_scenario(self.robots, n_targets, **budgets, seed=self.seed).problem(self.objective)
+        seed, cut = self.seed, self.alpha_c
+        scenario = ro.random_scenario(self.robots, n_targets, alpha_s=self.alpha_s, alpha_c=cut, seed=seed)
+        return scenario.problem(self.objective)
 
 
 def budgets(draw: str, robots: int, seed: int) -> list[tuple[int, int]]:
