@@ -57,7 +57,7 @@ class BranchAndBound:
         self.winners = Winners(GroupProofs(self.cuts, self.rule), incumbent.candidates)
         self.rounds = CutRounds(self.cuts, self.winners, incumbent.adversary)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
-        self.small = SmallGroups(task, self.by_winner)
+        self.small = SmallGroups(task, self.by_winner, incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
         self._root = self._first_node()
         self.frontier.push(self._root)

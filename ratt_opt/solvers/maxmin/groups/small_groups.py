@@ -22,6 +22,7 @@ from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
     from ratt_opt.solvers.maxmin.proof import TreeNode
@@ -29,9 +30,11 @@ if TYPE_CHECKING:
 
 __all__ = ["SmallGroups"]
 
-WHOLE, PART = 25_000, 3_000
-"""Combinations of a group's elements that are listed once and for all, and those left at a node that are listed there:
-about ten and two milliseconds, where the linear programs of a node take five to ten."""
+WHOLE, PART = 600_000, 60_000
+"""Criteria of single targets that list a group's elements once and for all, and those left at a node that are listed
+there: about ten and one milliseconds for planar targets, where the linear programs of a node take five to ten."""
+NOT_PLANAR = 10
+"""How many times as long a criterion takes that has no closed form."""
 LARGEST_GROUP = 8
 """Larger groups are never listed: when they could be, linear programs have decided them."""
 ROUNDING = 1e-11
@@ -58,13 +61,16 @@ class _Group:
     def __init__(self, task: Task, members: tuple[int, ...]) -> None:
         self.task, self.members = task, members
         self._is_small = 0 < len(members) <= LARGEST_GROUP
-        self._is_whole = self._is_small and prod(len(task.choices[i]) for i in members) <= WHOLE
+        self._cost = task.objective.n_targets * (1 if task.objective.dimension == 2 else NOT_PLANAR)
+        self._is_whole = self._is_small and self._cost * prod(len(task.choices[i]) for i in members) <= WHOLE
         self._whole: FloatArray | None = None
         self._known: dict[tuple[int, ...], tuple[FloatArray, ...]] = {}
 
     def reach(self, domains: _Domains) -> tuple[FloatArray, ...] | None:
         """Per robot, the largest value with each of its elements; ``None`` where that is not listed."""
-        if not self._is_small or (not self._is_whole and prod(domains.sizes[i] for i in self.members) > PART):
+        if not self._is_small:
+            return None
+        if not self._is_whole and self._cost * prod(domains.sizes[i] for i in self.members) > PART:
             return None
         key = tuple(domains.numbers[i] for i in self.members)
         known = self._known.get(key)
@@ -97,10 +103,10 @@ class _Group:
 
 
 class SmallGroups:
-    """Narrows nodes by the outcomes in the pool whose groups can be listed."""
+    """Narrows nodes by the outcomes in the pool whose groups can be listed, as far as the budget lasts."""
 
-    def __init__(self, task: Task, division: WinnerDivision) -> None:
-        self.task, self.pool, self.division = task, division.pool, division
+    def __init__(self, task: Task, division: WinnerDivision, budget: Budget) -> None:
+        self.task, self.pool, self.division, self.budget = task, division.pool, division, budget
         self._groups: list[_Group] = []
         self._numbers: dict[bytes, int] = {}
 
@@ -116,6 +122,8 @@ class SmallGroups:
         while node is not before:
             before, domains = node, self._domains(node)
             for outcome in range(len(self.pool)):
+                if self.budget.is_over:
+                    return node
                 after = self._narrow_by(node, outcome, level, domains)
                 if after is None:
                     return None
