@@ -1,5 +1,5 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Families Approached
+From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Survivors Families Approached
   Quadratic Criteria Logdet Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
@@ -17,6 +17,8 @@ Print Assumptions group_size_total_curvature_unsplit.
 Print Assumptions paper_group_size_submodular.
 Print Assumptions paper_group_size_total_curvature.
 Print Assumptions paper_optimal.
+Print Assumptions survivor_submodular.
+Print Assumptions survivor_total_curvature.
 Print Assumptions group_size_submodular.
 Print Assumptions group_size_total_curvature.
 Print Assumptions ratt_optimal.

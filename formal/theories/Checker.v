@@ -75,17 +75,28 @@ Definition defect (A : dmat) : option dyadic :=
 End Matrices.
 
 (** ** The criterion's penalty (what is left of the posterior), bounded from above *)
+(** Targets of equal weight share one logarithm. *)
+Definition weight_groups (ws : seq dyadic) : seq (dyadic * seq nat) :=
+  [seq (v, [seq j <- iota 0 (size ws) | nth d0 ws j == v]) | v <- undup ws].
+(** Tried in turn: a logarithm's error is about [2^-k]; numbers are rounded to [2^-p]. *)
+Definition precisions : seq (nat * N) := [:: (24, 96%num); (44, 160%num); (110, 1024%num)].
+
 Section Penalty.
-Variables (kind : criterion) (d m : nat) (ws : seq dyadic).
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (groups : seq (dyadic * seq nat)).
 
 Definition trace_up (p : N) (s : seq dmat) : option dyadic :=
   if all_some [seq trace_inverse_up p d (nth [::] s j) | j <- iota 0 m] is Some ys then
     Some (dsum [seq dmul (nth d0 ws j) (nth d0 ys j) | j <- iota 0 m])
   else None.
-(** A logarithm's error is about [2^-k]; numbers are rounded to [2^-p]. *)
+Definition determinant_products (p : N) (s : seq dmat) : seq (dyadic * dyadic) :=
+  let dets := [seq mdet d (nth [::] s j) | j <- iota 0 m] in
+  [seq (g.1, short_product p [seq nth d0 dets j | j <- g.2]) | g <- groups].
 Definition logdet_up (k : nat) (p : N) (s : seq dmat) : option dyadic :=
   if all (fun j => is_pd d (nth [::] s j)) (iota 0 m) then
-    Some (dsum [seq dmul (nth d0 ws j) (log_quotient_up k p d1 (mdet d (nth [::] s j))) | j <- iota 0 m])
+    let products := determinant_products (N.add p 32) s in
+    if all (fun x => dlt d0 x.2) products then
+      Some (dsum [seq dmul x.1 (log_inverse_up k p x.2) | x <- products])
+    else None
   else None.
 Definition is_at_most (x : option dyadic) (y : dyadic) : bool := if x is Some z then dle z y else false.
 Definition eigen_enough (room : dyadic) (s : seq dmat) : bool :=
@@ -98,25 +109,29 @@ Definition eigen_hint (p : N) (w : dyadic) (A : dmat) : dyadic :=
   let det := dsub (dmul (get A 0 0) (get A 1 1)) (dmul (get A 1 0) (get A 0 1)) in
   let disc := dsub (dmul t t) (dmul (dnat 4) det) in
   quotient_up p (dmul w (dadd t (root_up p disc))) (dmul (dnat 2) det).
-Definition eigen_up (room : dyadic) (s : seq dmat) : option dyadic :=
+Definition eigen_up (p : N) (room : dyadic) (s : seq dmat) : option dyadic :=
   let y := if d == 2%N then
-      foldl dmax d0 [seq eigen_hint 160 (nth d0 ws j) (nth [::] s j) | j <- iota 0 m]
+      foldl dmax d0 [seq eigen_hint p (nth d0 ws j) (nth [::] s j) | j <- iota 0 m]
     else room in
   if eigen_enough y s then Some y else None.
 
-Definition penalty_up (room : dyadic) (s : seq dmat) : option dyadic :=
-  match kind with Trace => trace_up 160 s | LogDet => logdet_up 110 400 s | MaxEigenvalue => eigen_up room s end.
+Definition penalty_up (room : dyadic) (s : seq dmat) (e : nat * N) : option dyadic :=
+  match kind with
+  | Trace => trace_up e.2 s
+  | LogDet => logdet_up e.1 e.2 s
+  | MaxEigenvalue => eigen_up e.2 room s
+  end.
 Definition penalty_within (room : dyadic) (s : seq dmat) : bool :=
   match kind with
-  | Trace => is_at_most (trace_up 128 s) room || is_at_most (trace_up 1024 s) room
-  | LogDet => is_at_most (logdet_up 40 128 s) room || is_at_most (logdet_up 110 400 s) room
+  | Trace | LogDet => has (fun e => is_at_most (penalty_up room s e) room) precisions
   | MaxEigenvalue => eigen_enough room s
   end.
 End Penalty.
 
 (** ** The lower end *)
 Section Lower.
-Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (lows : seq dmat) (rows : seq (seq dmat)).
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (groups : seq (dyadic * seq nat)).
+Variables (lows : seq dmat) (rows : seq (seq dmat)).
 Variables (claimed room : dyadic).
 
 Definition combine (f : nat -> dmat) : seq dmat := mkseq f m.
@@ -127,15 +142,16 @@ Definition add_times (r : nat) (s : seq dmat) (i : nat) : seq dmat :=
 (** A claim of at most 0 needs no more than the prior's information. *)
 Definition as_good_as_prior (s : seq dmat) : bool :=
   dle claimed d0 && all (fun j => is_psd d (msub d (nth [::] s j) (nth [::] lows j))) (iota 0 m).
-Definition worth (s : seq dmat) : bool := as_good_as_prior s || penalty_within kind d m ws room s.
+Definition worth (s : seq dmat) : bool := as_good_as_prior s || penalty_within kind d m ws groups room s.
+Definition average_within (cases : seq (seq dmat)) (r : nat) (e : nat * N) : bool :=
+  if all_some [seq penalty_up kind d m ws groups room c e | c <- cases] is Some ys then
+    let t := nth d0 (sort (fun x y => dle y x) ys) r.-1 in
+    dle (dadd (dsum [seq dmax d0 (dsub y t) | y <- ys]) (dmul (dnat r) t)) (dmul (dnat r) room)
+  else false.
 Definition average_worth (s : seq dmat) (rest : seq nat) (r : nat) : bool :=
   uniq rest && (r <= size rest)%N &&
   let cases := [seq add_times r s i | i <- rest] in
-  (all as_good_as_prior cases) ||
-  (if all_some [seq penalty_up kind d m ws room c | c <- cases] is Some ys then
-     let t := nth d0 (sort (fun x y => dle y x) ys) r.-1 in
-     dle (dadd (dsum [seq dmax d0 (dsub y t) | y <- ys]) (dmul (dnat r) t)) (dmul (dnat r) room)
-   else false).
+  all as_good_as_prior cases || has (average_within cases r) precisions.
 End Lower.
 
 (** ** The upper end's linear bounds *)
@@ -232,11 +248,12 @@ Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : boo
   let loss j := dsum [seq nth d0 (nth [::] defects e) j | e <- plan cl] in
   let start := mkseq (fun j => msub d (nth [::] lows j) (mscalar d (loss j))) m in
   let add := add_robot d m rows in
-  let good := worth (objective pb) d m ws lows (lower cl) room in
+  let groups := weight_groups ws in
+  let good := worth (objective pb) d m ws groups lows (lower cl) room in
   match lower_part pr with
   | ForcedSize k t =>
       [&& complete w, is_forced w k
-        & check_sizes w add good (average_worth (objective pb) d m ws lows rows (lower cl) room) k t start [::] 0]
+        & check_sizes w add good (average_worth (objective pb) d m ws groups lows rows (lower cl) room) k t start [::] 0]
   | AttackTree t =>
       let near := [seq neighbours (link_list w) i | i <- iota 0 (robots w)] in
       check_attacks w near start add good t [::] [::] [::]

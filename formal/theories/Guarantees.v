@@ -171,12 +171,13 @@ Section NonDecreasing.
 Variable c : F.
 Hypotheses (c1 : c <= 1) (n0 : normalised phi) (curv : total_curvature_at_most t phi c).
 
-Theorem non_decreasing_share u g o S : bait_or_greedy t phi u g -> is_plan t o ->
-  (1 - c) ^+ 2 * phi (contributed o S) <= phi (contributed u S).
+(** Whatever the others are, a robot's element adds at least [(1 - c)^2] of what any other of its elements adds. *)
+Lemma non_decreasing_step u g o i (T : {set R}) : bait_or_greedy t phi u g -> is_plan t o -> i \notin T ->
+  (1 - c) ^+ 2 * marginal phi (o i) (contributed o T) <= marginal phi (u i) (contributed u T).
 Proof.
-move=> bg oko; have [okp ug bait greedy] := bg; have c0 : 0 <= 1 - c by rewrite subr_ge0.
-apply: (@greedy_then_bait _ u o g) => // i T ig iT; rewrite expr2 -mulrA.
-  move=> _; have nb := take_index_notin g i.
+move=> bg oko iT; have [okp ug bait greedy] := bg; have c0 : 0 <= 1 - c by rewrite subr_ge0.
+rewrite expr2 -mulrA; case: (boolP (i \in g)) => ig.
+  have nb := take_index_notin g i.
   apply: le_trans (_ : (1 - c) * marginal phi (o i) (before u g i) <= _).
     apply: ler_wpmul2l => //; apply: curv; rewrite ?/before ?extend_notin ?extend_feasible ?(plan_owner _ oko) //.
       by rewrite in_set.
@@ -194,6 +195,12 @@ apply: le_trans (_ : (1 - c) * marginal phi (u i) set0 <= _).
 apply: curv; rewrite ?in_set0 // ?extend_notin ?extend_feasible ?(plan_owner _ okp) //.
 by apply: sub_feasible (extend_feasible okp (_ : owner t (u i) \notin T));
    rewrite ?(plan_owner _ okp) // setUS ?sub0set.
+Qed.
+
+Theorem non_decreasing_share u g o S : bait_or_greedy t phi u g -> is_plan t o ->
+  (1 - c) ^+ 2 * phi (contributed o S) <= phi (contributed u S).
+Proof.
+by move=> bg oko; apply: (@greedy_then_bait _ u o g) => // i T _ iT *; apply: non_decreasing_step bg oko iT.
 Qed.
 End NonDecreasing.
 

@@ -605,15 +605,47 @@ rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l
 by case: (h j).
 Qed.
 
-Lemma logdet_upP k p s y : kind = LogDet -> logdet_up d m ws k p s = Some y -> (forall j, symmetrical (fam s j)) ->
+Let groups := weight_groups ws.
+
+(** Sums over the targets, weight by weight. *)
+Lemma weight_groupsE (f : nat -> F) :
+  \sum_(j : target) weight_of j * f j = \sum_(g <- groups) val g.1 * \sum_(j <- g.2) f j.
+Proof.
+rewrite big_map; transitivity (\sum_(v <- undup ws) \sum_(j <- iota 0 m | nth d0 ws j == v) val (nth d0 ws j) * f j).
+  rewrite (exchange_big_dep xpredT) //= [in RHS](_ : iota 0 m = index_iota 0 m); last by rewrite /index_iota subn0.
+  rewrite [RHS](big_mkord xpredT); apply: eq_bigr => j _; rewrite -big_filter.
+  have -> : [seq v <- undup ws | nth d0 ws j == v] = [:: nth d0 ws j].
+    rewrite (eq_filter (fun v => eq_sym _ v)) filter_pred1_uniq ?undup_uniq // mem_undup mem_nth // weights_size //.
+  by rewrite big_seq1.
+apply: eq_bigr => v _; rewrite weights_size mulr_sumr [RHS]big_filter.
+by apply: eq_bigr => j /eqP->.
+Qed.
+
+Lemma logdet_upP k p s y : kind = LogDet -> logdet_up d m groups k p s = Some y -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ logdet_penalty ln weight_of (fam s) <= val y.
 Proof.
-move=> e; rewrite /logdet_up; case: ifP => // /allP defs [<-] sym.
-have pds j : pd (fam s j) by apply/(is_pdP (sym j)); apply: defs; rewrite mem_iota add0n ltn_ord.
+move=> e; rewrite /logdet_up; case: ifP => // /allP defs; cbv zeta; case: ifP => // /allP pos [<-] sym.
+have pds (j : target) : pd (fam s j) by apply/(is_pdP (sym j)); apply: defs; rewrite mem_iota add0n ltn_ord.
 split=> [j|]; first by split.
-rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l; first exact: weight_ge0.
-have L0 := det_gt0 (sym j) (pds j); rewrite -(lnV (lnP e)) // -[_^-1]mul1r -{1}(val1 F) -(mdetE F d (nth [::] s j)).
-by apply: log_quotient_upP; rewrite ?val1 ?ltr01 ?mdetE //; apply: lnP.
+pose det j := val (mdet d (nth [::] s j)).
+have detE (j : target) : det j = \det (fam s j) by rewrite /det mdetE.
+have det0 j : (j < m)%N -> 0 < det j.
+  by move=> jm; have := det_gt0 (sym (Ordinal jm)) (pds (Ordinal jm)); rewrite -detE.
+rewrite /logdet_penalty (eq_bigr (fun j : target => weight_of j * - ln (det j))) => [|j _]; last by rewrite detE.
+rewrite (weight_groupsE (fun j => - ln (det j))) val_sum big_map /determinant_products.
+rewrite [X in _ <= X]big_map big_seq [X in _ <= X]big_seq; apply: ler_sum => g gin; rewrite val_mul.
+have lt j : j \in g.2 -> (j < m)%N.
+  by move: gin => /mapP[v _ ->] /=; rewrite mem_filter mem_iota weights_size => /andP[_ /andP[]].
+have w0 : 0 <= val g.1.
+  move: gin => /mapP[v]; rewrite mem_undup => /(nthP d0)[j jm <-] -> /=.
+  by rewrite weights_size in jm; apply: (weight_ge0 (Ordinal jm)).
+have le := pos _ (map_f _ gin); rewrite /= in le; apply: ler_wpmul2l w0 _ _ _; rewrite sumrN.
+have at_ j : (j < m)%N -> nth d0 [seq mdet d (nth [::] s j) | j <- iota 0 m] j = mdet d (nth [::] s j).
+  by move=> jm; rewrite (nth_map 0%N) ?size_iota // nth_iota.
+apply: le_trans (log_product_upP (lnP e) k p _ le); rewrite ?big_map.
+  rewrite ler_opp2 big_seq [X in _ <= X]big_seq le_eqVlt; apply/orP; left; apply/eqP.
+  by apply: eq_bigr => j /lt jm; rewrite at_.
+by move=> x /mapP[j /lt jm ->]; rewrite at_ //; apply: det0.
 Qed.
 
 Lemma eigen_enoughP x s : eigen_enough d m ws x s -> (forall j, symmetrical (fam s j)) ->
@@ -637,21 +669,23 @@ have diff : psd (fam s j - (weight_of j / val x)%:M).
 have := inverse_antitone su (sym j) pu diff; rewrite invmx_scalar invf_div //.
 Qed.
 
-Lemma withinP x s : penalty_within kind d m ws x s -> (forall j, symmetrical (fam s j)) ->
-  good (fam s) /\ penalty (fam s) <= val x.
-Proof.
-rewrite /penalty_within /penalty -/kind; case e: kind => h sym; last exact: eigen_enoughP.
-  case/orP: h; rewrite /is_at_most; case eu: (trace_up _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
-    by have [g h] := trace_upP eu sym; split=> //; apply: le_trans h le.
-case/orP: h; rewrite /is_at_most; case eu: (logdet_up _ _ _ _ _ _) => [y|//]; rewrite (val_le F) => le;
-  by have [g h] := logdet_upP e eu sym; split=> //; apply: le_trans h le.
-Qed.
-
-Lemma penalty_upP x s y : penalty_up kind d m ws x s = Some y -> (forall j, symmetrical (fam s j)) ->
+Lemma penalty_upP x s e y : penalty_up kind d m ws groups x s e = Some y -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ penalty (fam s) <= val y.
 Proof.
-rewrite /penalty_up /penalty -/kind; case e: kind => h sym; [exact: trace_upP h sym | exact: logdet_upP e h sym |].
+rewrite /penalty_up /penalty -/kind; case ek: kind => h sym; [exact: trace_upP h sym | exact: logdet_upP ek h sym |].
 move: h; rewrite /eigen_up; case: ifP => // h [<-]; exact: eigen_enoughP.
+Qed.
+
+Lemma withinP x s : penalty_within kind d m ws groups x s -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ penalty (fam s) <= val x.
+Proof.
+rewrite /penalty_within => h sym.
+have some : has (fun e => is_at_most (penalty_up kind d m ws groups x s e) x) precisions ->
+    good (fam s) /\ penalty (fam s) <= val x.
+  move=> /hasP[e _]; rewrite /is_at_most; case eu: (penalty_up _ _ _ _ _ _ _ _) => [y|//]; rewrite (val_le F) => le.
+  by have [g hy] := penalty_upP eu sym; split=> //; apply: le_trans hy le.
+move: h; case ek: {1}kind => h; [exact: some h | exact: some h |].
+by rewrite /penalty -/kind ek; apply: eigen_enoughP.
 Qed.
 
 Lemma fam_symmetrical T j : all below T -> symmetrical (fam (foldl add start T) j).
@@ -674,7 +708,7 @@ by rewrite [known T j + _]addrCA !addrA.
 Qed.
 
 Lemma worth_sound T : uniq T -> all below T ->
-  worth kind d m ws lows (lower cl) plan_room (foldl add start T) ->
+  worth kind d m ws groups lows (lower cl) plan_room (foldl add start T) ->
   forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
 Proof.
 move=> uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
@@ -705,7 +739,7 @@ move=> b il; rewrite /fam nth_mkseq // mx_add mx_scale val_nat rows_at // -/(fam
 Qed.
 
 Lemma average_sound T rest r : uniq T -> all below T -> (0 < r)%N ->
-  average_worth kind d m ws lows rows (lower cl) plan_room (foldl add start T) rest r ->
+  average_worth kind d m ws groups lows rows (lower cl) plan_room (foldl add start T) rest r ->
   forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
   (forall i, i \in T ++ T' -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
 Proof.
@@ -722,7 +756,7 @@ have T'0 : T' != [::] by rewrite -size_eq0 sz -lt0n.
 have avg j : known (T ++ T') j = (size T')%:R^-1 *: \sum_(i <- T') A i j.
   rewrite (known_average T j sz r0); congr (_ *: _); rewrite big_seq [RHS]big_seq.
   by apply: eq_bigr => i iT; rewrite AE.
-case/orP: h => [/allP h|].
+case/orP: h => [/allP h|/hasP[level _]].
   have each i : i \in T' -> as_good_as_prior d m lows (lower cl) (add_times d m rows r st i).
     by move=> /sub iR; apply: h; apply: map_f.
   have le : dle (lower cl) d0.
@@ -737,7 +771,7 @@ case/orP: h => [/allP h|].
   have := hj j; rewrite mem_iota add0n ltn_ord => /(_ isT).
   have sm := sub_symmetrical (Asym i j iT) (proj1 (lowP j)).
   by move/(is_psdP sm); rewrite mx_sub -/(fam _ j).
-case e: (all_some _) => [ys|//]; cbv zeta; set tau := nth d0 _ r.-1.
+rewrite /average_within; case e: (all_some _) => [ys|//]; cbv zeta; set tau := nth d0 _ r.-1.
 rewrite (val_le F) val_add !val_mul val_nat val_sum big_map => le.
 pose y i := val (nth d0 ys (index i rest)).
 have szy : size ys = size rest by have [-> _] := all_some_nth [::] d0 0 e; rewrite size_map.

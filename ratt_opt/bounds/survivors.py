@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_integer
+from ratt_opt.bounds.guarantees import IN_COQ as PATTERN_FREE_IN_COQ
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
 from ratt_opt.graph.survivor_sizes import iterate_non_dominated_sizes
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["largest_survivor_group", "survivor_bound", "survivor_share"]
 
 SOURCE = "survivor bound (this library)"
+IN_COQ = {"k": "survivor_submodular", "c": "survivor_total_curvature"}
 
 
 def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -65,7 +67,9 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
         f"no group of more than {size} seeing robots",
         "RATT's plan",
     )
-    return Guarantee(bound, needs, SOURCE, "survivor_bound")
+    by_size = kind == "c" or bound > 1 - value
+    theorem = IN_COQ[kind] if by_size else PATTERN_FREE_IN_COQ[kind]
+    return Guarantee(bound, needs, SOURCE, f"survivor_bound; in Coq {theorem}")
 
 
 def survivor_share(size: int, kept: Share, *, submodular: bool) -> Share:

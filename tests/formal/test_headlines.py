@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from tests.formal.definition_mutants import CHANGES
+
 FORMAL = Path(__file__).parents[2] / "formal"
 
 
@@ -25,3 +27,7 @@ def test_no_proof_is_left_open():
     words = re.compile(r"\b(Admitted|admit|Axiom|Axioms|Parameter|Parameters|Conjecture|Abort)\b")
     for path in (FORMAL / "theories").glob("*.v"):
         assert not words.search(path.read_text()), path.name
+
+
+def test_the_readme_counts_the_changes_of_definitions():
+    assert f"({len(CHANGES)} changes of" in (FORMAL / "README.md").read_text()
