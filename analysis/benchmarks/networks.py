@@ -16,6 +16,7 @@ import numba
 import numpy as np
 
 from analysis.tables import append_csv, print_table
+from ratt_opt._rounding import relative_gap
 from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.team import Links, Team
 from ratt_opt.attackers.exact import worst_case_attack
@@ -116,7 +117,7 @@ def attacked(problem: Problem, seconds: float, seed: int) -> dict[str, object]:
     spent = time.perf_counter() - began
     plain = plain_annealing(problem, plan, seconds, seed)
     row: dict[str, object] = {"alpha_s": problem.alpha_s, "alpha_c": problem.alpha_c}
-    row |= {"lower": exact.lower, "upper": exact.upper, "gap": (exact.upper - exact.lower) / exact.upper}
+    row |= {"lower": exact.lower, "upper": exact.upper, "gap": relative_gap(exact.lower, exact.upper)}
     return row | {
         "stop": exact.stop.value,
         "nodes": exact.nodes,
