@@ -41,10 +41,13 @@ def verify(
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
     proved; 4: neither proved nor refuted within the limits. None of these where the output cannot be written (74).
     """
-    from ratt_opt.certificates.extracted import check_extracted, find_checker
     from ratt_opt.certificates.verifier.verify import verify_certificate
 
-    checker = find_checker() if verified else None
+    checker = None
+    if verified:
+        from ratt_opt.certificates.extracted import check_extracted, find_checker
+
+        checker = find_checker()
     expected = None
     if problem is not None:
         from ratt_opt.certificates.agreement import same_problem
