@@ -7,15 +7,13 @@ from typing import Annotated
 import typer
 
 from ratt_opt.certificates.verifier.work import SECONDS
+from ratt_opt.cli.exit_codes import UPPER_ONLY
 from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import printable
 from ratt_opt.progress import Step
 
 __all__ = ["audit", "verify"]
-
-UPPER_ONLY = 3
-"""Exit code of ``verify`` where the lower end is stated, not proved."""
 
 SUMMARY = ("complete", "quick", "counts", "seconds")
 """What ``audit --json`` repeats of ``audit.json``."""

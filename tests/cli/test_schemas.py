@@ -16,9 +16,9 @@ from ratt_opt import Problem, TableFunction, bound
 from ratt_opt.audit import ledger
 from ratt_opt.audit.ledger import all_entries
 from ratt_opt.certificates.lower import ENUMERATED
-from ratt_opt.cli import FAULT, run
+from ratt_opt.cli import run
+from ratt_opt.cli.exit_codes import FAULT, UPPER_ONLY
 from ratt_opt.cli.program import ERRORS, app
-from ratt_opt.cli.proofs import UPPER_ONLY
 from ratt_opt.main_job import bound as main_job
 from ratt_opt.report.schemas import OUTPUTS, output_schema
 
