@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["BLINDED", "CUT", "INK", "LOST", "PLANNERS", "SURVIVING", "TARGET", "Look", "look_of"]
+__all__ = ["BLINDED", "CUT", "INK", "LOST", "PLANNERS", "SURVIVING", "TARGET", "VERDICTS", "Look", "look_of"]
 
 LEAST_COLOUR_DISTANCE = 20.0
 """About nine times what is just noticeable."""
@@ -34,6 +34,13 @@ PLANNERS = {
     "nonrobust": Look("#e69f00", "^", "++"),
 }
 """RATT blue and Greedy green as in the paper; the lightness of each is its own."""
+VERDICTS = {
+    "proved": Look("#0b5394", "o", ""),
+    "refuted": Look("#e0451b", "X", "///"),
+    "no violation found": Look("#f3c6dd", "s", "..."),
+    "not decidable here": Look("#1c1c1c", "P", "oo"),
+}
+"""What the audit's entries end with."""
 SURVIVING, LOST, BLINDED, TARGET = "#0b5394", "#b4b9be", "#e0451b", "#33200a"
 CUT = BLINDED
 INK = "#222222"

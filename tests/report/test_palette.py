@@ -11,10 +11,11 @@ from tests.report.colour_vision import VISIONS, distance
 
 ON_A_MAP = (palette.SURVIVING, palette.LOST, palette.BLINDED, palette.TARGET)
 OF_PLANNERS = tuple(look.colour for look in palette.PLANNERS.values())
+OF_VERDICTS = tuple(look.colour for look in palette.VERDICTS.values())
 
 
 @pytest.mark.parametrize("vision", VISIONS)
-@pytest.mark.parametrize("colours", [ON_A_MAP, OF_PLANNERS], ids=["map", "planners"])
+@pytest.mark.parametrize("colours", [ON_A_MAP, OF_PLANNERS, OF_VERDICTS], ids=["map", "planners", "verdicts"])
 def test_colours_stay_apart(colours, vision):
     least = palette.LEAST_GREY_DISTANCE if vision == "grey" else palette.LEAST_COLOUR_DISTANCE
     assert min(distance(a, b, vision) for a, b in combinations(colours, 2)) >= least
@@ -27,6 +28,7 @@ def test_the_simulation_knows_what_is_confused():
     assert distance("#ffffff", "#000000", "grey") == pytest.approx(100, abs=0.1)
 
 
-def test_planners_differ_without_colour():
-    looks = palette.PLANNERS.values()
-    assert len({look.marker for look in looks}) == len({look.hatch for look in looks}) == len(palette.PLANNERS)
+@pytest.mark.parametrize("looks", [palette.PLANNERS, palette.VERDICTS], ids=["planners", "verdicts"])
+def test_they_differ_without_colour(looks):
+    shapes = looks.values()
+    assert len({look.marker for look in shapes}) == len({look.hatch for look in shapes}) == len(looks)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.audit.appendix.entry import EntryKind
+from ratt_opt.audit.appendix.printed import printed_line
 from ratt_opt.audit.report.findings import Finding
 
 if TYPE_CHECKING:
@@ -12,17 +13,18 @@ if TYPE_CHECKING:
 
 __all__ = ["chain_lines"]
 
-HEAD = ("line", "states", "as the machine reads the step, smallest size at which it says anything")
+HEAD = ("line", "printed", "in words", "as the machine reads the step, smallest size at which it says anything")
 SAYS_NOTHING = "0 >= 0"
 TEXT = (
     "Each chain is read downwards: a line follows the one above it. u is RATT's plan, u* the optimum, A* a worst "
     "attack, V1, V2, ... the groups, b their baits and g their greedy robots; in the last column b1, g1, ... are "
     "RATT's elements of these robots, o(...) the optimum's."
 )
+SUMMED = "Lines that sum up"
 
 
 def chain_lines(document: LedgerDocument) -> tuple[Finding, ...]:
-    """One table a chain with two lines or more, in the order of the ledger; the first says how to read them."""
+    """One table a chain with two lines or more, then one of the lines that stand alone; the first says how to read."""
     chains: dict[str, dict[str, EntryRecord]] = {}
     written: set[str] = set()
     for record in document["entries"]:
@@ -30,12 +32,20 @@ def chain_lines(document: LedgerDocument) -> tuple[Finding, ...]:
             chains.setdefault(record["chain"], {}).setdefault(record["label"], record)
         elif record["kind"] == EntryKind.AS_WRITTEN:
             written.add(record["label"])
-    found: list[Finding] = []
-    for chain, lines in chains.items():
-        rows = [(label, _states(record, equal=label in written), _read(record)) for label, record in lines.items()]
-        if len(rows) > 1:
-            found.append(Finding(heading=f"Chain {chain}", sentences=() if found else (TEXT,), table=(HEAD, *rows)))
-    return tuple(found)
+    long = {f"Chain {name}": lines for name, lines in chains.items() if len(lines) > 1}
+    alone = {label: record for lines in chains.values() if len(lines) == 1 for label, record in lines.items()}
+    tables = long | ({SUMMED: alone} if alone else {})
+    return tuple(
+        Finding(heading=heading, sentences=() if place else (TEXT,), table=(HEAD, *_rows(lines, written)))
+        for place, (heading, lines) in enumerate(tables.items())
+    )
+
+
+def _rows(lines: dict[str, EntryRecord], written: set[str]) -> list[tuple[str, ...]]:
+    return [
+        (label, printed_line(label) or "-", _states(record, equal=label in written), _read(record))
+        for label, record in lines.items()
+    ]
 
 
 def _states(record: EntryRecord, *, equal: bool) -> str:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
+from latex2mathml.converter import convert
+
+from ratt_opt.audit.appendix.printed import Formula
 from ratt_opt.audit.report.chains import chain_lines
 from ratt_opt.audit.report.findings import findings, title
 
@@ -29,8 +32,8 @@ table{border-collapse:collapse;margin:1rem 0}
 td,th{border:1px solid #bbb;padding:.2rem .6rem;text-align:left;vertical-align:top}
 .wide{overflow-x:auto}
 details{border-left:.35rem solid #999;margin:.4rem 0;padding:.2rem .8rem}
-details.proved{border-color:#0072b2}details.refuted{border-color:#d55e00}
-details.no-violation-found{border-color:#e69f00}
+details.proved{border-color:#0b5394}details.refuted{border-color:#e0451b}
+details.no-violation-found{border-color:#f3c6dd}details.not-decidable-here{border-color:#1c1c1c}
 summary{cursor:pointer}pre{white-space:pre-wrap;overflow-wrap:anywhere;background:#f4f4f4;padding:.6rem}
 """
 
@@ -70,10 +73,14 @@ def _verdicts(document: LedgerDocument) -> str:
 
 def _table(rows: Sequence[Sequence[str]]) -> str:
     head, *rest = rows
-    cells = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest]
+    cells = ["".join(f"<td>{_cell(cell)}</td>" for cell in row) for row in rest]
     body = "".join(f"<tr>{row}</tr>" for row in cells)
     titles = "".join(f'<th scope="col">{escape(name)}</th>' for name in head)
     return f'<div class="wide"><table><tr>{titles}</tr>{body}</table></div>'
+
+
+def _cell(text: str) -> str:
+    return convert(text) if isinstance(text, Formula) else escape(text)
 
 
 def _entry(record: EntryRecord) -> str:
@@ -145,6 +152,8 @@ def _row(cells: list[str]) -> str:
 
 
 def _escape(text: str) -> str:
+    if isinstance(text, Formula):
+        return f"${text}$"
     for symbol in "\\|*_<>[]":
         text = text.replace(symbol, f"\\{symbol}")
     return text

@@ -10,6 +10,7 @@ from ratt_opt.audit import ledger
 from ratt_opt.audit.appendix.entry import EntryKind
 from ratt_opt.audit.ledger import all_entries, run_audit
 from ratt_opt.audit.report.chains import chain_lines
+from ratt_opt.report.palette import VERDICTS
 
 CHAIN = "nd_p1d1v1"
 
@@ -29,15 +30,17 @@ def test_a_chain_lists_each_line_once_with_the_printed_relation(audited):
     head, *rows = chain.table
     assert chain.heading == f"Chain {CHAIN}"
     assert [row[0] for row in rows] == [f"{CHAIN}_{k}" for k in range(1, 9)]
-    assert rows[0][1] == "= f(u) on V1b\\A* and V1g\\A*"
-    assert rows[6][1] == ">= (1-c)^3 f(u* on V1g)"
-    assert rows[6][2].endswith(">= 0")
-    assert len(head) == 3
+    assert rows[0][2] == "= f(u) on V1b\\A* and V1g\\A*"
+    assert rows[6][2] == ">= (1-c)^3 f(u* on V1g)"
+    assert rows[6][3].endswith(">= 0")
+    assert len(head) == 4
 
 
 def test_both_pages_show_them(audited):
     html = (audited[1] / "audit.html").read_text(encoding="utf-8")
     markdown = (audited[1] / "audit.md").read_text(encoding="utf-8")
+    assert html.count("<math") == 8
+    assert r"$\geq (1-c_\Phi)^3 \Phi(\mathbf{u}^\star_{\mathcal{V}_1^g})$" in markdown
     for text in ("(1-c)^3 f(u* on V1g)", f"Chain {CHAIN}"):
         assert text in html
         assert text in markdown.replace("\\", "")
@@ -49,3 +52,9 @@ def test_cells_do_not_break_words(audited):
     cells = "".join(rule for rule in style.splitlines() if rule.startswith(("td", "th")))
     assert not re.search("overflow-wrap|word-break|hyphens", cells)
     assert html.count("<table>") == html.count('<div class="wide"><table>')
+
+
+def test_verdicts_have_the_colours_of_every_figure(audited):
+    html = (audited[1] / "audit.html").read_text(encoding="utf-8")
+    for verdict, look in VERDICTS.items():
+        assert f"details.{verdict.replace(' ', '-')}{{border-color:{look.colour}}}" in html
