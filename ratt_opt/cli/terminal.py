@@ -27,8 +27,8 @@ __all__ = [
 ]
 
 
-NARROWEST = 40
-"""Columns of tables on terminals that have fewer: those break long lines themselves, tables would leave out cells."""
+NARROWEST = 80
+"""Columns of tables on terminals that have fewer: those break lines themselves, where tables would cut numbers short."""
 
 
 class WorkInterrupted(Exception):  # noqa: N818  (not an error: what is finished is kept)
