@@ -28,7 +28,7 @@ __all__ = [
 
 
 NARROWEST = 80
-"""Columns of tables on terminals that have fewer: those break lines themselves, where tables would cut numbers short."""
+"""Columns of tables on terminals that have fewer: those break lines themselves; a table would cut numbers short."""
 
 
 class WorkInterrupted(Exception):  # noqa: N818  (not an error: what is finished is kept)
