@@ -226,8 +226,9 @@ class OutputTraceObjective(TraceObjective):
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted traces of the outputs' covariances."""
-        covariance = np.linalg.inv(posterior_information)
-        return np.asarray(self.weights * np.einsum("mij,...mij->...m", self._square, covariance))
+        from ratt_opt.setfunctions.criteria.compiled_outputs import output_traces  # compiles
+
+        return np.asarray(self.weights * output_traces(posterior_information, self.output))
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1} W_j Lambda_j^{-1}``: (..., M, d, d)."""
