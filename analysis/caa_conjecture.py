@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.tables import print_table, write_csv
+from ratt_opt._rounding import up
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
@@ -147,9 +148,10 @@ def conclusion(title: str, runs: list[dict[str, object]]) -> str:
     for name in used(runs):
         shares = share(runs, name)
         shares = shares[~np.isnan(shares)]
-        hits, mean, worst = int((shares <= 1 + CLOSE).sum()), shares.mean(), shares.max()
+        hits, mean, worst = int((shares <= 1 + CLOSE).sum()), shares.mean(), float(shares.max())
         label = "minimising the largest group" if name == "even_split" else name.replace("_", "-")
-        said.append(f"{label} is the worst attack in {hits}/{len(shares)} (leaves {mean:.3f} x, at most {worst:.3f} x)")
+        most = up(worst, 4)
+        said.append(f"{label} is the worst attack in {hits}/{len(shares)} (leaves {mean:.3f} x, at most {most} x)")
     return f"{title}: " + "; ".join(said)
 
 

@@ -138,7 +138,7 @@ def _tried(environment: Environment, python: str, wheel: Path, place: Path, test
         bounds = lower_bounds() if environment.oldest else []
         _run([inside, "-m", "pip", "install", "--quiet", f"{wheel}[test]", *bounds], place)
         versions = _run([inside, "-m", "pip", "list", "--format", "freeze"], place)
-        said = _run([inside, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests], place)
+        said = _run([inside, "-m", "pytest", "-p", "no:cacheprovider", *tests], place)
     except subprocess.CalledProcessError as error:
         lines = (error.stdout + error.stderr).strip().splitlines()
         print("\n".join(lines[-60:]), file=sys.stderr)

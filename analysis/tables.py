@@ -6,6 +6,8 @@ import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ratt_opt._rounding import named_text
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -34,10 +36,14 @@ def append_csv(path: str | Path, row: Mapping[str, object]) -> None:
 
 
 def print_table(title: str, rows: Sequence[Mapping[str, object]]) -> None:
-    """Print the rows with aligned columns, numbers to four significant digits."""
+    """Print the rows with aligned columns, numbers to four significant digits; ends of brackets and gaps outward."""
     print(f"\n{title}")
     names = list(rows[0])
-    cells = [[f"{row[n]:.4g}" if isinstance(row[n], float) else str(row[n]) for n in names] for row in rows]
+    cells = [[_cell(n, row[n]) for n in names] for row in rows]
     widths = [max(len(name), *(len(line[k]) for line in cells)) for k, name in enumerate(names)]
     for line in [names, *cells]:
         print("  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)))
+
+
+def _cell(name: str, value: object) -> str:
+    return named_text(name, value, 4) if isinstance(value, float) else str(value)

@@ -7,10 +7,14 @@ once, in decimal arithmetic, in the direction that is asked for.
 from __future__ import annotations
 
 import math
+import re
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 
-__all__ = ["bracket_text", "down", "gap_text", "up"]
+__all__ = ["bracket_text", "down", "gap_text", "named_text", "relative_gap", "up"]
+
+AT_LEAST, AT_MOST = {"lower", "proved", "share", "guarantee"}, {"upper", "gap"}
+"""Last words of the names of numbers that are to be read so."""
 
 
 def down(value: float | Fraction, digits: int) -> str:
@@ -32,9 +36,31 @@ def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
 
 def gap_text(lower: float, upper: float, digits: int) -> str:
     """``(upper - lower) / upper``, rounded up once; ``0`` where ``upper`` is 0."""
+    return up(_gap(lower, upper), digits)
+
+
+def relative_gap(lower: float, upper: float) -> float:
+    """``(upper - lower) / upper`` as the smallest float that is no smaller; 0 where ``upper`` is 0."""
+    exact = _gap(lower, upper)
+    try:
+        near = float(exact)
+    except OverflowError:
+        return math.inf
+    return near if near >= exact else math.nextafter(near, math.inf)
+
+
+def named_text(name: str, value: float, digits: int) -> str:
+    """A number of a table: by its name's last word an end of a bracket, gap or share, outward; else to the nearest."""
+    last = re.split(r"[^a-z]+", name)[-1]
+    if last in AT_LEAST:
+        return down(value, digits)
+    return up(value, digits) if last in AT_MOST else f"{value:.{digits}g}"
+
+
+def _gap(lower: float, upper: float) -> Fraction | float:
     if not (math.isfinite(lower) and math.isfinite(upper)):
-        return str(math.inf)
-    return up((Fraction(upper) - Fraction(lower)) / Fraction(upper) if upper > 0 else 0.0, digits)
+        return math.inf
+    return (Fraction(upper) - Fraction(lower)) / Fraction(upper) if upper > 0 else 0.0
 
 
 def _text(value: float | Fraction, digits: int, rounding: str) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt._rounding import down, up
+from ratt_opt._rounding import named_text
 
 __all__ = ["ByValue", "Shown", "plain", "shown"]
 
@@ -107,6 +107,4 @@ def _brief(value: Any, name: str) -> str:
         return (", ".join("-".join(map(str, x)) if isinstance(x, list) else str(x) for x in value[:MOST_SHOWN])) + more
     if not isinstance(value, float):
         return "none" if value is None else str(value)
-    if name.endswith("lower"):
-        return down(value, 10)
-    return up(value, 10) if name.endswith(("upper", "gap")) else f"{value:.10g}"
+    return named_text(name, value, 10)

@@ -6,7 +6,6 @@ terminal, in worker processes and in threads other than the main one; nothing st
 
 from __future__ import annotations
 
-import multiprocessing
 import shutil
 import sys
 import threading
@@ -110,7 +109,9 @@ def _somebody_looks() -> bool:
             return False
     except ValueError:  # closed
         return False
-    return threading.current_thread() is threading.main_thread() and multiprocessing.parent_process() is None
+    from multiprocessing import parent_process  # takes 10 ms, where somebody looks
+
+    return threading.current_thread() is threading.main_thread() and parent_process() is None
 
 
 _HEARD: list[object] = []

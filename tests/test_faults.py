@@ -7,13 +7,16 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from flint import arb
 
+import ratt_opt as ro
 from analysis.faults import __main__ as command_line
 from analysis.faults import campaign as faults
 from analysis.faults import inside
 from analysis.faults.kinds import KINDS
 from analysis.faults.processes import PROCESSES
 from analysis.faults.results import check_results, earlier_results
+from analysis.faults.truth import truth
 from ratt_opt._files import MIXED
 
 if TYPE_CHECKING:
@@ -82,6 +85,29 @@ def test_the_campaign_sees_a_false_certificate(campaign: faults.Campaign, monkey
     monkeypatch.setattr(inside, "damaged", lambda data, _: data)
     campaign.run_case(0, _only("certificate"))
     assert "false upper end" in campaign.faults.pop(0)
+
+
+@pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])
+def test_the_truth_is_what_the_library_finds(objective: str, campaign: faults.Campaign, tmp_path: Path) -> None:
+    document = json.loads(campaign.files[f"{objective}.json"])
+    problem = ro.load_scenario(campaign.put(tmp_path, "scenario.json")).problem(objective)
+    best, attack = ro.exhaustive_optimum(problem), ro.worst_case_attack(problem, [0, 3, 5])
+    lower, upper = truth(document, [0, 3, 5])
+    assert float(lower) == pytest.approx(attack.lower, rel=1e-9)
+    assert float(upper) == pytest.approx(best.upper, rel=1e-9)
+    safe = {"protected_robots": [0, 1], "protected_links": [[0, 2], [1, 2]]}
+    safer = ro.Problem(problem.objective, problem.robot, None, 1, 1, {0, 1}, {(0, 2), (1, 2)})
+    lower, _ = truth({"problem": document["problem"] | safe}, [0, 3, 5])
+    assert float(lower) == pytest.approx(ro.worst_case_attack(safer, [0, 3, 5]).lower, rel=1e-9)
+
+
+def test_the_truth_holds_where_the_library_refuses_to_search(campaign: faults.Campaign) -> None:
+    """A smallest float for a weight loses nothing: all values are that many times as large."""
+    document = json.loads(campaign.files["trace.json"])
+    usual = truth(document, [0, 3, 5])
+    document["problem"]["weights"] = [5e-324, 5e-324]
+    tiny = truth(document, [0, 3, 5])
+    assert all(small > 0 and small.overlaps(value * arb(5e-324)) for small, value in zip(tiny, usual, strict=True))
 
 
 def test_the_campaign_sees_files_of_two_runs(campaign: faults.Campaign, tmp_path: Path) -> None:

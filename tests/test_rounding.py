@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from analysis.tables import print_table
 from ratt_opt import Attack
-from ratt_opt._rounding import bracket_text, down, gap_text, up
+from ratt_opt._rounding import bracket_text, down, gap_text, relative_gap, up
 from ratt_opt.attackers.task import AttackResult
 from ratt_opt.certificates.verifier.verified import Verified
 from ratt_opt.report.tables import attack_tables, share_text
@@ -62,6 +63,7 @@ def test_a_printed_gap_is_no_smaller_than_the_gap_and_a_share_no_larger(
 ) -> None:
     lower = upper * share
     exact = 1 - Fraction(lower) / Fraction(upper)
+    assert exact <= Fraction(relative_gap(lower, upper)) <= exact * (1 + Fraction(2) ** -52) + Fraction(5e-324)
     assert exact <= Fraction(gap_text(lower, upper, digits)) <= exact * (1 + Fraction(10) ** (1 - digits))
     shown = share_text(lower, upper)
     least = 1 - Fraction("1e-9") if shown == "optimal to 1e-9" else Fraction(shown.removeprefix("at least "))
@@ -93,6 +95,20 @@ def test_tables_and_representations_use_it(lower: float, width: float) -> None:
     low, high = (Fraction(x) for x in NUMBER.findall(found)[:2])
     assert low <= Fraction(lower)
     assert high >= Fraction(upper)
+
+
+def test_tables_of_studies_and_benchmarks_use_it(capsys: pytest.CaptureFixture[str]) -> None:
+    """Ends of brackets, gaps and shares by the names of their columns; other numbers to the nearest."""
+    value = 0.123449  # to four digits 0.1234; up 0.1235
+    names = ["conic_lower", "certified share", "conic_upper", "worst_gap", "proved gap", "seconds", "lower_s"]
+    print_table("", [dict.fromkeys(names, value), dict.fromkeys(names, 0.123551)])
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()[3:]]
+    assert rows == [
+        ["0.1234", "0.1234", "0.1235", "0.1235", "0.1235", "0.1234", "0.1234"],
+        ["0.1235", "0.1235", "0.1236", "0.1236", "0.1236", "0.1236", "0.1236"],
+    ]
+    assert relative_gap(-1e308, 5e-324) == float("inf")
+    assert relative_gap(0.0, 0.0) == 0.0
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(1.0, 1.0 + 2**-52), (0.1, 0.3), (0.0, 0.0), (5e-324, 1e-323)])

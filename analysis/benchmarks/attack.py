@@ -20,6 +20,7 @@ import numpy as np
 
 from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
+from ratt_opt._rounding import relative_gap
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
@@ -88,7 +89,7 @@ def exact_attack(
     result = worst_case_attack(problem, plan, time_limit=seconds)
     spent = time.process_time() - began
     case = {"robots": n_robots, "alpha_s": alpha_s, "alpha_c": alpha_c, "objective": objective, "seed": seed}
-    gap = (result.upper - result.lower) / result.upper
+    gap = relative_gap(result.lower, result.upper)
     answer = {"lower": result.lower, "upper": result.upper, "gap": gap, "stop": result.stop.value}
     return case | answer | {"nodes": result.nodes, "seconds": spent}
 
@@ -175,7 +176,7 @@ def sparse_attacks(seeds: int, seconds: float) -> list[dict[str, object]]:
                 began = time.process_time()
                 exact = worst_case_attack(problem, plan, time_limit=seconds)
                 times.append(time.process_time() - began)
-                gaps.append((exact.upper - exact.lower) / exact.upper)
+                gaps.append(relative_gap(exact.lower, exact.upper))
                 plain_gaps.append(_gap_by_sizes(problem, plan))
                 greedy.append(greedy_attack(problem, plan).upper / exact.upper)
             row: dict[str, object] = {"robots": n_robots, "degree": degree, "alpha_s": alpha_s, "alpha_c": alpha_c}
@@ -191,7 +192,7 @@ def _gap_by_sizes(problem: Problem, plan: np.ndarray) -> float:
     bracket = AttackBracket(first.attack, first.upper, 0.0)
     task = AttackTask(problem, PlanValues(problem, plan), bracket, Budget())
     forced_group_bound(task, PlanarTeam.of(problem.objective, plan))
-    return (bracket.upper - bracket.lower) / bracket.upper
+    return relative_gap(bracket.lower, bracket.upper)
 
 
 def largest_groups(seconds: float) -> list[dict[str, object]]:

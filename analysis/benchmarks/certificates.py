@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from analysis.benchmarks.attack import SETTINGS, processor_seconds
 from analysis.tables import print_table
+from ratt_opt._rounding import relative_gap
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.write import certify
 from ratt_opt.scenario.generator import random_scenario
@@ -39,7 +40,7 @@ def measure(problem: Problem, seconds: float, path: Path) -> dict[str, float]:
         "verify [s]": verify,
         "verify / search": verify / search,
         "size [kB]": path.stat().st_size / KILOBYTE,
-        "proved gap": (verified[0].upper - verified[0].lower) / verified[0].upper,
+        "proved gap": relative_gap(verified[0].lower, verified[0].upper),
         "lower end unproved": float(not verified[0].lower_proved),
     }
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from analysis.tables import print_table
 from ratt_opt import random_scenario, ratt, solve_maxmin, worst_case_attack
+from ratt_opt._rounding import relative_gap
 
 if TYPE_CHECKING:
     from ratt_opt import Problem
@@ -42,10 +43,10 @@ def measure(robots: int, objective: str, seconds: float) -> dict[str, Any]:
     if seconds:
         began = time.monotonic()
         attack = worst_case_attack(problem, plan.elements, time_limit=seconds)
-        row |= {"attack_s": time.monotonic() - began, "attack_gap": (attack.upper - attack.lower) / attack.upper}
+        row |= {"attack_s": time.monotonic() - began, "attack_gap": relative_gap(attack.lower, attack.upper)}
         began = time.monotonic()
         found = solve_maxmin(problem, gap=1e-4, time_limit=seconds)
-        row |= {"maxmin_s": time.monotonic() - began, "maxmin_gap": (found.upper - found.lower) / found.upper}
+        row |= {"maxmin_s": time.monotonic() - began, "maxmin_gap": relative_gap(found.lower, found.upper)}
     return row | {"memory_GiB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20}
 
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from analysis.benchmarks.conic_model import solve_conic_model
 from analysis.tables import print_table
+from ratt_opt._rounding import relative_gap
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
@@ -61,7 +62,7 @@ def by_team_size(robots: int, objectives: Iterable[str], seeds: int, seconds: fl
                     problem = paper_problem(robots, n_targets, (alpha_s, alpha_c), seed, objective)
                     result, spent = timed(lambda p=problem, g=gap: solve_maxmin(p, gap=g, time_limit=seconds))  # type: ignore[misc]
                     times.append(spent)
-                    left.append((result.upper - result.lower) / abs(result.upper))
+                    left.append(relative_gap(result.lower, result.upper))
                     nodes.append(result.nodes)
                 rows.append(
                     {
@@ -100,8 +101,8 @@ def against_baselines(cap: float) -> list[dict[str, object]]:
                 "alpha_s": alpha_s,
                 "alpha_c": alpha_c,
                 "ours_s": ours,
-                "gap": (result.upper - result.lower) / result.upper,
-                "value": result.lower,
+                "gap": relative_gap(result.lower, result.upper),
+                "lower": result.lower,
                 "conic_s": theirs,
                 "conic_status": conic.status,
                 "conic_lower": conic.lower,

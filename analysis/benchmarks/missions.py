@@ -14,6 +14,7 @@ import numpy as np
 
 from analysis.tables import print_table
 from ratt_opt import MaxMinPlanner, MissionModel, random_scenario, ratt, run_mission, solve_maxmin
+from ratt_opt._rounding import relative_gap
 from ratt_opt.missions.beam import best_alone, solve_by_columns
 from ratt_opt.missions.planning import offered_sequences
 from ratt_opt.missions.players.attack_models import RenewedAttacks
@@ -82,12 +83,12 @@ def ahead() -> list[dict[str, object]]:
             whole = first_step_of_all(world)
             start = best_alone(whole.objective.singletons(), whole.robot, BEAM)
             found = solve_by_columns(whole, start, gap=0.01, time_limit=60.0)
-        gap = (found.upper - found.lower) / found.upper
-        rows.append(_row(label, horizon, "maxmin to 1 %", perf_counter() - began, f"{gap:.2%}"))
+        spent = perf_counter() - began
+        rows.append(_row(label, horizon, "maxmin to 1 %", spent, relative_gap(found.lower, found.upper)))
     return rows
 
 
-def _row(team: str, horizon: int, planner: str, seconds: float, gap: str = "") -> dict[str, object]:
+def _row(team: str, horizon: int, planner: str, seconds: float, gap: float | str = "") -> dict[str, object]:
     return {"team": team, "H": horizon, "planner": planner, "seconds": seconds, "gap": gap}
 
 

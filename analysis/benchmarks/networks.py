@@ -18,6 +18,7 @@ import numpy as np
 
 from analysis.benchmarks.earlier_edition import earlier_attack
 from analysis.tables import append_csv, print_table
+from ratt_opt._rounding import relative_gap
 from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.team import Links, Team
 from ratt_opt.attackers.exact import worst_case_attack
@@ -117,7 +118,7 @@ def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[s
     exact = worst_case_attack(problem, plan, time_limit=options.seconds)
     spent, worked = time.perf_counter() - began, time.process_time() - worked
     row: dict[str, object] = {"alpha_s": problem.alpha_s, "alpha_c": problem.alpha_c}
-    row |= {"lower": exact.lower, "upper": exact.upper, "gap": (exact.upper - exact.lower) / exact.upper}
+    row |= {"lower": exact.lower, "upper": exact.upper, "gap": relative_gap(exact.lower, exact.upper)}
     row |= {"stop": exact.stop.value, "nodes": exact.nodes, "seconds": spent, "processor_seconds": worked}
     plain = options.seconds if options.plain_seconds is None else options.plain_seconds
     if plain > 0:

@@ -28,6 +28,7 @@ from ratt_opt import (
     random_scenario,
     total_curvature,
 )
+from ratt_opt._rounding import down, up
 from ratt_opt.setfunctions.information import InformationObjective
 
 SEEDS = range(5)
@@ -98,7 +99,8 @@ def bracket(robots: int, targets: int, kind: str, seed: int, *, stretched: bool,
     busy, wall = time.process_time() - busy, time.perf_counter() - began
     ratio = (1 - found.lower) / (1 - found.upper) if found.upper < 1 else np.inf
     print(f"{robots:3} {targets:3} {'anisotropic' if stretched else 'isotropic':>11} {kind:>9} {seed:4} ", end="")
-    print(f"{found.lower:10.6f} {found.upper:10.6f} {ratio:7.4f} {busy:7.2f} {wall:7.2f} {found.nodes:6}", flush=True)
+    ends = f"{down(found.lower, 6):>10} {up(found.upper, 6):>10} {up(ratio, 5):>7}"
+    print(f"{ends} {busy:7.2f} {wall:7.2f} {found.nodes:6}", flush=True)
 
 
 def anisotropic(f: InformationObjective, seed: int) -> InformationObjective:

@@ -10,6 +10,7 @@ from analysis.studies import claims
 from analysis.studies.claims import Claim
 from analysis.studies.statistics import Verdict, select
 from analysis.studies.store import read_table
+from ratt_opt._rounding import down
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -98,7 +99,7 @@ def _guarantee_line(rows: Sequence[Mapping[str, str]], objective: str) -> str:
     # The smallest ratio was computed for a curvature rounded up, so it alone may fall below what is proved of it.
     ordered = (shares["theorem1"] <= shares["pattern_free"]).all() and (shares["ratio"] <= shares["certified"]).all()
     verdict = Verdict.CONFIRMED if ordered else Verdict.CONTRADICTED
-    means = ", ".join(f"{name.replace('_', '-')} {values.mean():.3g}" for name, values in shares.items())
+    means = ", ".join(f"{name.replace('_', '-')} {down(float(values.mean()), 3)}" for name, values in shares.items())
     claim = f"{objective}: no guarantee exceeds the ratio certified on the instance"
     result = f"mean share of the optimum: {means}; {len(kept)} instances"
     return f"| guarantees | `analysis.extended.guarantees` | {claim} | {result} | {verdict.value} (every instance) |"

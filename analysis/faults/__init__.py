@@ -9,6 +9,6 @@ that should not be, files of two runs without a mark, a row lost or repeated. Th
 1 when there is a fault.
 
 Open ``campaign.py`` first: how a case is run and judged. ``inside.py`` and ``processes.py`` have the kinds of cases,
-``damage.py`` how files are damaged and what a stated problem is truly worth, ``results.py`` what must hold of a folder
-of results, ``__main__.py`` the command.
+``damage.py`` how files are damaged, ``truth.py`` what a stated problem is truly worth, ``results.py`` what must hold of
+a folder of results, ``__main__.py`` the command.
 """

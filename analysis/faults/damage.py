@@ -1,17 +1,14 @@
-"""Damaged files and odd words, and the truth about what a certificate states."""
+"""Damaged files and odd words."""
 
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import networkx as nx
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
-import ratt_opt as ro
-from ratt_opt.setfunctions.criteria.registry import criterion_called
-
-__all__ = ["ODD", "damaged", "truth"]
+__all__ = ["ODD", "damaged"]
 
 ODD = (
     "",
@@ -78,24 +75,3 @@ def _replace_one(document: Any, rng: np.random.Generator) -> None:
         else:
             document[key] = VALUES[int(rng.integers(len(VALUES)))]
         return
-
-
-def truth(document: Any, elements: list[int]) -> tuple[float, float]:
-    """The plan's worst case and the optimum of the problem that a certificate states, by brute force."""
-    record = document["problem"]
-    d = record["dimension"]
-
-    def full(flat: list[float]) -> Any:
-        matrix = np.zeros((d, d))
-        matrix[np.tril_indices(d)] = flat
-        return matrix + np.tril(matrix, -1).T
-
-    graph: nx.Graph = nx.Graph()
-    graph.add_nodes_from(range(max(record["owners"]) + 1))
-    graph.add_edges_from(record["links"])
-    information = np.array([[full(x) for x in row] for row in record["information"]])
-    prior = np.array([full(x) for x in record["prior"]])
-    objective = criterion_called(record["objective"])(prior, information, record["weights"])
-    safe = frozenset(record["protected_robots"]), frozenset((i, j) for i, j in record["protected_links"])
-    problem = ro.Problem(objective, record["owners"], graph, record["alpha_s"], record["alpha_c"], *safe)
-    return ro.worst_case_attack(problem, elements).lower, ro.exhaustive_optimum(problem).upper

@@ -11,10 +11,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from flint import arb
+
 import ratt_opt as ro
 from analysis.faults.campaign import LONGEST, STUDY, Campaign, command, hang
-from analysis.faults.damage import ODD, damaged, truth
+from analysis.faults.damage import ODD, damaged
 from analysis.faults.results import check_results, earlier_results
+from analysis.faults.truth import truth
 from analysis.studies.store import open_journal
 from ratt_opt.cli import run
 
@@ -35,9 +38,8 @@ def _verify(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
     if code in {0, 3}:
         found = json.loads(shown)
         lower, upper = truth(json.loads(path.read_bytes()), found["elements"])
-        slack = 1e-9 * max(1.0, abs(upper))
-        assert upper <= found["upper"] + slack, f"false upper end: {upper} above {found['upper']}"
-        assert code == 3 or lower >= found["lower"] - slack, f"false lower end: {lower} below {found['lower']}"
+        assert not upper > arb(found["upper"]), f"false upper end: {upper.str(20)} above {found['upper']}"
+        assert code == 3 or not lower < arb(found["lower"]), f"false lower end: {lower.str(20)} below {found['lower']}"
     return _said(code)
 
 

@@ -3,15 +3,15 @@
 Open ``program.py`` first: the list of commands, exit codes, errors in one line. A command stands with its kin:
 ``planning.py`` (demo, bound), ``scenarios.py`` (new, schema), ``attacking.py`` (attack), ``tracking.py`` (track),
 ``proofs.py`` (verify, audit). ``options.py`` has the options that several commands share, ``terminal.py`` where text
-goes; ``interrupts.py`` and ``faults.py`` are the last line of defence.
+goes, ``exit_codes.py`` how a command ends; ``interrupts.py`` and ``faults.py`` are the last line of defence.
 """
 
 import os
 import sys
 
-__all__ = ["FAULT", "INTERRUPTED", "main", "run"]
+from ratt_opt.cli.exit_codes import FAULT, INTERRUPTED
 
-FAULT, INTERRUPTED = 70, 130
+__all__ = ["main", "run"]
 
 
 def main() -> None:

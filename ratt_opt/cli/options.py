@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.setfunctions.criteria.names import CLASSES
 
 __all__ = ["GAP", "TIME_LIMIT", "CertificateFlag", "InputFile", "JsonFlag", "Objective", "ObjectiveOption", "OutFolder"]
 
 if TYPE_CHECKING:
     Objective = str
 else:
-    Objective = Literal[tuple(CRITERIA)]  # the choices that help and refusals list
+    Objective = Literal[tuple(CLASSES)]  # the choices that help and refusals list
 
 TIME_LIMIT = 60.0
 """Seconds for all searches of a command, unless the user says otherwise: as in ``ratt_opt.bound``."""

@@ -12,8 +12,8 @@ from typing import Annotated, Any
 import typer
 
 from ratt_opt._version import __version__
-from ratt_opt.cli import INTERRUPTED
 from ratt_opt.cli.attacking import attack
+from ratt_opt.cli.exit_codes import BAD_INPUT, INTERRUPTED, NO_OUTPUT, REFUTED, UNDECIDED
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
 from ratt_opt.cli.scenarios import new, schema
@@ -23,7 +23,6 @@ from ratt_opt.errors import InputError, ProofError, UndecidedError
 
 __all__ = ["app", "run_program"]
 
-REFUTED, BAD_INPUT, UNDECIDED, NO_OUTPUT = 1, 2, 4, 74
 ERRORS = {
     InputError: BAD_INPUT,
     UndecidedError: UNDECIDED,

@@ -7,15 +7,13 @@ from typing import Annotated
 import typer
 
 from ratt_opt.certificates.verifier.work import SECONDS
+from ratt_opt.cli.exit_codes import UPPER_ONLY
 from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import printable
 from ratt_opt.progress import Step
 
 __all__ = ["audit", "verify"]
-
-UPPER_ONLY = 3
-"""Exit code of ``verify`` where the lower end is stated, not proved."""
 
 SUMMARY = ("complete", "quick", "counts", "seconds")
 """What ``audit --json`` repeats of ``audit.json``."""
@@ -41,10 +39,13 @@ def verify(
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
     proved; 4: neither proved nor refuted within the limits. None of these where the output cannot be written (74).
     """
-    from ratt_opt.certificates.extracted import check_extracted, find_checker
     from ratt_opt.certificates.verifier.verify import verify_certificate
 
-    checker = find_checker() if verified else None
+    checker = None
+    if verified:
+        from ratt_opt.certificates.extracted import check_extracted, find_checker
+
+        checker = find_checker()
     expected = None
     if problem is not None:
         from ratt_opt.certificates.agreement import same_problem

@@ -76,7 +76,7 @@ def new(
 def schema(
     kind: Annotated[Kind, typer.Argument(help="Which input file, or which output.")] = "scenario",
 ) -> None:
-    """Print the JSON Schema of an input file, or of what a command prints with --json."""
+    """Print the JSON Schema of an input file, of a certificate, or of what a command prints with --json."""
     from ratt_opt.scenario.files import scenario_schema
 
     print_json(output_schema(kind) if kind in OUTPUTS else scenario_schema(kind))

@@ -27,6 +27,10 @@ __all__ = [
 ]
 
 
+NARROWEST = 80
+"""Columns of tables on terminals that have fewer: those break lines themselves; a table would cut numbers short."""
+
+
 class WorkInterrupted(Exception):  # noqa: N818  (not an error: what is finished is kept)
     """The user ended a command that kept what was finished; the text says what."""
 
@@ -66,6 +70,7 @@ def print_tables(tables: Iterable[RenderableType]) -> None:
     with _delivered():
         width, no_color = (None, None) if sys.stdout.isatty() else (160, True)
         console = Console(width=width, no_color=no_color, markup=False, emoji=False)
+        console.width = max(console.width, NARROWEST)
         for table in tables:
             console.print(table)
 

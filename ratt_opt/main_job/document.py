@@ -30,7 +30,7 @@ version up to their own, and take a field that an older file lacks as unknown.""
 
 def report_document(report: BoundReport) -> dict[str, Any]:
     """Return what ``report.json`` holds: everything that the tables and figures show, and the input they are about."""
-    problem, optimum = report.problem, report.optimum
+    problem = report.problem
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -50,13 +50,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
         "alpha_cs": report.alpha_cs,
         "ratt": _shared(report, report.ratt),
         "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
-        "optimum": {
-            "lower": _number(optimum.lower),
-            "upper": _number(report.upper),
-            "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
-            "stop": optimum.stop.value,
-            **_shared(report, report.best),
-        },
+        "optimum": {**_bracket(report), **_shared(report, report.best)},
         "interrupted": report.interrupted,
         "certificate": _certificate(report.certificate),
         "certified_ratio": _number(report.certified_ratio),
@@ -122,6 +116,17 @@ def plan_document(plan: PlanAssessment) -> dict[str, Any]:
         "groups": [sorted(group) for group in plan.groups],
         "best_group": sorted(plan.best_group),
         "posterior": None if plan.posterior is None else plan.posterior.tolist(),
+    }
+
+
+def _bracket(report: BoundReport) -> dict[str, Any]:
+    """The ends of the optimum, and why the search for it stopped."""
+    optimum = report.optimum
+    return {
+        "lower": _number(optimum.lower),
+        "upper": _number(report.upper),
+        "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
+        "stop": optimum.stop.value,
     }
 
 

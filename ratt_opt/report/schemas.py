@@ -1,4 +1,7 @@
-"""JSON Schemas of what commands print with ``--json`` and write as JSON; the files stand in ``ratt_opt/schemas``."""
+"""JSON Schemas of what commands print with ``--json`` and write as JSON; the files stand in ``ratt_opt/schemas``.
+
+That of certificates is closed: the verifier reads no other fields. The others may come to hold more.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from typing import Any
 
 __all__ = ["OUTPUTS", "output_schema"]
 
-OUTPUTS = ("report", "attack", "mission", "verification", "new", "audit", "audit-summary")
+OUTPUTS = ("report", "certificate", "attack", "mission", "verification", "new", "audit", "audit-summary")
 """The outputs; a schema's ``format`` names each. The inputs' schemas are made from their records instead."""
 
 

@@ -16,9 +16,9 @@ from ratt_opt import Problem, TableFunction, bound
 from ratt_opt.audit import ledger
 from ratt_opt.audit.ledger import all_entries
 from ratt_opt.certificates.lower import ENUMERATED
-from ratt_opt.cli import FAULT, run
+from ratt_opt.cli import run
+from ratt_opt.cli.exit_codes import FAULT, UPPER_ONLY
 from ratt_opt.cli.program import ERRORS, app
-from ratt_opt.cli.proofs import UPPER_ONLY
 from ratt_opt.main_job import bound as main_job
 from ratt_opt.report.schemas import OUTPUTS, output_schema
 
@@ -59,7 +59,7 @@ def information_file(tmp_path: Path) -> Path:
 
 
 def _inner(schema: Any) -> Iterator[dict[str, Any]]:
-    """Every schema of a named field."""
+    """Every schema of a named field, where it is first named: conditions name fields again."""
     if isinstance(schema, list):
         for item in schema:
             yield from _inner(item)
@@ -67,7 +67,8 @@ def _inner(schema: Any) -> Iterator[dict[str, Any]]:
         properties = schema.get("properties", {})
         yield from properties.values()
         for name, item in schema.items():
-            yield from _inner(list(item.values()) if name in {"properties", "$defs"} else item)
+            if name not in {"if", "then", "else"}:
+                yield from _inner(list(item.values()) if name in {"properties", "$defs"} else item)
 
 
 @pytest.mark.parametrize("name", OUTPUTS)
@@ -110,6 +111,7 @@ def test_reports_of_scenarios(
     _check(printed, "report")
     assert printed == json.loads((tmp_path / "o" / "report.json").read_text())
     assert printed["certificate"]["verified"]
+    _check(json.loads((tmp_path / "o" / "certificate.json").read_text()), "certificate")
     verified = _printed(capsys, "verify", f"{out}/certificate.json")
     _check(verified, "verification")
     assert verified["lower_proved"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from functools import cache
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
@@ -160,8 +161,14 @@ def exact(where: str, value: Any) -> fmpq:
 def packed(where: str, value: Any, d: int) -> fmpq_mat:
     """Return a symmetric matrix from its lower triangle, row by row."""
     flat = [exact(where, x) for x in array(where, value, d * (d + 1) // 2)]
-    place = [(max(i, j), min(i, j)) for i in range(d) for j in range(d)]
-    return fmpq_mat(d, d, [flat[i * (i + 1) // 2 + j] for i, j in place])
+    return fmpq_mat(d, d, [flat[k] for k in _places(d)])
+
+
+@cache
+def _places(d: int) -> list[int]:
+    """Where a lower triangle has each entry of the whole matrix."""
+    pairs = [(max(i, j), min(i, j)) for i in range(d) for j in range(d)]
+    return [i * (i + 1) // 2 + j for i, j in pairs]
 
 
 def rows_of(where: str, value: Any, columns: int) -> fmpq_mat:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ratt_opt._rounding import gap_text, up
+from ratt_opt._rounding import gap_text, relative_gap, up
 
 __all__ = ["Verified"]
 
@@ -38,8 +38,8 @@ class Verified:
 
     @property
     def gap(self) -> float:
-        """``(upper - lower) / upper``; 0 when ``upper`` is 0."""
-        return (self.upper - self.lower) / self.upper if self.upper > 0 else 0.0
+        """``(upper - lower) / upper``, rounded up; 0 when ``upper`` is 0."""
+        return relative_gap(self.lower, self.upper)
 
     def lines(self) -> list[str]:
         """Say in plain text what was proved, for which data, with which arithmetic, and what was not."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
-from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective, TraceObjective
+from ratt_opt.setfunctions.criteria.names import CLASSES
+from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective
 
 if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 __all__ = ["CERTIFIED", "CRITERIA", "criterion_called"]
 
 CRITERIA: dict[str, type[InformationObjective]] = {
-    criterion.name: criterion for criterion in (TraceObjective, LogDetObjective, MaxEigenvalueObjective)
+    name: getattr(import_module(f"ratt_opt.setfunctions.criteria.{name}"), kind) for name, kind in CLASSES.items()
 }
-"""A new criterion is a file beside these and a name in this line."""
+"""By their names, in the order of ``names.py``."""
 
 CERTIFIED: tuple[type[InformationObjective], ...] = (*CRITERIA.values(), OutputTraceObjective)
 """Criteria whose tangents the verifier knows; subclasses of them may have another formula."""
