@@ -54,6 +54,8 @@ class Frontier:
         self.rule = rule
         self.current: TreeNode | None = None
         """The node in work, which is part of the bound."""
+        self.lent: list[TreeNode] = []
+        """Open nodes that others search, which are part of the bound too."""
         self._queue: list[tuple[float, int, TreeNode]] = []
         self._pushed = 0
         self._closed: list[TreeNode] = []
@@ -67,6 +69,7 @@ class Frontier:
         still = [-self._queue[0][0]] if self._queue else []
         if self.current is not None:
             still.append(self.current.bound)
+        still.extend(node.bound for node in self.lent)
         return max(self._finished, self._lowest, *still)
 
     @property
@@ -84,6 +87,24 @@ class Frontier:
         self.current = node = self._queue[0][2]  # before it leaves the queue: an interrupt must not lose it
         heapq.heappop(self._queue)
         return node
+
+    def lend(self, most: int) -> list[TreeNode]:
+        """Take so many open nodes of largest bound out of the queue that do not close, for others to search."""
+        nodes: list[TreeNode] = []
+        while len(nodes) < most and not self.is_closed:
+            node = self._queue[0][2]
+            self.lent.append(node)  # before it leaves the queue: an interrupt must not lose it
+            heapq.heappop(self._queue)
+            nodes.append(node)
+        return nodes
+
+    def take_back(self, nodes: list[TreeNode]) -> None:
+        """End the lending of nodes that are accounted for: divided, closed or queued again."""
+        self.lent = [node for node in self.lent if not any(node is other for other in nodes)]
+
+    def __len__(self) -> int:
+        """How many nodes are queued."""
+        return len(self._queue)
 
     def close(self, node: TreeNode) -> None:
         """Finish a node whose bound closes it."""
