@@ -140,9 +140,7 @@ def bound(
         robust = _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
         baselines = _kept(budget, lambda: tuple(_baselines(problem, budget)))
     with steps("the best possible plan"):
-        search = partial(
-            solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers
-        )
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers)
         optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
         found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
         known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)

@@ -52,6 +52,10 @@ class Frontier:
 
     def __init__(self, rule: ClosingRule) -> None:
         self.rule = rule
+        self.empty()
+
+    def empty(self) -> None:
+        """Forget all nodes."""
         self.current: TreeNode | None = None
         """The node in work, which is part of the bound."""
         self.lent: list[TreeNode] = []

@@ -25,7 +25,7 @@ def hang_below(search: BranchAndBound, node: TreeNode, proof: UpperProof) -> Non
     """Continue the tree of ``search`` below ``node`` by a proof; its open leaves are queued, the others closed."""
     outcomes = [search.pool.add(attack) for attack in proof.attacks]
     group = {members: g for g, members in enumerate(search.pool.groups)}
-    cuts = [search.cuts.tangent(outcomes[c.attack], group[c.group], c.point, c.target) for c in proof.cuts]
+    cuts = [search.cuts.copied(outcomes[c.attack], group[c.group], c.point, c.target) for c in proof.cuts]
     places: list[TreeNode | None] = [node]
     for given in proof.tree:
         place = places.pop()

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import ceil, inf
 from time import monotonic
 from typing import TYPE_CHECKING
+from uuid import uuid4
 
 from ratt_opt.solvers.maxmin.search import Turns
 from ratt_opt.solvers.maxmin.subtrees.merge import hang_below
@@ -48,6 +49,7 @@ class SharedSearch:
     def __init__(self, search: BranchAndBound, crew: Crew) -> None:
         self._search, self._crew = search, crew
         self._frontier = search.frontier
+        self._name = uuid4().hex
         self._alone_until = monotonic() + ALONE_SECONDS
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
@@ -102,6 +104,7 @@ class SharedSearch:
         number = {k: position for position, k in enumerate(used)}
         decided = search.winners.decided
         return Work(
+            search=self._name,
             problem=search.task.problem,
             gap=search.rule.gap,
             plan=search.incumbent.candidates.best,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
@@ -42,10 +43,12 @@ class LentNode:
 class Work:
     """Nodes to search, what is known of their problem, and for how long.
 
-    ``plan`` : (N,) the best one known; ``outcomes`` : all that are known; ``cuts`` : those of the nodes' leaves
+    ``search`` : a name of the whole search; ``plan`` : (N,) the best one known; ``outcomes`` : all that are known
+    ``cuts`` : those of the nodes' leaves
     ``nodes_before`` : of the whole search until now; ``max_nodes`` : at which count of the whole to stop
     """
 
+    search: str
     problem: Problem
     gap: float
     plan: IntArray
@@ -68,41 +71,62 @@ class Searched:
 
 
 def search_nodes(work: Work) -> Searched:
-    """Search the nodes until they are closed or time is up."""
-    budget = Budget(work.seconds, work.max_nodes)
-    budget.nodes = work.nodes_before
-    pool = OutcomePool(work.problem)
-    outcomes = [pool.add_origin(outcome) for outcome in work.outcomes]
-    pool.list_all()
-    known = len(pool)
-    incumbent = Incumbent(work.problem, pool, work.plan, budget)
-    incumbent.candidates.meet(work.plan)
-    incumbent.candidates.add(work.plan)
-    task = Task.of(work.problem)
-    search = BranchAndBound(task, incumbent, work.gap, PairOutcomes.of(task), roots=[])
-    _place(work, search, outcomes)
-    with suppress(OutOfBudget):
-        search.run(_OneTurn(budget, incumbent), None)
-    return Searched(
-        proofs=tuple(search.proof(k) for k in range(len(search.roots))),
-        plan=incumbent.candidates.best,
-        outcomes=tuple(pool.origin(outcome) for outcome in range(known, len(pool))),
-        nodes=budget.nodes - work.nodes_before,
-    )
+    """Search the nodes until they are closed or time is up; what is learnt helps with the next work of that search."""
+    if getattr(_MEMORY, "search", None) != work.search:
+        _MEMORY.worker, _MEMORY.search = _Worker(work), work.search
+    found: Searched = _MEMORY.worker.search(work)
+    return found
 
 
-def _place(work: Work, search: BranchAndBound, outcomes: list[int]) -> None:
-    """Put the nodes into the search, each bounded by its own cuts, which the first programs hold."""
-    number = {group: g for g, group in enumerate(search.pool.groups)}
-    cuts = [search.cuts.tangent(outcomes[cut.attack], number[cut.group], cut.point, cut.target) for cut in work.cuts]
-    for k in cuts:
-        search.rounds.use(k)
-    for given in work.roots:
-        winners = {outcomes[outcome]: number[group] for outcome, group in given.winners}
-        leaf = replace(given.leaf, cuts=tuple(cuts[k] for k in given.leaf.cuts))
-        bound = search.cuts.leaf_bound(leaf, given.choices)[0] if leaf.cuts else inf
-        search.roots.append(TreeNode(choices=given.choices, winners=winners, bound=bound, leaf=leaf))
-        search.frontier.push(search.roots[-1])
+_MEMORY = threading.local()
+"""The worker of the last search that this process, or thread, was asked about."""
+
+
+class _Worker:
+    """One search's outcomes, cuts and programs, kept from work to work; nodes are not."""
+
+    def __init__(self, work: Work) -> None:
+        self._budget = Budget(work.seconds)
+        pool = OutcomePool(work.problem)
+        self._incumbent = Incumbent(work.problem, pool, work.plan, self._budget)
+        task = Task.of(work.problem)
+        self._search = BranchAndBound(task, self._incumbent, work.gap, PairOutcomes.of(task), roots=[])
+
+    def search(self, work: Work) -> Searched:
+        """Search the nodes of one piece of work."""
+        search, pool, budget = self._search, self._search.pool, self._budget
+        budget.time_limit, budget.max_nodes = budget.elapsed + work.seconds, work.max_nodes
+        budget.nodes = work.nodes_before
+        outcomes = [pool.add_origin(outcome) for outcome in work.outcomes]
+        pool.list_all()
+        known = len(pool)
+        if self._incumbent.candidates.meet(work.plan):
+            self._incumbent.candidates.add(work.plan)
+        self._place(work, outcomes)
+        with suppress(OutOfBudget):
+            search.run(_OneTurn(budget, self._incumbent), None)
+        return Searched(
+            proofs=tuple(search.proof(k) for k in range(len(search.roots))),
+            plan=self._incumbent.candidates.best,
+            outcomes=tuple(pool.origin(outcome) for outcome in range(known, len(pool))),
+            nodes=budget.nodes - work.nodes_before,
+        )
+
+    def _place(self, work: Work, outcomes: list[int]) -> None:
+        """Put the nodes into the search, each bounded by its own cuts, which the first programs hold."""
+        search = self._search
+        number = {group: g for g, group in enumerate(search.pool.groups)}
+        cuts = [search.cuts.copied(outcomes[c.attack], number[c.group], c.point, c.target) for c in work.cuts]
+        for k in dict.fromkeys(cuts):
+            search.rounds.use_again(k)
+        search.frontier.empty()
+        search.roots.clear()
+        for given in work.roots:
+            winners = {outcomes[outcome]: number[group] for outcome, group in given.winners}
+            leaf = replace(given.leaf, cuts=tuple(cuts[k] for k in given.leaf.cuts))
+            bound = search.cuts.leaf_bound(leaf, given.choices)[0] if leaf.cuts else inf
+            search.roots.append(TreeNode(choices=given.choices, winners=winners, bound=bound, leaf=leaf))
+            search.frontier.push(search.roots[-1])
 
 
 class _OneTurn(Turns):
