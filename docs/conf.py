@@ -20,8 +20,11 @@ html_theme_options = {
     "header_links_before_dropdown": 6,
 }
 html_sidebars = {"**": ["sidebar-nav-bs"]}
+html_static_path = ["_static"]
+html_css_files = ["wide.css"]
 html_copy_source = False
 html_math_renderer = "mathml"  # browsers draw it themselves: nothing is fetched
+myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "off"  # code blocks are executed by the tests, notebooks by the gate; examples here
 autodoc_typehints = "none"  # signatures stay readable; docstrings give shapes and units

@@ -12,10 +12,14 @@ from urllib.parse import unquote, urlparse
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.audit.appendix.printed import printed_lines
 from ratt_opt.report.schemas import OUTPUTS
 from tests.documents import ROOT
 
 NEEDED = ("sphinx", "pydata_sphinx_theme", "myst_nb", "sphinx_gallery", "latex2mathml")
+
+FORMULAS = {"audit": len(printed_lines()), "worst_case_ratios": 21}
+"""Formulas on some pages."""
 
 
 class References(HTMLParser):
@@ -98,3 +102,10 @@ def test_every_example_and_notebook_is_a_page_with_a_picture(site):
     assert set(notebooks) <= set(site)
     for page in examples:
         assert any("sphx_glr" in address for address in site[page].loaded), page.name
+
+
+def test_formulas_are_typeset(site):
+    texts = [(path, path.read_text(encoding="utf-8")) for path in site]
+    typeset = {name: sum(t.count("<math") for path, t in texts if path.stem == name) for name in FORMULAS}
+    assert typeset == FORMULAS
+    assert not [path for path, text in texts if "$\\" in text]

@@ -6,7 +6,7 @@ import json
 from functools import cache
 from importlib.resources import files
 
-__all__ = ["Formula", "printed_line"]
+__all__ = ["Formula", "printed_line", "printed_lines"]
 
 
 class Formula(str):
@@ -17,11 +17,12 @@ class Formula(str):
 
 def printed_line(label: str) -> Formula | None:
     """The line with this label (without ``eq:``); a line that starts with a relation continues the one above it."""
-    text = _lines().get(label)
+    text = printed_lines().get(label)
     return None if text is None else Formula(text)
 
 
 @cache
-def _lines() -> dict[str, str]:
+def printed_lines() -> dict[str, str]:
+    """All of them, by label."""
     text = (files(__package__) / "printed.json").read_text(encoding="utf-8")
     return {str(label): str(line) for label, line in json.loads(text).items()}
