@@ -1,8 +1,9 @@
 """The exact attacker on the networks that radio teams have, against plain annealing given the same seconds.
 
 Run as ``python -m analysis.benchmarks.networks [--robots 24 30 50 100] [--families dense ...] [--seeds K] [--seconds S]
-[--objective trace] [--log FILE]``. Each team is RATT's plan under three pairs of budgets: a fifth of the robots and
-15 % of the links, a third and 30 %, and random ones. Times are wall time: the limits are.
+[--plain-seconds P] [--objective trace] [--earlier TREE] [--log FILE]``. Each team is RATT's plan under three pairs of
+budgets: a fifth of the robots and 15 % of the links, a third and 30 %, and random ones. ``--earlier`` attacks the same
+plans with the edition in another source tree, too. Limits are wall time; processor time is what a busy machine gave.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 
+from analysis.benchmarks.earlier_edition import earlier_attack
 from analysis.tables import append_csv, print_table
 from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.team import Links, Team
@@ -108,21 +110,22 @@ def instances(robots: list[int], families: list[str], seeds: int, objective: str
                     yield n_robots, family, seed, scenario.problem(objective)
 
 
-def attacked(problem: Problem, seconds: float, seed: int) -> dict[str, object]:
-    """The exact attacker's bracket and what plain annealing finds in as many seconds."""
+def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:
+    """The exact attacker's bracket, what plain annealing finds, and the bracket of an earlier edition where asked."""
     plan = ratt(problem).elements
-    began = time.perf_counter()
-    exact = worst_case_attack(problem, plan, time_limit=seconds)
-    spent = time.perf_counter() - began
-    plain = plain_annealing(problem, plan, seconds, seed)
+    began, worked = time.perf_counter(), time.process_time()
+    exact = worst_case_attack(problem, plan, time_limit=options.seconds)
+    spent, worked = time.perf_counter() - began, time.process_time() - worked
     row: dict[str, object] = {"alpha_s": problem.alpha_s, "alpha_c": problem.alpha_c}
     row |= {"lower": exact.lower, "upper": exact.upper, "gap": (exact.upper - exact.lower) / exact.upper}
-    return row | {
-        "stop": exact.stop.value,
-        "nodes": exact.nodes,
-        "seconds": spent,
-        "plain_over_exact": plain / exact.upper,
-    }
+    row |= {"stop": exact.stop.value, "nodes": exact.nodes, "seconds": spent, "processor_seconds": worked}
+    plain = options.seconds if options.plain_seconds is None else options.plain_seconds
+    if plain > 0:
+        row["plain_over_exact"] = plain_annealing(problem, plan, plain, seed) / exact.upper
+    if options.earlier is not None:
+        earlier = earlier_attack(options.earlier, problem, plan, options.objective, options.seconds)
+        row |= {f"earlier_{name}": value for name, value in earlier.items()}
+    return row
 
 
 def main() -> None:
@@ -132,6 +135,8 @@ def main() -> None:
     parser.add_argument("--families", nargs="*", default=list(NETWORK_FAMILIES), choices=list(NETWORK_FAMILIES))
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one attack")
+    parser.add_argument("--plain-seconds", type=float, help="of plain annealing; as the attack's where absent")
+    parser.add_argument("--earlier", type=Path, help="source tree of an earlier edition to attack the same plans with")
     parser.add_argument("--objective", default="trace", choices=("trace", "logdet", "maxeig"))
     parser.add_argument("--log", type=Path, help="CSV file to which every attack is appended as it ends")
     options = parser.parse_args()
@@ -139,7 +144,7 @@ def main() -> None:
     for n_robots, family, seed, problem in instances(
         options.robots, options.families, options.seeds, options.objective
     ):
-        row = {"robots": n_robots, "family": family, "seed": seed} | attacked(problem, options.seconds, seed)
+        row = {"robots": n_robots, "family": family, "seed": seed} | attacked(problem, seed, options)
         rows.append(row)
         if options.log is not None:
             append_csv(options.log, row)

@@ -35,8 +35,13 @@ __all__ = ["attack_survey", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-BOUND_SHARE = 0.3
-"""Of what is left of the budget, for the weakest group of the forced size; prices get the rest. Not measured."""
+BOUND_SHARE, BOUND_NODES = 0.3, 500_000
+"""Of what is left of the budget, and at most so many nodes, for the weakest group of the forced size; prices get the
+rest. Not measured."""
+
+FIRST_STARTS, INNER_STARTS = 12, 3
+"""Annealed attacks before the first threshold, and where only nodes are limited or another search asks: about every
+fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded)."""
 
 EXACT_SHARE = 0.9
 """Of the seconds of a survey; the heuristics need little."""
@@ -67,10 +72,10 @@ def worst_case_attack(
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above do not apply, with a ``time_limit`` of the call's
-      own: annealed attacks, and prices that no weak group pays (``by_prices``; a node is a branch on one robot),
-      until closed or out of time. Relies on a non-decreasing objective, as above; targets of any dimension. Compiling
-      takes about a minute once per machine.
+    - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, and prices that
+      no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of the budget: give one,
+      as sparse graphs of 50 robots can take hours to close. Relies on a non-decreasing objective, as above; targets of
+      any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
@@ -105,8 +110,7 @@ def worst_case_attack(
         first = bounded_rational_attack(asked, values.plan)
         bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
-        patient = time_limit is not None and budget is None
-        stop = _search(AttackTask(asked, values, bracket, own), patient=patient)
+        stop = _search(AttackTask(asked, values, bracket, own), is_brief=budget is not None or max_nodes is not None)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -124,7 +128,7 @@ def _unattacked(problem: Problem, values: PlanValues) -> float:
     return max(values(group) for group in problem.communication.groups())
 
 
-def _search(task: AttackTask, *, patient: bool) -> Stop:
+def _search(task: AttackTask, *, is_brief: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
     if not isinstance(problem.objective, InformationObjective):
         return _any_function(task)
@@ -144,7 +148,7 @@ def _search(task: AttackTask, *, patient: bool) -> Stop:
         return threshold_search(task)
     if team is not None and problem.communication.is_complete:
         unprotected_bound(task, team)
-    return _any_graph(task, team, groups, patient=patient)
+    return _any_graph(task, team, groups, is_brief=is_brief)
 
 
 def _any_function(task: AttackTask) -> Stop:
@@ -161,17 +165,17 @@ def _any_function(task: AttackTask) -> Stop:
     return Stop.CLOSED if task.bracket.is_closed else budget.stop() or Stop.HEURISTIC
 
 
-def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, patient: bool) -> Stop:
+def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
     """The forced size, then partitions where they are few; elsewhere annealed attacks before it and prices after it."""
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
         stop = forced_group_bound(task, team)
         return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
-    prices = _price_search(task) if patient else None
+    prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
         return forced_group_bound(task, team)
-    prices.anneal()
+    prices.anneal(INNER_STARTS if is_brief else FIRST_STARTS)
     return Stop.CLOSED if _forced_group_in_share(task, team) is Stop.CLOSED else prices.run()
 
 
@@ -190,8 +194,8 @@ def _price_search(task: AttackTask) -> PriceSearch | None:
 def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None) -> Stop:
     """The bound of the forced size within its share of the seconds and nodes left; the bracket keeps what it proves."""
     budget = task.budget
-    nodes = None if budget.max_nodes is None else int(BOUND_SHARE * budget.nodes_left(budget.max_nodes))
-    part = budget.part(BOUND_SHARE, max_nodes=nodes)
+    nodes = math.inf if budget.max_nodes is None else BOUND_SHARE * budget.nodes_left(budget.max_nodes)
+    part = budget.part(BOUND_SHARE, max_nodes=int(min(nodes, BOUND_NODES)))
     try:
         return forced_group_bound(replace(task, budget=part), team)
     except OutOfBudget as out:

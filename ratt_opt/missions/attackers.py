@@ -9,6 +9,7 @@ from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_atta
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.errors import InputError
+from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -23,9 +24,19 @@ if TYPE_CHECKING:
 
 __all__ = ["ATTACKERS", "attack_of", "attacker_called"]
 
+NODES = 500_000
+"""Of a worst case on a graph that is not complete, beyond what is exact at once: some ten seconds a step. A limit of
+seconds would make missions depend on the machine."""
+
+
+def _worst(problem: Problem, plan: IntArray) -> AttackResult:
+    at_once = problem.threat.links_alike or problem.n_robots <= LARGEST_COMPILED
+    return worst_case_attack(problem, plan, max_nodes=None if at_once else NODES)
+
+
 ATTACKERS: dict[str, Attacker] = {
     "none": lambda _problem, _plan, _seed: Attack(),
-    "worst": lambda problem, plan, _seed: worst_case_attack(problem, plan),
+    "worst": lambda problem, plan, _seed: _worst(problem, plan),
     "bounded rational": lambda problem, plan, _seed: bounded_rational_attack(problem, plan),
     "greedy": lambda problem, plan, _seed: greedy_attack(problem, plan),
     "random": lambda problem, plan, seed: random_attack(problem, plan, seed=seed),

@@ -11,11 +11,16 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers.by_prices import cover
 from ratt_opt.attackers.by_prices.blinding import ABSENT, WEAK, weak_subset
+from ratt_opt.attackers.by_prices.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
 from ratt_opt.attackers.by_prices.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.cover import next_cover
+from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
+from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup
 from ratt_opt.attackers.by_prices.team import Links, Team
+from ratt_opt.attackers.by_prices.weak_sizes import WeakSizes
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
@@ -49,7 +54,7 @@ def run_prices(problem, plan, **limits):
     bracket, budget = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0), Budget(**limits)
     search = PriceSearch(AttackTask(problem, values, bracket, budget), Team.of(problem.objective, values.plan))
     try:
-        search.anneal()
+        search.anneal(4)
         stop = search.run()
     except OutOfBudget as out:
         stop = out.stop
@@ -173,3 +178,111 @@ def test_covers_against_all_choices_of_groups(seed):
             found.append(tuple(sorted(position[: depth[0] + 1].tolist())))
     assert len(found) == len(set(found))
     assert set(found) == expected
+
+
+def reduced_cost(problem, part, prices):
+    """By the definition, of a group given as what each robot is to it."""
+    inside = set(np.flatnonzero(part).tolist())
+    crossing = [link for link in problem.communication.links if len(inside & set(link)) == 1]
+    return len(crossing) / 2 + prices[1] * int((part == BLINDED).sum()) - prices[0][sorted(inside)].sum()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
+    rng = np.random.default_rng(seed)
+    problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
+    team, links, threat = Team.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    threshold, prices = problem.objective(plan) * rng.uniform(0.4, 0.9), (rng.uniform(0, 2, 7), rng.uniform(0.2, 2))
+    found, part = [], np.zeros(7, dtype=np.int8)
+    for first in range(7):
+        limits, cooling = (threshold, threat.n_blinded), (2_000, 2.0, 0.05)
+        cost = cheap_group(team, links, prices, limits, first, cooling, rng, part)
+        if cost == NOBODY:
+            continue
+        cut = {(i, j) for i, j in problem.communication.links if (part[i] > 0) != (part[j] > 0)}
+        if cut & problem.protected_links:
+            continue
+        assert part[first]
+        assert (part == BLINDED).sum() <= threat.n_blinded
+        assert problem.objective([plan[i] for i in range(7) if part[i] == SEEING]) < threshold
+        assert cost == pytest.approx(reduced_cost(problem, part, prices), abs=1e-9)
+        found.append(cost)
+    limit = 1e6 if not problem.protected_links else -1e6
+    groups = paying_groups(problem, plan, (threshold, limit), prices)
+    costs = [
+        reduced_cost(problem, np.isin(range(7), group).astype(int), prices) + prices[1] * need
+        for group, need in groups.items()
+    ]
+    assert not costs or min(found) <= min(costs) + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_weak_set_is_larger_than_its_size(seed):
+    problem, plan = team_problem(seed, 7)
+    team, planar = Team.of(problem.objective, plan), PlanarTeam.of(problem.objective, plan)
+    values = {s: problem.objective(plan[list(s)]) for k in range(8) for s in combinations(range(7), k)}
+    sizes = WeakSizes(team, planar)
+    for share in (0.3, 0.6, 0.9):
+        threshold = share * problem.objective(plan)
+        largest = max((len(s) for s, value in values.items() if value < threshold), default=0)
+        assert sizes.largest(threshold, Budget()) == largest
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_choice_of_prices_claims_what_it_says_and_no_known_group_pays_it(seed):
+    problem, _ = team_problem(2 * seed, 6, graph=nx.complete_graph(6))
+    rng, threat = np.random.default_rng(seed), problem.threat
+    prices = GroupPrices(threat)
+    groups = [
+        KnownGroup(robots=np.array([bool(mask >> i & 1) for i in range(6)]), need=int(rng.integers(0, 3)), value=0.0)
+        for mask in {*rng.integers(1, 63, 20).tolist(), 1, 2, 4, 8, 16, 32}
+    ]
+    prices.add(groups)
+    found = prices.solve(1.0)
+    links = 0.6 * found.links
+    for chosen in (found.scaled(links), prices.slackest(1.0, links), found.for_robots(links, threat.n_blinded)):
+        assert chosen is not None
+        assert chosen.links == pytest.approx(links)
+        assert chosen.links == pytest.approx(chosen.robot.sum() - chosen.blinded * threat.n_blinded)
+        paid = [chosen.robot[group.robots].sum() - chosen.blinded * group.need for group in groups]
+        assert all(p <= prices.half_cut(group.robots) + 1e-6 for p, group in zip(paid, groups, strict=True))
+
+
+def least_cost(problem, plan, threshold, prices):
+    """The cheapest reduced cost by the definition: every set of robots, connected or not, and every blinding of it."""
+    n_robots, least = problem.n_robots, np.inf
+    for size in range(1, n_robots + 1):
+        for group in combinations(range(n_robots), size):
+            crossing = {link for link in problem.communication.links if len(set(group) & set(link)) == 1}
+            if crossing & problem.protected_links:
+                continue
+            free = [i for i in group if i not in problem.protected_robots]
+            for blinded in range(min(problem.threat.n_blinded, len(free)) + 1):
+                for out in combinations(free, blinded):
+                    if problem.objective([plan[i] for i in group if i not in out]) < threshold:
+                        cost = len(crossing) / 2 + prices[1] * blinded - prices[0][list(group)].sum()
+                        least = min(least, cost)
+    return least
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed):
+    rng = np.random.default_rng(seed)
+    problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    team, links, threat = Team.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    threshold, prices = problem.objective(plan) * rng.uniform(0.4, 0.9), (rng.uniform(0, 2, 6), rng.uniform(0.0, 2))
+    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    raised = max(least_cost(problem, plan, threshold, prices), 0) + 0.5  # some groups pay
+    prices = (prices[0] + raised, prices[1])
+    least = least_cost(problem, plan, threshold, prices)
+    assert least < 0
+    at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1))
+    for limit, room in ((least - 1e-6, 5), (least + 1e-6, 5), (-1e-6, 3)):
+        question = Question(threshold, threat.n_blinded, limit, np.arange(6), 0, 0)
+        found = find_paying_groups(team, links, at, question, Budget(), nodes=10**6, room=room)
+        assert (len(found.groups) > 0) == (least <= limit)
+        assert found.is_complete or len(found.groups) == room
+        for group in found.groups:
+            assert group.need <= threat.n_blinded
+            assert reduced_cost(problem, group.robots.astype(int), (prices[0], 0.0)) + prices[1] * group.need <= limit
+    assert not find_paying_groups(team, links, at, question, Budget(), nodes=0, room=3).is_complete

@@ -59,8 +59,9 @@ def test_a_large_team_on_any_graph_gets_a_valid_bracket(name, dimension):
     objective = OBJECTIVES[name](*information_data(rng, 24, 3, dimension))
     problem = ro.Problem(objective, np.arange(24), graph, 4, 12)
     plan = np.arange(24)
-    result = ro.worst_case_attack(problem, plan, max_nodes=100_000)
+    result = ro.worst_case_attack(problem, plan, max_nodes=10_000, time_limit=5)
     assert result.lower <= result.upper == problem.team_value(plan, result.attack)
+    assert result.stop is not ro.Stop.HEURISTIC
     for seed in range(100):
         assert result.lower <= ro.random_attack(problem, plan, seed=seed).upper
     assert result.lower <= ro.greedy_attack(problem, plan).upper

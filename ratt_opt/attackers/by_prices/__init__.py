@@ -2,6 +2,8 @@
 
 Open ``price_search.py`` first: annealed attacks from above (``starts.py``, ``annealing.py``), refuted thresholds
 from below.
-``decision.py`` decides a threshold: ``prices.py`` finds the prices, ``columns.py`` lists the groups that may pay them
-(pruned by ``flow.py`` and by what a group needs blinded, ``needs.py``), ``cover.py`` puts listed groups together.
+``decision.py`` decides a threshold: ``prices.py`` finds the prices from the groups of ``cheap_groups.py``,
+``paying_groups.py`` proves that no other group pays them (``seeing_sets.py``, by ``flow.py`` and ``weak_sizes.py``),
+``columns.py`` lists all groups that nearly do (``needs.py`` says what a group needs blinded), ``cover.py`` puts listed
+groups together.
 """

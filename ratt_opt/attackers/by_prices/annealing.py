@@ -29,13 +29,18 @@ OWN_GROUP, TRANSFER, BLINDING = 0.08, 0.5, 0.8
 
 
 class Cooling(NamedTuple):
-    """``steps`` moves from temperature ``hot`` to ``cold`` [unit of the value]; ``price`` of a link over ``budget``."""
+    """``steps`` moves from temperature ``hot`` to ``cold`` [unit of the value]; ``price`` of a link over ``budget``.
+
+    ``first``, ``last`` : the part of them to make
+    """
 
     steps: int
     hot: float
     cold: float
     price: float
     budget: int
+    first: int
+    last: int
 
 
 class State(NamedTuple):
@@ -149,17 +154,17 @@ def _energy(state: Any, cooling: Any) -> float:
 
 
 @numba.njit(cache=True)
-def anneal(team: Any, links: Any, state: Any, cooling: Any, best: Any, rng: Any) -> float:  # noqa: PLR0917
+def anneal(team: Any, links: Any, state: Any, cooling: Any, best: Any, least: float, rng: Any) -> float:  # noqa: PLR0917
     """Anneal ``state`` in place; ``best`` = (group (N,), blind (N,)) becomes the best state within the link budget.
 
     Returns the value of the best state's largest group (groups may be disconnected: the attack is worth no more);
-    infinite where no state was within the budget.
+    ``least`` where no state within the budget was better.
     """
     _fill(team, links, state)
     n_blinded = state.blind.sum()
-    energy, least = _energy(state, cooling), np.inf
+    energy = _energy(state, cooling)
     saved, worth = np.empty((2, *team.prior.shape)), np.empty(2)
-    for step in range(cooling.steps):
+    for step in range(cooling.first, cooling.last):
         if state.cut[0] <= cooling.budget and state.value.max() < least:
             least = state.value.max()
             best[0][:], best[1][:] = state.group, state.blind

@@ -12,7 +12,7 @@ import numpy as np
 from ratt_opt.attackers.by_prices.compiled import gather, value_of
 from ratt_opt.compiling import numba
 
-__all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "weak_subset"]
+__all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "trade", "weak_subset"]
 
 ABSENT, WEAK, UNDECIDED = 0, 1, 2
 
@@ -92,6 +92,38 @@ def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, s
                 if changed < best:
                     best, leaves, enters = changed, i, j
         if leaves < 0:
+            return False
+        blind[leaves], blind[enters] = False, True
+        value = gather(team, group & ~blind, sums)
+    return bool(value < threshold)
+
+
+@numba.njit(cache=True)
+def _least(team: Any, sums: Any, allowed: Any, sign: float, other: Any) -> Any:
+    """The allowed robot whose information, added or taken away, leaves the least value: (robot or -1, value)."""
+    robot, least = -1, np.inf
+    for i in range(len(allowed)):
+        if allowed[i]:
+            other[:] = sums + sign * team.information[i]
+            value = value_of(team, other)
+            if value < least:
+                robot, least = i, value
+    return robot, least
+
+
+@numba.njit(cache=True)
+def trade(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, sums: Any) -> bool:  # noqa: PLR0917
+    """:func:`exchange` by one robot at a time: far fewer values to look at, and seldom worse."""
+    value, other = gather(team, group & ~blind, sums), np.empty_like(sums)
+    for _ in range(len(group)):  # rounding must not make it trade equals for ever
+        if value < threshold:
+            return True
+        leaves, more = _least(team, sums, group & blind, 1.0, other)
+        if leaves < 0 or not more < np.inf:
+            return False
+        sums += team.information[leaves]
+        enters, least = _least(team, sums, group & ~blind & ~seeing, -1.0, other)
+        if enters < 0 or not least < value * (1 - 1e-9):
             return False
         blind[leaves], blind[enters] = False, True
         value = gather(team, group & ~blind, sums)

@@ -1,7 +1,8 @@
 """Is there an attack worth less than a threshold? By prices, enumeration and covers.
 
-1. Prices (``prices.py``) that claim more links than the budget refute the threshold once the enumeration
-   (``columns.py``) has found no group that pays them; groups that do are added to the program.
+1. Prices (``prices.py``) that claim more links than the budget refute the threshold once a search over the robots
+   that see (``seeing_sets.py``) or over those inside (``columns.py``) has found no group that pays them; groups that
+   do are added to the program.
 2. Prices that claim ``gap`` links less leave the groups of reduced cost at most ``gap``: they are listed, and the
    partitions into them tried (``cover.py``). Either one is an attack, or the threshold is refuted.
 
@@ -12,13 +13,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.blinding import ABSENT, weak_subset
+from ratt_opt.attackers.by_prices.cheap_groups import BLINDED, cheap_group
 from ratt_opt.attackers.by_prices.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.cover import FOUND, PAUSED, next_cover
+from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.starts import Split
 
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attackers.by_prices.team import Links, Team
+    from ratt_opt.attackers.by_prices.weak_sizes import WeakSizes
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
@@ -43,20 +47,28 @@ TOLERANCE = 1e-6
 """Reduced costs below minus this count as negative: above what the linear program leaves of its rows, and a team's sum
 stays well below MARGIN."""
 
-STEPS = (-3.0, -0.3, -0.01)
-"""Reduced costs asked for in turn: the groups that pay the prices worst are found first, and fast."""
-
 LOWERED = 0.01
-"""By which all robots' prices fall once no group is below the last of STEPS; no reduced cost is negative then."""
+"""By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
-CHUNK, ROOM, NEW_GROUPS = 2_000, 100_000, 100
-"""Nodes between two looks at the clock; groups listed for covers; groups added to the program at a time."""
+FIRST_ATTEMPT, LONGER = 50_000, 3
+"""Nodes of the first search over seeing robots at each of a few prices, and their growth while none of them ends."""
+
+DEARER, LISTING = 200, 10
+"""Nodes of the search over seeing robots that one of the search over robots inside counts for (20 microseconds against
+up to 3,000, at 30 robots), when it looks for groups that pay, and when it lists those that nearly do."""
+
+MOVES, WARM, COLD = 1_500, 2.0, 0.05
+"""Moves around each robot to find groups that pay the prices, and the temperatures [links] they cool between. Measured
+at 30 and 50 robots of five families: the program's prices settle in 2 to 50 rounds of some hundredths of a second."""
+
+FIRST_CHUNK, ROOM, NEW_GROUPS = 50, 100_000, 100
+"""Nodes before the first look at the clock; groups listed for covers; groups added to the program at a time."""
+
+GLANCE, COVERS = 0.05, 100_000
+"""Seconds between two looks at the clock that chunks of nodes are cut for; groups tried in covers between them."""
 
 QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node (some 20 microseconds), and before it is listed."""
-
-SIZE_VALUES = 1_000_000
-"""Values looked at to prove that no weak set has a certain size."""
 
 
 class Verdict(Enum):
@@ -89,11 +101,13 @@ class _Listed:
 class Decision:
     """Decides thresholds for one plan; what is learned about groups serves the next threshold."""
 
-    def __init__(self, team: Team, links: Links, threat: Threat) -> None:
+    def __init__(self, team: Team, links: Links, threat: Threat, sizes: WeakSizes) -> None:
         self.team, self.links, self.threat = team, links, threat
+        self._sizes = sizes
         self.prices = GroupPrices(threat)
         self._n_robots = len(team.single)
         self._rng, self._shuffled = np.random.default_rng(0), False
+        self._attempt = FIRST_ATTEMPT
         for i in range(self._n_robots):
             alone = np.arange(self._n_robots) == i
             self.prices.add([KnownGroup(robots=alone, need=0, value=float(team.single[i]))])
@@ -117,29 +131,94 @@ class Decision:
         ------
         OutOfBudget : the time is up.
         """
-        size = self._largest_weak(threshold, budget)
-        step = 0
+        size, spent = self._sizes.largest(threshold, budget), budget.nodes
+        self._attempt = FIRST_ATTEMPT
+        while budget.nodes - spent < nodes:
+            found = self._settled(threshold, budget)
+            if found.links > self.threat.alpha_c + MARGIN:
+                verdict = self._refute(threshold, size, budget)
+                if verdict is not None:
+                    return Answer(verdict=verdict)
+                continue
+            verdict = self._answered(found, (threshold, size, -LOWERED), budget)
+            if verdict is Verdict.REFUTED:
+                return self._cover(found.lowered(LOWERED), threshold, size, budget, nodes)
+            if verdict is Verdict.OPEN:
+                break
+            if verdict is None:
+                self._attempt *= LONGER
+        return Answer(verdict=Verdict.OPEN)
+
+    def _refute(self, threshold: float, size: int, budget: Budget) -> Verdict | None:
+        """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
+
+        The prices furthest below what known groups cost prune best, once the groups that pay them are known: they soon
+        are. Where they do not end, others may: all in turn, and ever longer.
+        """
+        links, asked = self.threat.alpha_c + MARGIN, (threshold, size, -TOLERANCE)
+        while (slackest := self.prices.slackest(threshold, links, budget.seconds_left)) is not None:
+            budget.check()
+            answer = self._answered(slackest, asked, budget)
+            if answer is None:
+                break
+            if answer is not Verdict.REACHED:
+                return answer
+        found = self._settled(threshold, budget)
+        if found.links <= links:
+            return None
+        for prices in (found.scaled(links), found.for_robots(links, self.threat.n_blinded)):
+            answer = self._answered(prices, asked, budget)
+            if answer is not None:
+                return answer if answer is not Verdict.REACHED else None
+        self._attempt *= LONGER
+        return None
+
+    def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Verdict | None:
+        """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
+        threshold, size, limit = asked
+        if self.prices.add(self._cheap(prices, threshold, budget)):
+            return Verdict.REACHED
+        at, question = self._asked(prices, asked)
+        found = find_paying_groups(self.team, self.links, at, question, budget, nodes=self._attempt, room=NEW_GROUPS)
+        if found.groups:
+            return Verdict.REACHED if self.prices.add(found.groups) else Verdict.OPEN
+        if found.is_complete:
+            return Verdict.REFUTED
+        listed = self._list(prices, (threshold, size, limit), budget, (self._attempt // DEARER, NEW_GROUPS))
+        if len(listed.cost):
+            return Verdict.REACHED if self._teach(listed, threshold) else Verdict.OPEN
+        return Verdict.REFUTED if listed.code == FINISHED else None
+
+    def _asked(self, prices: PriceVector, asked: tuple[float, int, float]) -> tuple[Prices, Question]:
+        """The compiled searches' arguments for ``asked`` = (threshold, largest weak size, limit)."""
+        threshold, size, limit = asked
+        at = Prices(prices.robot, prices.blinded, np.ones(self._n_robots), float(size), prices.blinded, SHARES)
+        order = np.argsort(-prices.robot, kind="stable")
+        if self._shuffled:  # the groups listed last all began with the same robots
+            order = self._rng.permutation(self._n_robots)
+        return at, Question(threshold, self.threat.n_blinded, limit, order, QUICK, THOROUGH)
+
+    def _settled(self, threshold: float, budget: Budget) -> PriceVector:
+        """Prices that no group found by annealing pays, or not enough to claim more links than the budget."""
         while True:
             budget.check()
-            found = self.prices.solve(threshold)
-            refuting = found.links > self.threat.alpha_c + MARGIN
-            if refuting and step > 0:
-                step = len(STEPS)
-            elif step == len(STEPS):
-                return self._cover(found.lowered(LOWERED), threshold, size, budget, nodes)
-            asked = found.scaled(self.threat.alpha_c + MARGIN) if refuting else found
-            limit = STEPS[step] if step < len(STEPS) else -TOLERANCE
-            listed = self._list(asked, (threshold, size, limit), budget, (nodes, NEW_GROUPS))
-            self._shuffled = listed.code == FULL
-            if len(listed.cost):
-                if not self._teach(listed, threshold):
-                    return Answer(verdict=Verdict.OPEN)
-            elif listed.code != FINISHED:
-                return Answer(verdict=Verdict.OPEN)
-            elif step == len(STEPS):
-                return Answer(verdict=Verdict.REFUTED)
-            else:
-                step += 1
+            found, links = self.prices.solve(threshold, budget.seconds_left), self.threat.alpha_c + MARGIN
+            if not self.prices.add(
+                self._cheap(found.scaled(links) if found.links > links else found, threshold, budget)
+            ):
+                return found
+
+    def _cheap(self, prices: PriceVector, threshold: float, budget: Budget) -> list[KnownGroup]:
+        """Groups that pay these prices, by annealing around each robot."""
+        best, most, groups = np.zeros(self._n_robots, dtype=np.int8), self.threat.n_blinded, []
+        at, cooling = (prices.robot, prices.blinded), (MOVES, WARM, COLD)
+        for first in range(self._n_robots):
+            budget.check()
+            cost = cheap_group(self.team, self.links, at, (threshold, most), first, cooling, self._rng, best)
+            if cost < -TOLERANCE:
+                robots, value = best > 0, float(np.nextafter(threshold, -np.inf))
+                groups.append(KnownGroup(robots=robots, need=int((best == BLINDED).sum()), value=value))
+        return groups
 
     def _teach(self, listed: _Listed, threshold: float) -> int:
         """Add listed groups to the program, with what they are known to need at least."""
@@ -147,44 +226,33 @@ class Decision:
         rows = zip(listed.robots, listed.need[:, 0].tolist(), strict=True)
         return self.prices.add([KnownGroup(robots=row.copy(), need=need, value=float(below)) for row, need in rows])
 
-    def _largest_weak(self, threshold: float, budget: Budget) -> int:
-        """A size that no set of robots worth less than the threshold exceeds."""
-        everyone, nobody = np.ones(self._n_robots, dtype=np.bool_), np.zeros(self._n_robots, dtype=np.bool_)
-        for size in range(self._n_robots, 0, -1):
-            budget.check()
-            spared, found = self._n_robots - size, nobody.copy()
-            if weak_subset(self.team, nobody, everyone, spared, threshold, SIZE_VALUES, found) != ABSENT:
-                return size
-        return 0
-
     def _list(
         self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget, most: tuple[int, int]
     ) -> _Listed:
         """Groups of ``asked`` = (threshold, largest weak size, limit), within ``most`` = (nodes, groups)."""
-        n_robots, (threshold, size, limit), (nodes, room) = self._n_robots, asked, most
-        at = Prices(prices.robot, prices.blinded, np.ones(n_robots), float(size), prices.blinded, SHARES)
-        order = np.argsort(-prices.robot, kind="stable")
-        if self._shuffled:  # the groups listed last all began with the same robots
-            order = self._rng.permutation(n_robots)
-        question = Question(threshold, self.threat.n_blinded, limit, order, QUICK, THOROUGH)
+        n_robots, (nodes, room) = self._n_robots, most
+        at, question = self._asked(prices, asked)
         stack = Stack.of(n_robots, len(self.links.robot), len(SHARES))
         shape = (room, n_robots)
         listed = (np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros((room, 2), np.int64), np.zeros(room))
-        code = PAUSED
-        while code == PAUSED and int(stack.position[2]) < nodes:
+        code, chunk = PAUSED, FIRST_CHUNK
+        nodes = budget.nodes_left(nodes)
+        while code == PAUSED and (before := int(stack.position[2])) < nodes:
             budget.check()
-            before = int(stack.position[2])
-            code = enumerate_groups(self.team, self.links, at, question, stack, CHUNK, listed)
+            began = monotonic()
+            code = enumerate_groups(self.team, self.links, at, question, stack, min(chunk, nodes - before), listed)
             budget.nodes += int(stack.position[2]) - before
+            chunk = 2 * chunk if monotonic() - began < GLANCE else max(chunk // 2, 1)
         count = int(stack.position[3])
         robots, blinded, need, cost = listed
+        self._shuffled = code == FULL
         return _Listed(code, robots[:count], blinded[:count], need[:count], cost[:count])
 
     def _cover(self, prices: PriceVector, threshold: float, size: int, budget: Budget, nodes: int) -> Answer:
         """Try all partitions into groups of small reduced cost."""
         gap = self.threat.alpha_c - prices.links + TOLERANCE
         self._shuffled = False
-        listed = self._list(prices, (threshold, size, gap), budget, (nodes, ROOM))
+        listed = self._list(prices, (threshold, size, gap), budget, (nodes // LISTING, ROOM))
         if listed.code != FINISHED:
             return Answer(verdict=Verdict.OPEN)
         for members in self._partitions(listed, gap, budget):
@@ -205,7 +273,7 @@ class Decision:
         lowest = robots.argmax(axis=1)
         order = np.argsort(lowest, kind="stable")
         robots = np.ascontiguousarray(robots[order])
-        links = np.array([self.prices.half_cut(row) for row in listed.robots[order]])
+        links = self.prices.half_cuts(listed.robots[order])
         costs = np.stack([np.maximum(listed.cost[order], 0.0), listed.need[order, 0], links], axis=1)
         first = np.searchsorted(lowest[order], np.arange(n_robots + 1))
         position, depth = np.full(n_robots + 2, -1, dtype=np.int64), np.zeros(1, dtype=np.int64)
@@ -214,7 +282,7 @@ class Decision:
         budgets = np.array([gap, self.threat.n_blinded, self.threat.alpha_c], dtype=np.float64)
         while True:
             budget.check()
-            code = next_cover(robots, costs, budgets, state, 1_000_000)
+            code = next_cover(robots, costs, budgets, state, COVERS)
             if code == FOUND:
                 yield order[position[: int(depth[0]) + 1]].tolist()
             elif code != PAUSED:

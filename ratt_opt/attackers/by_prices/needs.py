@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.blinding import UNDECIDED, WEAK, exchange, weak_subset
+from ratt_opt.attackers.by_prices.blinding import UNDECIDED, WEAK, exchange, trade, weak_subset
 from ratt_opt.attackers.by_prices.compiled import gather
 from ratt_opt.attackers.by_prices.flow import ALWAYS
 from ratt_opt.compiling import numba
@@ -48,7 +48,7 @@ def admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: in
     small = group.sum() <= SMALL
     if small and stack.need[node, 1] > 0:
         other = blind.copy()
-        if exchange(team, links.seeing, group, other, question.threshold, sums):
+        if trade(team, links.seeing, group, other, question.threshold, sums):
             blind[:] = other
             return True
     if not _blind_more(team, links, question, stack, node, robot, sums):

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 from ratt_opt.attackers.by_prices.decision import Decision, Verdict
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links
+from ratt_opt.attackers.by_prices.weak_sizes import WeakSizes
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -16,17 +19,13 @@ if TYPE_CHECKING:
 
 __all__ = ["PriceSearch"]
 
-FIRST_STARTS, FURTHER_STARTS = 12, 4
-"""Annealed attacks before the first threshold, and whenever the thresholds get harder: about every fourth start finds
-the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third of the robots blinded)."""
+FURTHER_STARTS = 4
+"""Annealed attacks whenever the thresholds get harder."""
 
 ANNEALING_SHARE = 0.3
 """Of the seconds left that the first starts may take, where the limit is short."""
 
-FIRST_REACH = 0.02
-"""How far below the attack in hand thresholds are asked first, relative to it; doubled where they stay open."""
-
-FIRST_EFFORT, HARDER = 50_000, 4
+FIRST_EFFORT, HARDER = 500_000, 4
 """Nodes of one enumeration before a threshold is left open, and their growth when the lower ones are exhausted."""
 
 NEAR, BISECTED = 2e-2, 2e-3
@@ -48,12 +47,12 @@ class PriceSearch:
         threat = task.problem.threat
         links = Links.of(threat)
         self._starts = Starts(team, links, threat)
-        self._decision = Decision(team, links, threat)
-        self._reach = FIRST_REACH
+        planar = PlanarTeam.of(task.problem.objective, task.values.plan)
+        self._decision = Decision(team, links, threat, WeakSizes(team, planar))
 
-    def anneal(self) -> None:
+    def anneal(self, starts: int) -> None:
         """Offer the first annealed attacks."""
-        self._anneal(FIRST_STARTS, ANNEALING_SHARE)
+        self._anneal(starts, ANNEALING_SHARE)
 
     def run(self) -> Stop:
         """Refute or reach thresholds; the bracket is valid whenever this stops."""
@@ -77,22 +76,11 @@ class PriceSearch:
     def _threshold(self, unknown: float | None) -> float | None:
         """The next threshold to decide; ``None`` where those below the unknown one are too close to it."""
         bracket = self.task.bracket
-        near, finest = NEAR * abs(bracket.upper), BISECTED * abs(bracket.upper)
+        width, near = bracket.upper - bracket.lower, NEAR * abs(bracket.upper)
         if unknown is None or unknown > bracket.upper:
-            return (
-                bracket.goal
-                if bracket.upper - self._floor() <= near * (1 + 1e-9)
-                else (self._floor() + bracket.upper) / 2
-            )
-        while unknown - self._floor() <= max(RESOLUTION * (bracket.upper - self._floor()), finest):
-            if self._floor() <= bracket.lower:
-                return None
-            self._reach *= 2
-        return (self._floor() + unknown) / 2
-
-    def _floor(self) -> float:
-        """Thresholds below this are not asked: those close to the attack in hand are refuted as fast."""
-        return max(self.task.bracket.lower, (1 - self._reach) * self.task.bracket.upper)
+            return bracket.goal if width <= near else bracket.lower + width / 2
+        below = unknown - bracket.lower
+        return None if below <= max(RESOLUTION * width, BISECTED * abs(bracket.upper)) else bracket.lower + below / 2
 
     def _anneal(self, starts: int, share: float) -> None:
         part = self.task.budget.part(share)
@@ -100,7 +88,12 @@ class PriceSearch:
             self.task.budget.check()
             if count and part.stop() is not None:
                 return
-            split = self._starts.next()
+            try:
+                split = self._starts.next(self.task.budget)
+            except OutOfBudget:
+                if self._starts.best is not None:
+                    self._offer(self._starts.best)
+                raise
             if split is not None:
                 self._offer(split)
 

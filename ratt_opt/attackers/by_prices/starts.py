@@ -13,6 +13,7 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.attackers.by_prices.team import Links, Team
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["Split", "Starts"]
@@ -20,6 +21,9 @@ __all__ = ["Split", "Starts"]
 MOVES = 4_000
 """Moves per robot of one start. Measured at 24 robots: a start of 100,000 moves takes 0.1 s and finds the best known
 attack in half of the starts or more, but for one case in ten."""
+
+PART = 500_000
+"""Moves between two looks at the clock, times targets: some hundredths of a second."""
 
 HOT, COLD = 0.05, 0.0005
 """First and last temperature relative to the whole team's value; HOT is a fifth where a start is a good attack."""
@@ -61,8 +65,13 @@ class Starts:
 
         return float(value_of(self._team, sums))
 
-    def next(self) -> Split | None:
-        """The outcome of one more start; ``None`` where it left no attack within the budget."""
+    def next(self, budget: Budget) -> Split | None:
+        """The outcome of one more start; ``None`` where it left no attack within the budget.
+
+        Raises
+        ------
+        OutOfBudget : the time is up; ``best`` keeps what was found.
+        """
         kind = self._count % 4 if self.best is not None else 0
         self._count += 1
         hot = HOT if kind < 2 else HOT / 5
@@ -72,19 +81,23 @@ class Starts:
             group = self._regions()
         elif kind == 3 and self.best is not None:
             group, blind = self.best.group.copy(), self.best.blind.copy()
-        return self._anneal(group, blind, hot)
+        return self._anneal(group, blind, hot, budget)
 
-    def _anneal(self, group: IntArray, blind: BoolArray, hot: float) -> Split | None:
-        scale = self._scale
-        cooling = Cooling(MOVES * len(group), hot * scale, COLD * scale, PRICE * scale, self._threat.alpha_c)
-        found = (group.copy(), blind.copy())
-        state = State.of(self._team, group, blind)
-        value = anneal(self._team, self._links, state, cooling, found, self._rng)
-        if not np.isfinite(value):
-            return None
-        split = Split(group=found[0], blind=found[1], value=float(value))
-        if self.best is None or split.value < self.best.value:
-            self.best = split
+    def _anneal(self, group: IntArray, blind: BoolArray, hot: float, budget: Budget) -> Split | None:
+        scale, steps, least, split = self._scale, MOVES * len(group), np.inf, None
+        found, state = (group.copy(), blind.copy()), State.of(self._team, group, blind)
+        part = max(PART // len(self._team.prior), 1)
+        for first in range(0, steps, part):
+            budget.check()
+            last = min(first + part, steps)
+            cooling = Cooling(
+                steps, hot * scale, COLD * scale, PRICE * scale, self._threat.alpha_c, first=first, last=last
+            )
+            value = float(anneal(self._team, self._links, state, cooling, found, least, self._rng))
+            if value < least:
+                least, split = value, Split(group=found[0].copy(), blind=found[1].copy(), value=value)
+                if self.best is None or value < self.best.value:
+                    self.best = split
         return split
 
     def _blinded(self) -> BoolArray:

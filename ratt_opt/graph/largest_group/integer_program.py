@@ -19,14 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.graph.largest_group.counting import (
-    COUNTED,
-    LargestGroup,
-    counting_bound,
-    largest_left,
-    split_result,
-)
-from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
+from ratt_opt.graph.largest_group.counting import LargestGroup, by_counting, largest_left, split_result
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
@@ -43,10 +36,13 @@ LARGEST_ROUND = 400
 """Inequalities added per round, the most violated first: fewer make more rounds, more make larger programs."""
 
 
-def by_integer_program(threat: Threat, budget: Budget) -> LargestGroup:
-    """Smallest largest group of any graph; the incumbent is recomputed on the graph, the bound from the multipliers."""
-    best = heuristic_cut(threat, budget)
-    bound, reason = counting_bound(threat), COUNTED
+def by_integer_program(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup:
+    """Smallest largest group of any graph; the incumbent is recomputed on the graph, the bound from the multipliers.
+
+    ``known`` : a bracket to start from
+    """
+    known = known or by_counting(threat, budget)
+    best, bound, reason = known.cut, known.lower, known.reason
     claimed = bound
     try:
         budget.check()

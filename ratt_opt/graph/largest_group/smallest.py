@@ -2,11 +2,13 @@
 
 Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker make the largest
 one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Small teams are decided over all
-their subsets; larger ones are partitioned into separable groups of at most p robots, for p = 1, 2, ... in turn.
+their subsets; larger ones get a bracket from annealing and a linear program first, and where that does not close are
+partitioned into separable groups of at most p robots, for p = 1, 2, ... in turn, or given to the integer program.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +29,7 @@ from ratt_opt.graph.largest_group.counting import (
 )
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
+from ratt_opt.graph.largest_group.spreading import TREES, forced_size
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.progress import Step
@@ -45,7 +48,7 @@ AUTOMATIC_NODES = 20_000_000
 """Groups that ``method="auto"`` tries before it turns to the integer program (some ten seconds)."""
 LARGEST_AUTOMATIC_PROGRAM = 40
 """Most robots ``method="auto"`` gives to the integer program."""
-METHODS = ("auto", "milp", "caa", "partitions", "enumeration", "counting")
+METHODS = ("auto", "milp", "spreading", "caa", "partitions", "enumeration", "counting")
 
 
 @Step("the smallest largest group")
@@ -66,8 +69,9 @@ def smallest_largest_group(
     graph : on robots ``0..N-1``
     method : ``"caa"`` (Algorithm 2; complete graphs), ``"partitions"`` (integer partitions; complete graphs),
         ``"enumeration"`` (partitions into connected groups; any graph up to 14 robots, and up to 60 where a link
-        budget allows few groups, as on sparse graphs), ``"milp"`` (any graph), ``"counting"`` (any size; a bound
-        and a heuristic cut only), or ``"auto"``: the first of caa, enumeration, milp, counting that is exact
+        budget allows few groups, as on sparse graphs), ``"milp"`` (any graph), ``"spreading"`` (hundreds of robots;
+        a bracket), ``"counting"`` (any size; a bound and a heuristic cut only), or ``"auto"``: of caa, enumeration,
+        spreading and milp what applies, until one is exact
     protected_links : links that cannot be cut
     time_limit, max_nodes : seconds and nodes for the enumeration beyond 14 robots, and for the integer program
     budget : an outer search's budget: its seconds and interrupts count too
@@ -95,6 +99,8 @@ def smallest_largest_group(
         return _by_enumeration(threat, own)
     if method == "milp":
         return by_integer_program(threat, own)
+    if method == "spreading":
+        return by_spreading(threat, own)
     if method == "counting":
         return by_counting(threat, own)
     return by_caa(threat) if method == "caa" else by_integer_partitions(threat)
@@ -106,12 +112,25 @@ def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
         return by_caa(threat)
     if n_robots <= LARGEST_LATTICE:
         return by_subsets(threat, budget)
-    found = by_separable_groups(threat, budget.part(max_nodes=AUTOMATIC_NODES))
-    if found is not None and (found.is_exact or budget.is_over):
-        return found
-    if n_robots <= LARGEST_AUTOMATIC_PROGRAM:
-        return by_integer_program(threat, budget)
-    return found or by_counting(threat, budget)
+    found = by_spreading(threat, budget)
+    if not found.is_exact and not budget.is_over:
+        searched = by_separable_groups(threat, budget.part(max_nodes=AUTOMATIC_NODES), found)
+        found = found if searched is None else searched
+    if not found.is_exact and n_robots <= LARGEST_AUTOMATIC_PROGRAM and not budget.is_over:
+        found = by_integer_program(threat, budget, found)
+    return found
+
+
+def by_spreading(threat: Threat, budget: Budget) -> LargestGroup:
+    """Bracket by annealing from above and by tree inequalities from below: hundreds of robots in seconds."""
+    from ratt_opt.graph.largest_group.annealed_cut import annealed_cut  # compiles
+
+    quick = by_counting(threat, budget)
+    cut = annealed_cut(threat, quick.cut, quick.lower, budget)
+    upper = largest_left(threat.graph, cut)
+    forced = 0 if upper == quick.lower else forced_size(replace(threat, alpha_s=0), budget, upper)
+    reason = COUNTED if forced <= quick.lower else TREES
+    return split_result(threat, cut, max(forced, quick.lower), "spreading", reason)
 
 
 def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
@@ -150,7 +169,7 @@ def by_subsets(threat: Threat, budget: Budget) -> LargestGroup:
     return split_result(threat, heuristic_cut(threat, budget), lower, "enumeration", reason)
 
 
-def by_separable_groups(threat: Threat, budget: Budget) -> LargestGroup | None:
+def by_separable_groups(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup | None:
     """Smallest largest group, or the bracket that the budget allows; ``None`` where the groups are too many to list."""
     from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups  # compiles
 
@@ -159,7 +178,8 @@ def by_separable_groups(threat: Threat, budget: Budget) -> LargestGroup | None:
     if groups is None:
         return None
     sizes = np.bitwise_count(groups.masks)
-    lower, reason, cut = counting_bound(threat), COUNTED, heuristic_cut(threat, budget)
+    known = known or by_counting(threat, budget)
+    lower, reason, cut = known.lower, known.reason, known.cut
     while lower < largest_left(threat.graph, cut):
         search = PartitionSearch(groups, np.where(sizes <= lower, 0, IMPOSSIBLE))
         chosen = _first_partition(search, budget)

@@ -1,0 +1,75 @@
+"""The worst attack on one plan by whatever edition of ``ratt_opt`` is on the path, for comparisons in the same run.
+
+Run by ``analysis.benchmarks.networks`` as a process of its own: reads the plan's data from a file, prints a line of
+JSON. Only names of the public contract are used, which every edition has.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ratt_opt import Problem
+    from ratt_opt._validation import IntArray
+
+__all__ = ["earlier_attack"]
+
+SPARE = 240.0
+"""Seconds beyond the limit before an earlier edition is given up: first uses compile, and some overrun."""
+
+
+def earlier_attack(tree: Path, problem: Problem, plan: IntArray, objective: str, seconds: float) -> dict[str, Any]:
+    """``lower``, ``upper``, ``stop`` and ``seconds`` of the edition in ``tree``; ``stop`` "none" where nothing came."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "plan.npz")
+        team: Any = problem.objective
+        links = np.array(sorted(problem.communication.links)).reshape(-1, 2)
+        budgets = np.array([problem.alpha_s, problem.alpha_c])
+        np.savez(path, prior=team.prior, information=team.information[plan], links=links, budgets=budgets)
+        asked = [sys.executable, __file__, str(path), objective, str(seconds)]
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(tree),
+            "NUMBA_CACHE_DIR": str(Path(tempfile.gettempdir(), "numba")),
+        }
+        try:
+            done = subprocess.run(
+                asked, env=environment, cwd=tree, capture_output=True, check=True, timeout=seconds + SPARE, text=True
+            )
+        except subprocess.TimeoutExpired:
+            return {"lower": 0.0, "upper": np.inf, "stop": "none", "seconds": seconds + SPARE}
+        answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+        return answer
+
+
+def _main(path: str, objective: str, seconds: float) -> None:
+    import networkx as nx
+
+    import ratt_opt
+
+    data = np.load(path)
+    n_robots = len(data["information"])
+    graph: nx.Graph[int] = nx.Graph()
+    graph.add_nodes_from(range(n_robots))
+    graph.add_edges_from(data["links"].tolist())
+    kinds = {"trace": "TraceObjective", "logdet": "LogDetObjective", "maxeig": "MaxEigenvalueObjective"}
+    team = getattr(ratt_opt, kinds[objective])(data["prior"], data["information"])
+    problem = ratt_opt.Problem(team, np.arange(n_robots), graph, *data["budgets"].tolist())
+    began = time.perf_counter()
+    result = ratt_opt.worst_case_attack(problem, np.arange(n_robots), time_limit=seconds)
+    spent = time.perf_counter() - began
+    ends = {"lower": result.lower, "upper": result.upper, "stop": result.stop.value, "seconds": spent}
+    sys.stdout.write(json.dumps(ends) + "\n")
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1], sys.argv[2], float(sys.argv[3]))

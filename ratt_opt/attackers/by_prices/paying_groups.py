@@ -1,0 +1,73 @@
+"""Groups that pay the prices, or the proof that there is none: the search over seeing robots, within a budget."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.by_prices.prices import KnownGroup
+from ratt_opt.attackers.by_prices.seeing_sets import FINISHED, PAUSED, Flows, SeeingStack, search_seeing_sets
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.by_prices.columns import Prices, Question
+    from ratt_opt.attackers.by_prices.team import Links, Team
+    from ratt_opt.budget import Budget
+
+__all__ = ["PayingGroups", "find_paying_groups"]
+
+FIRST_CHUNK, GLANCE = 500, 0.05
+"""Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
+
+SURCHARGE = 0.25
+"""Of a blinded robot [links], beyond what the whole team needs not to pay. Without one, groups with more blinded robots
+than there may be pay the prices; twice as much takes up to three times the nodes at 30 robots on hubs."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PayingGroups:
+    """``groups`` that pay; ``is_complete`` : with none, that there is none."""
+
+    groups: list[KnownGroup]
+    is_complete: bool
+
+
+def find_paying_groups(
+    team: Team, links: Links, prices: Prices, question: Question, budget: Budget, *, nodes: int, room: int
+) -> PayingGroups:
+    """Search for so many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
+
+    Raises
+    ------
+    OutOfBudget : the time is up.
+    """
+    n_robots = len(prices.robot)
+    flows = _flows(prices, question.budget)
+    stack = SeeingStack.of(len(links.robot), len(flows.share), team.prior, n_robots)
+    found = (np.zeros((room, n_robots), dtype=np.bool_), np.zeros((room, n_robots), dtype=np.bool_))
+    code, chunk, nodes = PAUSED, FIRST_CHUNK, budget.nodes_left(nodes)
+    while code == PAUSED and (before := int(stack.position[1])) < nodes:
+        budget.check()
+        began = monotonic()
+        code = search_seeing_sets(team, links, prices, flows, question, stack, min(chunk, nodes - before), found)
+        budget.nodes += int(stack.position[1]) - before
+        chunk = 2 * chunk if monotonic() - began < GLANCE else max(chunk // 2, 1)
+    below = float(np.nextafter(question.threshold, -np.inf))
+    count = int(stack.position[2])
+    groups = [
+        KnownGroup(robots=robots.copy(), need=int(blinded.sum()), value=below)
+        for robots, blinded in zip(found[0][:count], found[1][:count], strict=True)
+    ]
+    return PayingGroups(groups=groups, is_complete=code == FINISHED)
+
+
+def _flows(prices: Prices, n_blinded: int) -> Flows:
+    """Half of the robots' share and all of it, with the surcharge and without."""
+    n_robots = len(prices.robot)
+    least = n_robots - int(prices.capacity)  # the whole team as one group blinds so many at least
+    excess = float(prices.robot.sum()) - prices.blinded * least
+    dear = prices.blinded + SURCHARGE + max(excess / max(least - n_blinded, 1), 0.0)
+    mu = prices.blinded
+    return Flows(np.array([1.0, 0.5, 1.0, 0.0, 0.0]), np.array([mu, mu, dear, dear, mu]))

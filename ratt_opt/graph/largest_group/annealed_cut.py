@@ -1,0 +1,114 @@
+"""Few links whose cut leaves no group above a size, by simulated annealing over the robots' groups, in compiled code.
+
+Imported only where compiled loops are used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numba
+import numpy as np
+
+from ratt_opt.graph.largest_group.counting import largest_left
+
+if TYPE_CHECKING:
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.communication import Link
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["annealed_cut"]
+
+HOT, COLD, OVERSIZE = 3.0, 0.15, 2.0
+"""Temperatures and the price of a robot too many in a group, in links."""
+MOVES, MOVES_AT_ONCE = 1_500, 20_000
+"""Of a cooling for each robot, and between two looks at the clock. At 50 to 200 robots more find nothing better."""
+SPARE_GROUPS = (0, 1, 3)
+"""Groups beyond the fewest that hold all robots, one cooling each."""
+
+
+def annealed_cut(threat: Threat, cut: frozenset[Link], lower: int, budget: Budget) -> frozenset[Link]:
+    """A cut that leaves a smaller largest group than ``cut`` does, where annealing finds one; sizes are bisected.
+
+    ``lower`` : no cut leaves a smaller largest group
+    """
+    best, low = cut, lower
+    size = largest_left(threat.graph, best)
+    while low < size and budget.stop() is None:
+        goal = (low + size) // 2
+        found = _cut_below(threat, goal, budget)
+        if found is None:
+            low = goal + 1
+        else:
+            best, size = found, largest_left(threat.graph, found)
+    return best
+
+
+def _cut_below(threat: Threat, size: int, budget: Budget) -> frozenset[Link] | None:
+    """A cut within the budget that leaves groups of at most ``size`` robots, if a few coolings find one."""
+    n_robots, links = threat.graph.n_robots, sorted(threat.graph.links)
+    arcs = np.array([*links, *(link[::-1] for link in links)], dtype=np.int64).reshape(-1, 2)
+    price = np.array([len(links) + 1 if link in threat.protected_links else 1 for link in links] * 2, dtype=np.int64)
+    order = np.lexsort(arcs.T[::-1])
+    first = np.searchsorted(arcs[order, 0], np.arange(n_robots + 1))
+    network = (first, arcs[order, 1].copy(), price[order])
+    rng = np.random.default_rng(size)
+    for spare in SPARE_GROUPS:
+        count = -(-n_robots // size) + spare
+        group = rng.integers(0, count, n_robots)
+        state = (group, np.bincount(group, minlength=count), group.copy())
+        within, moves = threat.alpha_c + 1, MOVES * n_robots
+        for start in range(0, moves, MOVES_AT_ONCE):
+            if budget.stop() is not None:
+                break
+            part = (start, min(start + MOVES_AT_ONCE, moves), moves)
+            within = int(_cool(network, state, np.array([size, within]), part, rng))
+            if within <= threat.alpha_c:
+                best = state[2]
+                return frozenset((i, j) for i, j in links if best[i] != best[j])
+    return None
+
+
+@numba.njit(cache=True)
+def _cool(network: Any, state: Any, goal: Any, part: Any, rng: Any) -> Any:
+    """Moves of one cooling: the fewest links cut so far by groups within the size, those groups in place.
+
+    Parameters
+    ----------
+    network : start (N + 1,) of each robot's arcs; other robot and price (2 E,) of an arc
+    state : group (N,) of each robot, size (K,) of the groups, best groups (N,) so far
+    goal : largest size; fewest links so far; part : first and last move of this call, moves of the cooling
+    """
+    first, others, price = network
+    group, sizes, best = state
+    most, fewest = goal
+    n_robots, cut, over = len(group), 0, 0
+    for i in range(n_robots):
+        for a in range(first[i], first[i + 1]):
+            cut += price[a] * (group[others[a]] != group[i])
+    cut //= 2
+    for g in range(len(sizes)):
+        over += max(sizes[g] - most, 0)
+    for move in range(part[0], part[1]):
+        heat = HOT * (COLD / HOT) ** (move / part[2])
+        i = int(rng.random() * n_robots)
+        degree = first[i + 1] - first[i]
+        if degree and rng.random() < 0.95:
+            target = group[others[first[i] + int(rng.random() * degree)]]
+        else:
+            target = int(rng.random() * len(sizes))
+        home = group[i]
+        if home == target:
+            continue
+        change, excess = 0, int(sizes[target] >= most) - int(sizes[home] > most)
+        for a in range(first[i], first[i + 1]):
+            change += price[a] * (int(group[others[a]] == home) - int(group[others[a]] == target))
+        worse = change + OVERSIZE * excess
+        if worse <= 0 or rng.random() < np.exp(-worse / heat):
+            group[i], cut, over = target, cut + change, over + excess
+            sizes[home] -= 1
+            sizes[target] += 1
+            if over == 0 and cut < fewest:
+                fewest = cut
+                best[:] = group
+    return fewest
