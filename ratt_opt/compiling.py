@@ -25,7 +25,7 @@ AGAIN_AFTER = 0.01
 """Seconds until a dropped interrupt comes again."""
 
 
-class _Interrupts(event.Listener):  # type: ignore[misc]
+class _Interrupts(event.Listener):
     """Handles interrupts while the main thread compiles, or loads what was compiled; both may nest."""
 
     def __init__(self) -> None:
@@ -67,4 +67,4 @@ def _is_dropped_in(frame: FrameType | None) -> bool:
     return False
 
 
-event.register("numba:llvm_lock", _Interrupts())
+event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]

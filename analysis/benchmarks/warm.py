@@ -1,8 +1,8 @@
 """Warm starts: a scenario that moves step by step, planned anew cold and from the plan and the result before.
 
 Run as ``python -m analysis.benchmarks.warm [--robots 10 20] [--objectives ...] [--steps 50] [--gap G] [--seed S]``;
-with ``--leaves`` it says what proofs of the step before still prove. Robots carry out the best plan of each step and targets move as their motion says; what is believed of the targets stays
-the same.
+with ``--leaves`` it says what proofs of the step before still prove. Robots carry out the best plan of each step and
+targets move as their motion says; what is believed of the targets stays the same.
 """
 
 from __future__ import annotations

@@ -16,6 +16,11 @@ __all__ = ["ClosingRule", "Frontier"]
 WIDEST_GAP = 0.5
 """Relative gaps count as at most this where they say above which level a plan would have to be."""
 
+MARGINS = 8
+"""Roundings of a value that a bound may stay above a level it cannot be told from: tangents carry margins for their own
+rounding, of some such. Half of what a result counts as closed. With 1 a team whose optimum is 0 was divided on
+the winners of dozens of outcomes, without end."""
+
 
 class ClosingRule:
     """A bound closes a node where no plan below it can be better than the best known, by more than the gap.
@@ -26,7 +31,7 @@ class ClosingRule:
 
     def __init__(self, plans: Candidates, gap: float) -> None:
         self.plans, self.gap = plans, gap
-        self._rounding = plans.pool.objective.rounding
+        self._rounding = MARGINS * plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
