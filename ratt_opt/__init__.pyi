@@ -47,7 +47,7 @@ from .attackers.criticality import (
 )
 
 # == Missions
-from .missions.attack_models import (
+from .missions.players.attack_models import (
     AttackModel as AttackModel,
     PermanentFailures as PermanentFailures,
     PersistentAttacks as PersistentAttacks,
@@ -66,7 +66,7 @@ from .missions.models.targets import (
     KnownVelocity as KnownVelocity,
     TargetMotion as TargetMotion,
 )
-from .missions.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
+from .missions.players.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
 from .missions.replay.fit_sensor import FittedSensor as FittedSensor, fit_sensor as fit_sensor
 from .missions.replay.replay import (
     Replay as Replay,

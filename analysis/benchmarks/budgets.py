@@ -1,10 +1,10 @@
 """Attacks and max-min searches at any budget: which of 64 budgets close in time on complete graphs, and what is left.
 
 Run as ``python -m analysis.benchmarks.budgets [attack maxmin] [--robots 10 20 30] [--objectives trace logdet maxeig]
-[--draw grid random] [--seconds S] [--patience S] [--every K] [--seed S] [--log FILE] [--details]``. ``grid`` takes
-``alpha_s`` from 0 to N - 2 and ``alpha_c`` from 5 % to 95 % of the links, in 8 steps each; ``random`` draws 64
-budgets. Every case is one call with a time limit, in a process of its own, which is ended where the call does not come
-back within ``--patience`` seconds after its limit. Uses public names only, so that any edition can be measured.
+[--draw grid random] [--seconds S] [--processor] [--patience S] [--every K] [--seed S] [--log FILE] [--details]``.
+``grid`` takes ``alpha_s`` from 0 to N - 2 and ``alpha_c`` from 5 % to 95 % of the links, in 8 steps each; ``random``
+draws 64 budgets. Every case is one call with a time limit, in a process of its own, which is ended where the call does
+not come back within ``--patience`` seconds after its limit. Uses public names only, to measure any edition with.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import ratt_opt as ro
+from analysis.benchmarks.timing import count_processor_time
 from analysis.tables import append_csv, print_table
-from ratt_opt import random_scenario, ratt, solve_maxmin, worst_case_attack
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,6 +35,8 @@ CLOSED = {"attack": 1e-6, "maxmin": 1e-4}
 """Relative width that counts as closed."""
 GAP = 5e-5
 """That a max-min search is asked for."""
+BUSY = 10
+"""Wall seconds that a processor second may take on a busy machine before a call counts as lost."""
 SMALL = 13
 """Robots of the problems that a new process solves first, not counted: what is compiled is loaded then."""
 
@@ -53,9 +56,9 @@ class Case:
     def problem(self) -> Problem:
         """The problem of a random scenario."""
         n_targets = TARGETS.get(self.robots, 5)
-        return random_scenario(
-            self.robots, n_targets, alpha_s=self.alpha_s, alpha_c=self.alpha_c, seed=self.seed
-        ).problem(self.objective)
+        seed, cut = self.seed, self.alpha_c
+        scenario = ro.random_scenario(self.robots, n_targets, alpha_s=self.alpha_s, alpha_c=cut, seed=seed)
+        return scenario.problem(self.objective)
 
 
 def budgets(draw: str, robots: int, seed: int) -> list[tuple[int, int]]:
@@ -73,24 +76,26 @@ def budgets(draw: str, robots: int, seed: int) -> list[tuple[int, int]]:
 def prepare(case: Case) -> tuple[Problem, Any]:
     """What comes before the clock starts: the problem, and RATT's plan where that is attacked."""
     problem = case.problem()
-    return problem, ratt(problem).elements if case.what == "attack" else None
+    return problem, ro.ratt(problem).elements if case.what == "attack" else None
 
 
 def measure(problem: Problem, plan: Any, seconds: float) -> dict[str, Any]:
     """Bracket, wall and processor time of one call: an attack on the plan, or a max-min search where there is none."""
     began, spent = time.monotonic(), time.process_time()
     if plan is not None:
-        attack = worst_case_attack(problem, plan, time_limit=seconds)
+        attack = ro.worst_case_attack(problem, plan, time_limit=seconds)
         lower, upper, stop = attack.lower, attack.upper, attack.stop
     else:
-        found = solve_maxmin(problem, gap=GAP, time_limit=seconds)
+        found = ro.solve_maxmin(problem, gap=GAP, time_limit=seconds)
         lower, upper, stop = found.lower, found.upper, found.stop
     times = {"seconds": time.monotonic() - began, "processor": time.process_time() - spent}
     return times | {"lower": lower, "upper": upper, "stop": stop.value}
 
 
-def work(connection: Connection, seconds: float) -> None:
-    """Measure the cases that come through ``connection``, after one that does not count."""
+def work(connection: Connection, seconds: float, processor: bool) -> None:
+    """Measure the cases that come through ``connection``, after some that do not count."""
+    if processor:
+        count_processor_time()
     for name in ("trace", "logdet", "maxeig"):
         for what, cut in (("attack", 40), ("attack", 50), ("attack", 60), ("maxmin", 40)):
             small = Case(what=what, draw="", robots=SMALL, alpha_s=1, alpha_c=cut, objective=name, seed=0)
@@ -105,14 +110,15 @@ def work(connection: Connection, seconds: float) -> None:
 class Worker:
     """A process that measures cases, replaced by a new one where a call does not come back."""
 
-    def __init__(self, seconds: float, patience: float) -> None:
-        self.seconds, self.patience = seconds, patience
+    def __init__(self, seconds: float, patience: float, *, processor: bool) -> None:
+        self.seconds, self.processor = seconds, processor
+        self.patience = (BUSY * (seconds + patience) if processor else seconds + patience) - seconds
         self._start()
 
     def _start(self) -> None:
         context = get_context("spawn")
         self.connection, other = context.Pipe()
-        self.process = context.Process(target=work, args=(other, self.seconds), daemon=True)
+        self.process = context.Process(target=work, args=(other, self.seconds, self.processor), daemon=True)
         self.process.start()
         self.connection.recv()
 
@@ -135,7 +141,7 @@ class Worker:
 
 def run(cases: Iterator[Case], options: argparse.Namespace) -> list[dict[str, Any]]:
     """Measure every case; each is appended to the log as it ends."""
-    worker, rows = Worker(options.seconds, options.patience), []
+    worker, rows = Worker(options.seconds, options.patience, processor=options.processor), []
     for case in cases:
         row = asdict(case) | worker.measure(case)
         width = (row["upper"] - row["lower"]) / max(abs(row["upper"]), 1e-300) if np.isfinite(row["upper"]) else 1.0
@@ -180,6 +186,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--objectives", nargs="*", default=names, choices=names)
     parser.add_argument("--draw", nargs="*", default=("grid", "random"), choices=("grid", "random"))
     parser.add_argument("--seconds", type=float, default=5.0, help="time limit of one call")
+    parser.add_argument("--processor", action="store_true", help="count seconds of the processor, on a busy machine")
     parser.add_argument("--patience", type=float, default=15.0, help="seconds after the limit to wait for a call")
     parser.add_argument("--every", type=int, default=1, help="take every K-th budget only")
     parser.add_argument("--seed", type=int, default=0, help="of the scenarios and the random budgets")

@@ -14,15 +14,15 @@ import numpy as np
 
 from analysis.tables import print_table
 from ratt_opt import MaxMinPlanner, MissionModel, random_scenario, ratt, run_mission, solve_maxmin
-from ratt_opt.missions.attack_models import RenewedAttacks
 from ratt_opt.missions.beam import best_alone, solve_by_columns
 from ratt_opt.missions.planning import offered_sequences
+from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.world import World
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from ratt_opt.missions.horizon import Sequences
-    from ratt_opt.missions.planners import Planner
+    from ratt_opt.missions.ahead.horizon import Sequences
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
 
 TEAMS = ((10, 15, 3, 11), (30, 25, 10, 108))
@@ -66,6 +66,9 @@ def ahead() -> list[dict[str, object]]:
         (3, "known velocity", BEAM),
     ):
         world = World(scenario, MissionModel(motion=motion, beam=beam), horizon)
+        ratt(
+            first_step(world, offered_sequences(world, world.motion.initial(scenario), scenario.poses, 0.0))
+        )  # compiles
         began = perf_counter()
         problem = first_step(world, offered_sequences(world, world.motion.initial(scenario), scenario.poses, 0.0))
         ratt(problem)

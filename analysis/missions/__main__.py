@@ -9,5 +9,5 @@ from analysis.missions.claims import write_claims
 from analysis.studies.command import main
 
 if __name__ == "__main__":
-    ENTRIES = [flights.ENTRY, exact_flights.ENTRY, consistency.ENTRY]
+    ENTRIES = [*flights.ENTRIES, *exact_flights.ENTRIES, consistency.ENTRY]
     sys.exit(main("Missions under attack.", ENTRIES, trials=100, after=write_claims))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from analysis.missions import exact_flights, flights
 from analysis.missions.consistency import LINEARISATIONS, ratios
 from analysis.studies import claims
 from analysis.studies.claims import Claim
@@ -14,49 +15,50 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from analysis.studies.study import Study
+
 __all__ = ["CLAIMS", "write_claims"]
 
 LOW, HIGH = 0.95, 1.10
 """Mean squared error over trace of a filter that knows its error."""
 
 
-def _compared(study: str, metric: str, unit: str, others: tuple[str, ...]) -> Iterator[Claim]:
-    text = {"rmse": "RMSE", "trace": "trace of covariance"}[metric]
-    named = {"greedy": "Greedy", "myopic": "Myopic", "random": "Random"}
-    for other in others:
+NAMES = {"greedy": "Greedy", "myopic": "Myopic", "random": "Random", "nonrobust": "the best plan without attack"}
+METRICS = (("rmse", "RMSE", "m"), ("trace", "trace of covariance", "m²"))
+
+
+def _below(study: Study, module: str, left: str, right: str, text: str) -> Iterator[Claim]:
+    """The left player's errors, and covariances, are below the right's; ``{}`` in the text is the metric."""
+    for metric, named, unit in METRICS:
         yield Claim(
-            figure=study,
-            command=f"analysis.missions.{study}",
-            statement=f"under the worst attacks RATT's {text} is below that of {named[other]}",
-            left=f"ratt/worst/{metric}",
-            right=f"{other}/worst/{metric}",
+            figure=study.name,
+            command=f"analysis.missions.{module} --only {study.name}",
+            statement=text.format(named),
+            left=f"{left}/{metric}",
+            right=f"{right}/{metric}",
             unit=unit,
         )
-    yield Claim(
-        figure=study,
-        command=f"analysis.missions.{study}",
-        statement=f"without attack Greedy's {text} is below RATT's (the price of robustness)",
-        left=f"greedy/none/{metric}",
-        right=f"ratt/none/{metric}",
-        unit=unit,
-    )
 
 
-CLAIMS = (
-    *_compared("flights", "rmse", "m", ("greedy", "myopic", "random")),
-    *_compared("flights", "trace", "m²", ("greedy", "myopic")),
-    *(
-        Claim(
-            figure="exact_flights",
-            command="analysis.missions.exact_flights",
-            statement=f"under the worst attacks the {text} of exact max-min plans is below RATT's",
-            left=f"maxmin/worst/{metric}",
-            right=f"ratt/worst/{metric}",
-            unit=unit,
-        )
-        for metric, text, unit in (("rmse", "RMSE", "m"), ("trace", "trace of covariance", "m²"))
-    ),
-)
+def _claims() -> Iterator[Claim]:
+    for study in flights.STUDIES:
+        n = study.cases[0].n_robots
+        for other in ("greedy", "myopic", "random"):
+            text = f"{n} robots, worst attacks: RATT's {{}} is below that of {NAMES[other]}"
+            yield from _below(study, "flights", "ratt/worst", f"{other}/worst", text)
+    for study in exact_flights.STUDIES:
+        n = study.cases[0].n_robots
+        text = f"{n} robots, worst attacks: the {{}} of max-min plans is below RATT's"
+        yield from _below(study, "exact_flights", "maxmin/worst", "ratt/worst", text)
+        text = f"{n} robots, worst attacks: RATT's {{}} is below that of {NAMES['nonrobust']}"
+        yield from _below(study, "exact_flights", "ratt/worst", "nonrobust/worst", text)
+    yield from _below(flights.MILD, "flights", "greedy/none", "ratt/none", "no attack: Greedy's {} is below RATT's")
+    for attacker in ("random", "bounded rational"):
+        text = f"{attacker} attacks: RATT's {{}} is below Greedy's"
+        yield from _below(flights.MILD, "flights", f"ratt/{attacker}", f"greedy/{attacker}", text)
+
+
+CLAIMS = tuple(_claims())
 
 
 def write_claims(out: Path) -> None:

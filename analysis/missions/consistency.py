@@ -16,7 +16,7 @@ from analysis.studies.plots import new_figure, save
 from analysis.studies.statistics import column, estimate, select
 from analysis.studies.study import Study
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.missions.attack_models import RenewedAttacks
+from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import Linearisation, MissionModel, World
 from ratt_opt.problem import Attack

@@ -31,7 +31,7 @@ class Claim:
     """The mean of column ``left`` is below that of ``right`` in every case, trial by trial.
 
     With ``share``, the claim is instead that ``left / right - 1`` is below ``share``.
-    ``command`` : module that makes the results, ``package.study``.
+    ``command`` : what makes the results: a module ``package.study``, or ``package.module --only study``.
     """
 
     figure: str
@@ -45,7 +45,7 @@ class Claim:
     @property
     def study(self) -> str:
         """Folder of the results."""
-        return self.command.rpartition(".")[2]
+        return self.command.split()[-1].rpartition(".")[2]
 
     def measured(self, rows: Sequence[Mapping[str, str]]) -> dict[str, FloatArray]:
         """(T,) per case: the paired differences (or excess shares), trial by trial."""

@@ -15,8 +15,10 @@ from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_atta
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, PlanValues
+from ratt_opt.attackers.tree_bound import size_bound, tree_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.largest_group.spreading import forced_size
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
 from ratt_opt.progress import Step
@@ -35,13 +37,17 @@ __all__ = ["attack_survey", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-BOUND_SHARE, BOUND_NODES = 0.3, 500_000
-"""Of what is left of the budget, and at most so many nodes, for the weakest group of the forced size; prices get the
-rest. Not measured."""
+TREE_SHARE, BOUND_SHARE, BOUND_NODES = 0.2, 0.3, 500_000
+"""Of what is left of the budget for tree inequalities; then, and at most so many nodes, for the weakest group of the
+forced size; prices get the rest. Not measured."""
 
 FIRST_STARTS, INNER_STARTS = 12, 3
 """Annealed attacks before the first threshold, and where only nodes are limited or another search asks: about every
 fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded)."""
+
+INNER_NODES = 500_000
+"""Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
+teams, none of which need ever close."""
 
 EXACT_SHARE = 0.9
 """Of the seconds of a survey; the heuristics need little."""
@@ -74,7 +80,8 @@ def worst_case_attack(
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, and prices that
       no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of the budget: give one,
-      as sparse graphs of 50 robots can take hours to close. Relies on a non-decreasing objective, as above; targets of
+      as graphs of 50 robots can take hours to close (of another search's budget that limits nothing, half a million
+      nodes). Relies on a non-decreasing objective, as above; targets of
       any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
@@ -172,11 +179,26 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
 
         stop = forced_group_bound(task, team)
         return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
+    if is_brief and task.budget.max_nodes is None and math.isinf(task.budget.seconds_left):
+        task.budget.max_nodes = task.budget.nodes + INNER_NODES
     prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
         return forced_group_bound(task, team)
     prices.anneal(INNER_STARTS if is_brief else FIRST_STARTS)
-    return Stop.CLOSED if _forced_group_in_share(task, team) is Stop.CLOSED else prices.run()
+    least = _by_trees(task, is_brief=is_brief)
+    return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
+
+
+def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
+    """Seeing robots that some group is forced to keep, by tree inequalities; the bracket knows what that is worth."""
+    objective, threat, part = task.problem.objective, task.problem.threat, task.budget.part(TREE_SHARE)
+    assert isinstance(objective, InformationObjective)
+    size = forced_size(threat, part, threat.graph.n_robots)
+    task.bracket.raise_lower(size_bound(objective, task.values.plan, size))
+    if not is_brief:
+        task.bracket.raise_lower(tree_bound(objective, task.values.plan, threat, part, task.bracket.upper))
+    task.budget.check()
+    return size
 
 
 def _price_search(task: AttackTask) -> PriceSearch | None:
@@ -191,13 +213,13 @@ def _price_search(task: AttackTask) -> PriceSearch | None:
     return PriceSearch(task, team)
 
 
-def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None) -> Stop:
+def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None, least: int) -> Stop:
     """The bound of the forced size within its share of the seconds and nodes left; the bracket keeps what it proves."""
     budget = task.budget
     nodes = math.inf if budget.max_nodes is None else BOUND_SHARE * budget.nodes_left(budget.max_nodes)
     part = budget.part(BOUND_SHARE, max_nodes=int(min(nodes, BOUND_NODES)))
     try:
-        return forced_group_bound(replace(task, budget=part), team)
+        return forced_group_bound(replace(task, budget=part), team, least)
     except OutOfBudget as out:
         if out.stop is Stop.INTERRUPTED:
             raise

@@ -34,8 +34,10 @@ def forced_survivors(threat: Threat) -> int:
     return max(by_sizes, counting_bound(threat) - threat.n_blinded, 1 if threat.n_blinded < n_robots else 0)
 
 
-def forced_group_bound(task: AttackTask, team: PlanarTeam | None) -> Stop:
+def forced_group_bound(task: AttackTask, team: PlanarTeam | None, least: int = 0) -> Stop:
     """Narrow the bracket where no exact search applies: more incumbents, then the weakest group of the forced size.
+
+    ``least`` : seeing robots that are known to be left in some group
 
     Relies on a non-decreasing objective. A group of k robots is worth at least its strongest robot, so
     at least the k-th smallest individual value; for two-dimensional targets the weakest set of k robots
@@ -44,7 +46,7 @@ def forced_group_bound(task: AttackTask, team: PlanarTeam | None) -> Stop:
     task.budget.check()
     single = task.values.singletons()
     _offer_cut(task, single)
-    size = forced_survivors(task.problem.threat)
+    size = max(forced_survivors(task.problem.threat), least)
     if size:
         task.bracket.raise_lower(float(np.sort(single)[size - 1]))
     if team is not None and size:

@@ -55,7 +55,7 @@ def track(
 ) -> None:
     """Fly a mission under attack in simulation; write tables, figures, an animation and a player."""
     from ratt_opt._files import output_directory
-    from ratt_opt.missions.planners import MaxMinPlanner
+    from ratt_opt.missions.players.planners import MaxMinPlanner
     from ratt_opt.missions.run import run_mission
     from ratt_opt.missions.world import MissionModel
     from ratt_opt.report.mission.write import write_mission

@@ -134,24 +134,17 @@ def bound(
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
-        plan = ratt(problem, budget=budget)
-        alpha_cs = plan.alpha_cs
-        assert alpha_cs is not None  # RATT's own plan says what it took the link attacks to be worth
-        robust = _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+        alpha_cs, robust = _planned(problem, budget)
         baselines = _kept(budget, lambda: tuple(_baselines(problem, budget)))
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers)
-        optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
-        found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-        known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
-        best = _kept(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
+        optimum, best = _best(problem, search, budget)
     with steps("other attacks on the recommended plan"):
-        shown = recommended((robust, best, *baselines))
-        views = _kept(budget, lambda: views_of(problem, shown, budget.part(ATTACK_SHARE)))
+        shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)
+        views = _kept(budget, lambda: views_of(problem, shown, part))
     with steps("curvature and guarantees"):
         k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
-        part = budget.part(CURVATURE_SHARE)
-        guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, part, k=k, c=c))
+        guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, budget, k=k, c=c))
     with steps("certificate"):
         interrupted = budget.stop() is Stop.INTERRUPTED
         proof, failure = (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate, whole)
@@ -174,10 +167,30 @@ def bound(
         seeds={"random": RANDOM_SEED},
         interrupted=interrupted,
     )
-    if failure is not None:
-        failure.report = report
-        raise failure
-    return report
+    return _delivered(report, failure)
+
+
+def _delivered(report: BoundReport, failure: ProofError | None) -> BoundReport:
+    """The report, or the fault of its proof with the report in it."""
+    if failure is None:
+        return report
+    failure.report = report
+    raise failure
+
+
+def _planned(problem: Problem, budget: Budget) -> tuple[int, PlanAssessment]:
+    """RATT's plan under attack, and what it took the link attacks to be worth."""
+    plan = ratt(problem, budget=budget)
+    assert plan.alpha_cs is not None  # RATT's own plan says so
+    return plan.alpha_cs, _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+
+
+def _best(problem: Problem, search: Callable[..., MaxMinResult], budget: Budget) -> tuple[MaxMinResult, PlanAssessment]:
+    """The search for the best plan, and that plan under attack."""
+    optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
+    found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
+    known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
+    return optimum, _kept(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
 
 
 def _certified(
@@ -241,6 +254,7 @@ def _guarantees(
     problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
+    budget = budget.part(CURVATURE_SHARE)
     found = all_guarantees(problem, alpha_cs, k=k, c=c, budget=budget)
     if k or c:
         found["this instance"] = instance_bound(problem, robust.elements, k=k, c=c, time_limit=None, budget=budget)

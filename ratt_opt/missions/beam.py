@@ -16,7 +16,7 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.budget import Budget
-from ratt_opt.missions.horizon import Sequences, extended
+from ratt_opt.missions.ahead.horizon import Sequences, extended
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
 from ratt_opt.solvers.result import MaxMinResult

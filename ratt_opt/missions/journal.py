@@ -19,7 +19,7 @@ from ratt_opt.errors import FileFormatError, InputError
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from ratt_opt.scenario.model import Scenario
@@ -29,9 +29,13 @@ __all__ = ["Journal"]
 
 @dataclass(slots=True)
 class Journal:
-    """The decisions recorded so far; ``path`` is ``None`` where none are kept."""
+    """The decisions recorded so far; ``path`` is ``None`` where none are kept.
+
+    The file begins with the first decision: a mission that is refused leaves none behind.
+    """
 
     path: Path | None
+    head: Mapping[str, Any] = field(default_factory=dict)
     lines: list[tuple[IntArray, Attack]] = field(default_factory=list)
 
     @classmethod
@@ -54,10 +58,11 @@ class Journal:
             "version": 1,
             "mission": hashlib.sha256(text.encode()).hexdigest(),
         }
-        journal = cls(file)
-        whole = _whole_lines(file)
+        journal = cls(file, head)
+        *whole, torn = _lines(file)
         if not whole:
-            _write(file, "w", head)
+            if not json.dumps(head).startswith(torn):
+                raise FileFormatError(f"{file} line 1", "must be a mission's journal", torn)
             return journal
         first, *rest = [_parsed(file, number, line) for number, line in enumerate(whole, start=1)]
         if first.get("format") != head["format"]:
@@ -80,23 +85,22 @@ class Journal:
         if self.path is not None:
             links = [list(link) for link in sorted(attack.links)]
             line = {"step": step, "elements": elements.tolist(), "sensing": sorted(attack.sensing), "links": links}
-            _write(self.path, "a", line)
+            _write(self.path, [line] if step else [self.head, line])
 
 
-def _whole_lines(file: Path) -> list[str]:
-    if not file.exists():
-        return []
+def _lines(file: Path) -> list[str]:
+    """Whole lines, and what follows the last of them."""
     try:
-        text = file.read_text(encoding="utf-8")
+        return file.read_text(encoding="utf-8").split("\n") if file.exists() else [""]
     except (OSError, UnicodeDecodeError) as error:
         raise FileFormatError(str(file), "must be a mission's journal", type(error).__name__) from None
-    return text.split("\n")[:-1]
 
 
-def _write(file: Path, mode: str, record: Mapping[str, Any]) -> None:
+def _write(file: Path, records: Sequence[Mapping[str, Any]]) -> None:
+    """Append records, or begin the file with a first pair of them."""
     try:
-        with file.open(mode, encoding="utf-8") as stream:
-            stream.write(json.dumps(record) + "\n")
+        with file.open("w" if len(records) > 1 else "a", encoding="utf-8") as stream:
+            stream.write("".join(json.dumps(record) + "\n" for record in records))
             stream.flush()
             os.fsync(stream.fileno())
     except OSError as error:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt.missions.ahead.horizon import Sequences
 from ratt_opt.missions.beam import beam_sequences
-from ratt_opt.missions.horizon import Sequences
 from ratt_opt.problem import Attack, Problem
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,14 +43,15 @@ class Innovation:
 
 def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck: FloatArray) -> list[Reading]:
     """What every robot would measure of targets at ``truth`` (M, 2); ``luck`` (N, M, k) standard normal numbers."""
-    readings = []
-    for i, sensor in enumerate(world.sensors):
-        apart = np.linalg.norm(truth - poses[i, :2], axis=-1)
-        there = np.where((apart > ON_TOP)[:, None], truth, truth + 1.0)
-        noise = np.sqrt(sensor.noise(poses[i], there)) * luck[i, :, : sensor.size]
-        seen = sensor.sees(poses[i], there) & (apart > ON_TOP)
-        readings.append(Reading(sensor.measure(poses[i], there) + noise, seen))
-    return readings
+    readings: dict[int, Reading] = {}
+    for sensor, robots in world.alike:
+        here = poses[robots][:, None]
+        apart = np.linalg.norm(truth - here[..., :2], axis=-1)
+        there = np.where((apart > ON_TOP)[..., None], truth, truth + 1.0)
+        values = sensor.measure(here, there) + np.sqrt(sensor.noise(here, there)) * luck[robots, :, : sensor.size]
+        seen = sensor.sees(here, there) & (apart > ON_TOP)
+        readings |= {int(i): Reading(values[k], seen[k]) for k, i in enumerate(robots)}
+    return [readings[i] for i in range(len(poses))]
 
 
 def group_pieces(
@@ -68,16 +69,18 @@ def group_pieces(
     ``poses`` : robot by robot (3,), or (M, 3) where each target was measured from another pose.
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)
-    members = sorted(robots)
+    members = set(robots)
     rounds = ROUNDS if world.model.linearisation == "iterated" else 1
     point, spread = predicted, None if world.model.linearisation == "first order" else predicted.position_covariance
     for _ in range(rounds):
         squared, count = 0.0, 0
-        for i in members:
-            piece = _linearise(world.sensors[i], poses[i], readings[i], (predicted, point, spread))
-            pieces.information[i, :, :2, :2], pieces.vector[i, :, :2] = piece.information, piece.vector
-            squared, count = squared + piece.squared, count + piece.count
-        chosen = np.isin(np.arange(world.scenario.n_robots), members)
+        for sensor, owners in world.alike:
+            own = [i for i in owners.tolist() if i in members]
+            if own:
+                read = _linearise(sensor, _stacked(own, poses, readings), (predicted, point, spread))
+                pieces.information[own, :, :2, :2], pieces.vector[own, :, :2] = read.information, read.vector
+                squared, count = squared + read.squared, count + read.count
+        chosen = np.isin(np.arange(world.scenario.n_robots), sorted(members))
         information, vector = pieces.of(chosen)
         updated = predicted.updated(information, vector)
         point, spread = updated, None if spread is None else updated.position_covariance
@@ -88,37 +91,52 @@ def group_pieces(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Piece:
-    """One robot's ``information`` (M, 2, 2) and ``vector`` (M, 2), and ``nu' R^-1 nu`` of the numbers measured."""
+class _Sightings:
+    """What K robots with the same sensor measured, from ``poses`` (K, M, 3): ``values`` (K, M, k), ``seen`` (K, M)."""
+
+    poses: FloatArray
+    values: FloatArray
+    seen: BoolArray
+
+
+def _stacked(robots: list[int], poses: Mapping[int, FloatArray], readings: Mapping[int, Reading]) -> _Sightings:
+    seen = np.stack([readings[i].seen for i in robots])
+    places = np.stack([np.broadcast_to(poses[i], (seen.shape[1], 3)) for i in robots])
+    return _Sightings(places, np.stack([readings[i].values for i in robots]), seen)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Read:
+    """K robots' ``information`` (K, M, 2, 2) and ``vector`` (K, M, 2), and ``nu' R^-1 nu`` of the numbers measured."""
 
     information: FloatArray
     vector: FloatArray
-    squared: float = 0.0
-    count: int = 0
+    squared: float
+    count: int
 
 
-def _linearise(
-    sensor: SensorModel, pose: FloatArray, reading: Reading, about: tuple[Belief, Belief, FloatArray | None]
-) -> _Piece:
-    """One robot's piece, linearised at the second belief of ``about``; the first is the prediction."""
+def _linearise(sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, Belief, FloatArray | None]) -> _Read:
+    """Some robots' pieces, linearised at the second belief of ``about``; the first is the prediction."""
     predicted, point, spread = about
-    places = point.positions
-    pose = np.broadcast_to(pose, (len(places), 3))
-    piece = _Piece(np.zeros((*places.shape, 2)), np.zeros(places.shape))
-    usable = reading.seen & sensor.sees(pose, predicted.positions)
-    usable &= np.linalg.norm(places - pose[:, :2], axis=-1) > ON_TOP
-    j = np.flatnonzero(usable)
-    if not len(j):
-        return piece
-    slope = sensor.jacobian(pose[j], places[j])
-    weights = np.linalg.inv(sensor.noise_covariance(pose[j], places[j], None if spread is None else spread[j]))
-    surprise = sensor.surprise(reading.values[j], sensor.measure(pose[j], places[j]))
+    poses, places = sightings.poses, point.positions
+    usable = sightings.seen & sensor.sees(poses, predicted.positions)
+    usable &= np.linalg.norm(places - poses[..., :2], axis=-1) > ON_TOP
+    i, j = np.nonzero(usable)
+    here, there = poses[i, j], places[j]
+    slope = sensor.jacobian(here, there)
+    weights = np.linalg.inv(sensor.noise_covariance(here, there, None if spread is None else spread[j]))
+    surprise = sensor.surprise(sightings.values[i, j], sensor.measure(here, there))
     # As linear in the position: the surprise at the point of linearisation, plus the slope times that point.
-    linear = surprise + (slope @ places[j][..., None])[..., 0]
+    linear = surprise + (slope @ there[..., None])[..., 0]
     weighted = np.swapaxes(slope, -1, -2) @ weights
     information = weighted @ slope
-    piece.information[j] = (information + np.swapaxes(information, -1, -2)) / 2
-    piece.vector[j] = (weighted @ linear[..., None])[..., 0]
     off = linear - (slope @ predicted.positions[j][..., None])[..., 0]
-    squared = float(np.einsum("mi,mij,mj->", off, weights, off))
-    return replace(piece, squared=squared, count=len(j) * sensor.size)
+    read = _Read(
+        information=np.zeros((*usable.shape, 2, 2)),
+        vector=np.zeros((*usable.shape, 2)),
+        squared=float(np.einsum("mi,mij,mj->", off, weights, off)),
+        count=len(j) * sensor.size,
+    )
+    read.information[i, j] = (information + np.swapaxes(information, -1, -2)) / 2
+    read.vector[i, j] = (weighted @ linear[..., None])[..., 0]
+    return read

@@ -18,8 +18,8 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_finite, check_integer, check_number, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.missions.planners import MaxMinPlanner, elements_of, planner_called
 from ratt_opt.missions.planning import offered_sequences
+from ratt_opt.missions.players.planners import MaxMinPlanner, elements_of, planner_called
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.tracker_state import Measurement, TrackerState
 from ratt_opt.missions.world import MissionModel, Threatened, World
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from ratt_opt.missions.ahead.horizon import Sequences
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.horizon import Sequences
-    from ratt_opt.missions.planners import Planner
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.scenario.model import Scenario
 
@@ -42,6 +42,8 @@ SEARCH_SHARE = 0.7
 """Of a step's time left, for the max-min search: it looks at the clock between nodes, which take a while themselves."""
 ON_TIME = 1e-6
 """Clocks whose steps differ by less than this share of the period count as one period."""
+MOST_PERIODS = 10_000
+"""That may pass between two steps: each is predicted on its own; after so many nothing is known of a target."""
 
 
 class Tracker:
@@ -146,6 +148,8 @@ class Tracker:
         return TrackerState(time=0.0, now=None, poses=self.scenario.poses, belief=belief, controls=readonly(controls))
 
     def _checked(self, state: TrackerState) -> TrackerState:
+        if not isinstance(state, TrackerState):
+            raise InputError("state", "must be a TrackerState", type(state).__name__)
         n, m, d = self.scenario.n_robots, self.scenario.n_targets, self.world.motion.dimension
         expected = {"poses": (n, 3), "mean": (m, d), "controls": (n, self.world.horizon, 2)}
         found = {"poses": state.poses.shape, "mean": state.belief.mean.shape, "controls": state.controls.shape}
@@ -182,12 +186,18 @@ class Tracker:
             return self.world.period
         if now < self.state.now:
             raise InputError("now", f"must not be before the last step's {self.state.now:.6g} s", now)
+        latest = self.state.now + MOST_PERIODS * self.world.period
+        if now > latest:
+            rule = f"must be within {MOST_PERIODS} sampling periods of the last step's, by {latest:.6g} s"
+            raise InputError("now", rule, now)
         return now - self.state.now
 
     def _readings(self, measurements: list[Measurement]) -> dict[int, Reading]:
         readings: dict[int, Reading] = {}
         n, m = self.scenario.n_robots, self.scenario.n_targets
         for k, measurement in enumerate(measurements):
+            if not isinstance(measurement, Measurement):
+                raise InputError(f"measurements[{k}]", "must be a Measurement", type(measurement).__name__)
             i = check_integer(f"measurements[{k}].robot", measurement.robot, low=0, high=n - 1)
             j = check_integer(f"measurements[{k}].target", measurement.target, low=0, high=m - 1)
             size = self.world.sensors[i].size

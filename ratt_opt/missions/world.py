@@ -11,16 +11,16 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.missions.horizon import (
+from ratt_opt.missions.ahead.dominance import undominated
+from ratt_opt.missions.ahead.horizon import (
     OUTPUTS,
     Sequences,
     control_sequences,
-    joint_covariance,
+    joint_position_covariance,
     output_matrix,
-    undominated,
 )
 from ratt_opt.missions.models.robots import robot_motion
-from ratt_opt.missions.models.sensors import SensorModel, sensors_of
+from ratt_opt.missions.models.sensors import SensorModel, robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.criteria.registry import criterion_called
@@ -72,10 +72,15 @@ class MissionModel:
             if getattr(self, name) not in known:
                 raise InputError(name, f"must be {', '.join(known)}", getattr(self, name))
         criterion_called(self.objective)
-        if self.area is not None and not (self.area[0] < self.area[2] and self.area[1] < self.area[3]):
+        if self.area is not None and not _is_rectangle(self.area):
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
         if self.beam is not None:
             check_integer("beam", self.beam, low=1)
+
+
+def _is_rectangle(area: object) -> bool:
+    corners = np.array(area) if isinstance(area, (tuple, list, np.ndarray)) else np.zeros(0)
+    return corners.shape == (4,) and corners.dtype.kind in "iuf" and bool((corners[:2] < corners[2:]).all())
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,16 +102,19 @@ class World:
     motion: TargetMotion = field(init=False)
     sensors: tuple[SensorModel, ...] = field(init=False)
     move: RobotMotion = field(init=False)
+    alike: tuple[tuple[SensorModel, IntArray], ...] = field(init=False)
+    """Every different sensor with the robots that have it: what they measure is worked out together."""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.model, MissionModel):
+            raise InputError("model", "must be a MissionModel", type(self.model).__name__)
         check_integer("horizon", self.horizon, low=1)
         object.__setattr__(self, "motion", target_motion(self.model.motion, self.scenario))
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
+        object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
-        if self.model.objective != "trace" and (self.horizon > 1 or self.motion.dimension > 2):
-            raise InputError(
-                "objective", "must be trace for a part of a state (horizon > 1, velocities)", self.model.objective
-            )
+        if self.model.objective != "trace" and self.horizon > 1:
+            raise InputError("objective", "must be trace where a plan looks several steps ahead", self.model.objective)
 
     @property
     def period(self) -> float:
@@ -132,15 +140,19 @@ class World:
         return self.criterion(belief, sequences, time), sequences
 
     def criterion(self, belief: Belief, sequences: Sequences, time: float) -> InformationObjective:
-        """The criterion of these sequences."""
-        predicted, d = self._predictions(belief, time), self.motion.dimension
+        """The criterion of these sequences: of the positions of all steps, which is all that measurements speak of.
+
+        A Gaussian's marginal is updated by what is measured of it alone, so velocities need not be carried along.
+        """
+        predicted = self._predictions(belief, time)
         blocks = self._blocks(sequences, predicted)
-        information = np.zeros((*blocks.shape[:2], self.horizon * d, self.horizon * d))
+        size = 2 * self.horizon
+        information = np.zeros((*blocks.shape[:2], size, size))
         for h in range(self.horizon):
-            information[:, :, h * d : h * d + 2, h * d : h * d + 2] = blocks[:, :, h]
-        prior = joint_covariance(predicted, self.motion, self.period)
+            information[:, :, 2 * h : 2 * h + 2, 2 * h : 2 * h + 2] = blocks[:, :, h]
+        prior = joint_position_covariance(predicted, self.motion, self.period)
         weights = np.array([target.weight for target in self.scenario.targets])
-        output = output_matrix(self.model.output, self.horizon, d)
+        output = output_matrix(self.model.output, self.horizon)
         if output is None:
             return criterion_called(self.model.objective)(prior, information, weights)
         return TraceObjective(prior, information, weights, output=output)
@@ -203,8 +215,8 @@ class World:
         points = ahead.positions
         spread = None if self.model.linearisation == "first order" else ahead.position_covariance
         information = np.empty((len(sequences.owner), len(points), 2, 2))
-        for i, sensor in enumerate(self.sensors):
-            own = sequences.owner == i
+        for sensor, robots in self.alike:
+            own = np.isin(sequences.owner, robots)
             with np.errstate(divide="ignore", invalid="ignore"):  # on top of a target there is no bearing
                 information[own] = sensor.information(sequences.poses[own, h], points, spread)
         usable = np.asarray(np.isfinite(information).all(axis=(-1, -2)))

@@ -382,3 +382,23 @@ def test_a_curvature_over_feasible_sets_says_what_it_relies_on():
     f, owners = section_six("trace", 3)
     assert "submodularity relied on, not checked" in ro.curvature(f, owners).how
     assert "relied on" not in ro.curvature(*section_six("logdet", 3)).how
+
+
+@pytest.mark.parametrize("kind", ["trace", "logdet"])
+def test_large_ground_sets_know_one_context_of_every_element_at_once(kind, monkeypatch):
+    """Where a single search would take too long, elements are judged on top of the strongest others."""
+    from ratt_opt.curvatures.separable import marginal_brackets
+
+    monkeypatch.setattr(marginal_brackets, "AT_ONCE", 0)
+    problem = ro.random_scenario(12, 4, alpha_s=0, alpha_c=0, seed=5).problem(kind)
+    f = problem.objective
+    found = ro.total_curvature(f, problem.robot, time_limit=0)
+    assert found.nodes == 0
+    assert found.lower > 0
+    context = found.smallest_context
+    assert len(set(problem.robot[[found.element, *context]])) == 12
+    gain = f([*context, found.element]) - f(context)
+    assert 1 - gain / f([found.element]) == pytest.approx(found.lower, rel=1e-6)
+    searched = ro.total_curvature(f, problem.robot, time_limit=2)
+    assert found.lower <= searched.upper
+    assert searched.lower <= found.upper

@@ -7,7 +7,7 @@ from itertools import combinations
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
@@ -16,7 +16,7 @@ from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
 from ratt_opt.graph.largest_group.counting import counting_bound, largest_left
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
-from ratt_opt.graph.largest_group.spreading import SCALE, TreeProgram, forced_size
+from ratt_opt.graph.largest_group.spreading import SCALE, TreeProgram, forced_size, forced_weight
 from ratt_opt.graph.threat import Threat
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
 from tests.strategies import random_graph
@@ -38,26 +38,41 @@ def random_threat(seed, most_robots=6, most_links=9):
     )
 
 
-def smallest_by_definition(threat):
-    """The largest group of seeing robots that an attack leaves, least over all attacks within the budgets."""
+def smallest_by_definition(threat, weights=None):
+    """The heaviest group of seeing robots that an attack leaves, least over all attacks within the budgets."""
+    weights = np.ones(threat.graph.n_robots, dtype=np.int64) if weights is None else weights
     robots = [i for i in range(threat.graph.n_robots) if i not in threat.protected_robots]
     links = sorted(threat.graph.links - threat.protected_links)
     cuts = [c for k in range(min(threat.alpha_c, len(links)) + 1) for c in combinations(links, k)]
     blinds = [frozenset(b) for b in combinations(robots, threat.n_blinded)]
-    return min(max(len(group - blind) for group in threat.graph.groups(cut)) for cut in cuts for blind in blinds)
+    return min(
+        max(int(weights[sorted(group - blind)].sum()) for group in threat.graph.groups(cut))
+        for cut in cuts
+        for blind in blinds
+    )
 
 
+@settings(deadline=None)
 @given(st.integers(0, 10**9))
 def test_no_attack_leaves_less_than_the_trees_say(seed):
     threat = random_threat(seed)
     assert forced_size(threat, Budget(), threat.graph.n_robots) <= smallest_by_definition(threat)
 
 
+@settings(deadline=None)
+@given(st.integers(0, 10**9))
+def test_no_attack_leaves_less_weight(seed):
+    threat = random_threat(seed)
+    weights = np.random.default_rng(seed).integers(0, 2**20, threat.graph.n_robots)
+    assert forced_weight(threat, weights, Budget(), weights.sum()) <= smallest_by_definition(threat, weights)
+
+
+@settings(deadline=None)
 @given(st.integers(0, 10**9))
 def test_any_multipliers_prove_something_true(seed):
     """What is proved does not hang on the linear program's word."""
     threat = random_threat(seed)
-    program, rng = TreeProgram(threat), np.random.default_rng(seed)
+    program, rng = TreeProgram(threat, np.ones(threat.graph.n_robots, dtype=np.int64)), np.random.default_rng(seed)
     for _ in range(3):
         program.refine(Budget())
     program.multipliers = rng.exponential(size=len(program.trees)) * (rng.random(len(program.trees)) < 0.5) / SCALE

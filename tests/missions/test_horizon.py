@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, random_scenario, ratt, run_mission, solve_maxmin, worst_case_attack
-from ratt_opt.missions.attack_models import RenewedAttacks
+from ratt_opt.missions.ahead.dominance import undominated
 from ratt_opt.missions.beam import beam_sequences, solve_by_columns
-from ratt_opt.missions.horizon import undominated
+from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.problem import Attack
 from tests.oracles import brute_force_worst_case
@@ -117,9 +117,52 @@ def test_dropped_sequences_are_dominated_exactly() -> None:
     assert undominated(information, np.arange(6))[1] == {}
 
 
+@pytest.mark.parametrize("objective", ["logdet", "maxeig"])
+def test_one_step_of_moving_targets_takes_any_criterion(objective: str) -> None:
+    """Velocities are not measured: the criterion of the position is that of the position's block of a Kalman filter."""
+    scenario = random_scenario(3, 3, alpha_s=1, alpha_c=2, seed=1)
+    world = World(scenario, MissionModel(motion="constant velocity", objective=objective), 1)
+    problem, kept = problem_of(world)
+    plan = np.array([choice[0] for choice in problem.choices])
+    predicted = world.motion.initial(scenario).predicted(world.motion, world.period, 0.0)
+    information = np.zeros((3, 4, 4))
+    for e in plan:
+        information[:, :2, :2] += world.sensors[0].information(kept.poses[e], predicted.positions)[0]
+    after = np.linalg.inv(np.linalg.inv(predicted.covariance) + information)[:, :2, :2]
+    before = predicted.position_covariance
+    if objective == "logdet":
+        expected = np.linalg.slogdet(before)[1].sum() - np.linalg.slogdet(after)[1].sum()
+    else:
+        expected = np.linalg.eigvalsh(before).max() - np.linalg.eigvalsh(after).max()
+    assert problem.objective(plan) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-160, 1e90])
+def test_floats_never_overrule_fractions(scale: float) -> None:
+    """Differences of rank one but for the last digit, for products that underflow too."""
+    rng = np.random.default_rng(7)
+    base, step = rng.standard_normal((2, 12, 3, 1, 2))
+    information = base[..., :, None] * base[..., None, :]
+    information[4:] = information[:8] + step[4:, ..., :, None] * step[4:, ..., None, :] * rng.choice(
+        [0, 1, 1], (8, 1, 1, 1, 1)
+    )
+    information = (information + np.swapaxes(information, -1, -2)) / 2 * scale
+
+    def below(e: int, f: int) -> bool:
+        for less, more in zip(information[e].reshape(-1, 4), information[f].reshape(-1, 4), strict=True):
+            a, b, _, c = (Fraction(x) - Fraction(y) for x, y in zip(more, less, strict=True))
+            if a < 0 or c < 0 or a * c < b * b:
+                return False
+        return f < e or not np.array_equal(information[e], information[f])
+
+    kept, by = undominated(information, np.zeros(12, dtype=np.int64))
+    assert kept.tolist() == [e for e in range(12) if not any(below(e, f) for f in range(12) if f != e)]
+    assert all(below(e, f) for e, f in by.items())
+
+
 def test_dropping_loses_no_value() -> None:
     from ratt_opt import Sensor
-    from ratt_opt.missions.horizon import control_sequences
+    from ratt_opt.missions.ahead.horizon import control_sequences
 
     sensor = Sensor(bearing_noise_slope=0.0)
     scenario = random_scenario(

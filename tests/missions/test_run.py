@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import Attack, InputError, random_scenario, ratt, worst_case_attack
-from ratt_opt.missions.attack_models import PermanentFailures, PersistentAttacks
 from ratt_opt.missions.models.sensors import PositionSensor
-from ratt_opt.missions.planners import MaxMinPlanner
+from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
+from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
@@ -241,18 +241,29 @@ def test_bad_arguments(change: dict[str, object], text: str) -> None:
 def test_bad_models_and_journals(tmp_path) -> None:
     with pytest.raises(InputError, match="linearisation must be first order"):
         MissionModel(linearisation="third order")
-    with pytest.raises(InputError, match="area"):
-        MissionModel(area=(0, 0, 0, 1))
-    with pytest.raises(InputError, match="objective must be trace for a part"):
+    for area in ((0, 0, 0, 1), (0, 0, 1), (0, float("nan"), 1, 1), "field"):
+        with pytest.raises(InputError, match="area must be x and y"):
+            MissionModel(area=area)
+    with pytest.raises(InputError, match="model must be a MissionModel"):
+        run_mission(scenario_of(), steps=1, model=3)
+    with pytest.raises(InputError, match="sensor must be a SensorModel"):
+        run_mission(scenario_of(), steps=1, model=MissionModel(sensor=3))
+    with pytest.raises(InputError, match="planner must return a plan"):
+        run_mission(scenario_of(), steps=1, planner=lambda _: 3)
+    with pytest.raises(InputError, match="objective must be trace where"):
         run_mission(scenario_of(), steps=1, horizon=2, model=MissionModel(objective="logdet"))
     with pytest.raises(InputError, match="hold must be"):
         PersistentAttacks(hold=0)
     with pytest.raises(InputError, match="sensor_rate must be a probability"):
         PermanentFailures(sensor_rate=2)
     journal = tmp_path / "j"
+    with pytest.raises(InputError, match="planner must return"):  # a mission that is refused leaves no journal
+        run_mission(scenario_of(), steps=1, journal=journal, planner=lambda _: 3)
     run_mission(scenario_of(), steps=1, journal=journal)
     with pytest.raises(InputError, match="journal must be of the same mission"):
         run_mission(scenario_of(), steps=1, journal=journal, seed=9)
-    journal.write_text('{"format": "else"}\n')
-    with pytest.raises(InputError, match="must be a mission's journal"):
-        run_mission(scenario_of(), steps=1, journal=journal)
+    for text in ('{"format": "else"}\n', "my notes"):
+        journal.write_text(text)
+        with pytest.raises(InputError, match="must be a mission's journal"):
+            run_mission(scenario_of(), steps=1, journal=journal)
+        assert journal.read_text() == text

@@ -134,6 +134,8 @@ def test_errors_of_a_planner_are_raised() -> None:
         ({"measurements": [Measurement(0, 0, (1.0, 0.0))] * 2}, r"measurements\[1\] must not repeat"),
         ({"now": 4.0}, "now must not be before the last step's 5 s"),
         ({"now": np.inf}, "now must be a finite number"),
+        ({"now": 1e9}, "now must be within 10000 sampling periods of the last step's, by 10005 s"),
+        ({"measurements": [None]}, r"measurements\[0\] must be a Measurement"),
         ({"poses": np.zeros((2, 3))}, "poses must have shape"),
         ({"poses": np.full((4, 3), np.nan)}, "poses must be finite"),
     ],
@@ -166,6 +168,8 @@ def test_bad_states_and_arguments() -> None:
         TrackerState.from_dict({k: v for k, v in good.items() if k != "covariance"})
     with pytest.raises(InputError, match="state must be a record"):
         TrackerState.from_dict([good])  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="state must be a TrackerState"):
+        Tracker(scenario, state=good)  # type: ignore[arg-type]
     for limit in (0, -1, float("nan")):
         with pytest.raises(InputError, match="time_limit"):
             Tracker(scenario, time_limit=limit)

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
-import os
 import re
-import shutil
 from html.parser import HTMLParser
 
 import pytest
 
 import ratt_opt as ro
+from tests.report.browser import opened
 
 LARGEST_PAGE = 3_000_000
-FLAGS = (
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update", "--window-size=1100,2200",
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -31,21 +25,8 @@ def saved(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def browser(saved, tmp_path_factory):
-    program, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if program is None or driver is None or importlib.util.find_spec("selenium") is None:
-        missing = "no chromium with its driver, or no selenium, to open the page in"
-        (pytest.fail if os.environ.get("REQUIRE_BROWSER") else pytest.skip)(missing)
-    from selenium import webdriver
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = program
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    opened = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
-    opened.get((saved[1] / "report.html").as_uri())
-    yield opened
-    opened.quit()
+    with opened(saved[1] / "report.html", tmp_path_factory.mktemp("profile")) as page:
+        yield page
 
 
 def test_it_loads_without_an_error_and_fetches_nothing(browser):

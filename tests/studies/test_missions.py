@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def test_every_planner_and_attacker_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(flights, "STEPS", 4)
     monkeypatch.setattr(flights, "SETTLED", 1)
-    for study in (flights.STUDY, exact_flights.STUDY):
+    for study in (flights.STUDIES[0], flights.MILD, exact_flights.STUDIES[0]):
         case = replace(study.cases[0], n_robots=3, n_targets=2, alpha_c=1, alpha_s=1)
         row = flights.measure(study, case, Seeds.of(1, 0))
         assert len(row) == len(study.planner_names) * len(study.attacker_names) * len(study.metrics)

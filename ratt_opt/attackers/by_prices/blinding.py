@@ -31,18 +31,12 @@ def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: flo
     sums[0] = team.prior
     choice = np.zeros(size + 1, dtype=np.int64)  # 0: nothing tried, 1: blinding tried, 2: keeping tried
     depth, used = 0, 0
-    choice[0] = 0
     while depth >= 0:
-        if depth == size or size - depth <= blinded - used:
+        if (depth == size or size - depth <= blinded - used) and not seeing[members[depth:]].any():
             found[:] = False
-            for k in range(depth):
-                found[members[k]] = choice[k] == 1
-            rest_fixed = False
-            for k in range(depth, size):
-                found[members[k]] = True
-                rest_fixed = rest_fixed or seeing[members[k]]
-            if not rest_fixed:
-                return WEAK
+            found[members[:depth]] = choice[:depth] == 1
+            found[members[depth:]] = True
+            return WEAK
         step = choice[depth] if depth < size else 2
         robot = members[depth] if depth < size else -1
         if step == 0 and used < blinded and not seeing[robot]:

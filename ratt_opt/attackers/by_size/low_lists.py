@@ -160,6 +160,21 @@ def _smallest_after(worths: Any, first: int, count: int, smallest: Any) -> None:
 
 
 @numba.njit(cache=True)
+def _record(data: Any, limits: Any, position: Any, found: Any, number: int) -> int:
+    """Record the sets whose other robots stand before ``position``; return ``number`` plus how many there are."""
+    (worths, costs), (threshold, room), (masks, values) = data, limits, found
+    mask, n_robots = np.uint64(0), len(costs)
+    for robot in position[:-1]:
+        mask |= np.uint64(1) << np.uint64(n_robots - robot)
+    for i in range(position[-1], n_robots):
+        if worths[i] < threshold and costs[i] < room:
+            masks[number] = mask | (np.uint64(1) << np.uint64(n_robots - 1 - i))
+            values[number] = worths[i]
+            number += 1
+    return number
+
+
+@numba.njit(cache=True)
 def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
     """Go on until every set is decided (true), the work is done or the arrays are full.
 
@@ -171,7 +186,6 @@ def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
     criterion, information, costs = data
     threshold, room, work = limits
     position, sums, worth_arrays, counters = state
-    masks, values = found
     n_robots, n_targets = information.shape[0], information.shape[1]
     size = len(position) - 1
     spent = np.zeros(size + 1)
@@ -182,7 +196,7 @@ def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
         left, worths, smallest = size - depth, worth_arrays[0, depth], worth_arrays[1, depth]
         p = position[depth]
         if fresh:
-            if done >= work or counters[1] + n_robots >= len(masks):
+            if done >= work or counters[1] + n_robots >= len(found[0]):
                 counters[0] = depth
                 return False
             done += (n_robots - p) * n_targets
@@ -190,14 +204,8 @@ def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
             _smallest_after(worths, p, left - 1, smallest)
             fresh = False
         if left == 1:
-            mask = np.uint64(0)
-            for d in range(depth):
-                mask |= np.uint64(1) << np.uint64(n_robots - position[d])
-            for i in range(p, n_robots):
-                if worths[i] < threshold and spent[depth] + costs[i] < room:
-                    masks[counters[1]] = mask | (np.uint64(1) << np.uint64(n_robots - 1 - i))
-                    values[counters[1]] = worths[i]
-                    counters[1] += 1
+            limits_left = threshold, room - spent[depth]
+            counters[1] = _record((worths, costs), limits_left, position[: depth + 1], found, counters[1])
             depth -= 1
             continue
         while p <= n_robots - left and (worths[p] + smallest[p] >= left * threshold or spent[depth] + costs[p] >= room):

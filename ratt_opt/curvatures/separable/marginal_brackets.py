@@ -11,10 +11,13 @@ import numpy as np
 
 from ratt_opt.curvatures.marginals import MarginalBrackets
 from ratt_opt.curvatures.separable.context_search import BestContext, ContextSearch, FloorSearch
+from ratt_opt.setfunctions.criteria.two_by_two import determinant, eigenvalues
 from ratt_opt.setfunctions.criterion_parts import Choices
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
+    from collections.abc import Sized
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.stopping import Stop
@@ -25,6 +28,8 @@ WORST_CONDITION = 1e6
 """Information matrices beyond this condition count as singular: their inverse is not trusted to nine digits."""
 LARGER = 1e-6
 """A bound on a largest marginal that exceeds the value alone by less, relatively, is that value and its margin."""
+AT_ONCE = 1_000_000
+"""Matrices of all elements up to which one search fits into what is known at once: it takes half a second there."""
 
 
 class SeparableBrackets(MarginalBrackets):
@@ -37,21 +42,27 @@ class SeparableBrackets(MarginalBrackets):
         self._choices: dict[int, Choices] = {}
         self._searches: list[ContextSearch | FloorSearch] = []
         self._largest: dict[int, BestContext] = {}
+        self._on_top: dict[int, tuple[int, ...]] = {}
         self._branches = f.states("marginal_minorant")
         self.rests_on = "separable minorants" if self._branches else "bounds for all contexts"
 
     def _begin(self) -> Stop | None:
         floor, ceiling = self._f.marginal_ends(self._owners, self._budget)
-        self.least = np.minimum(floor, self._single)
+        self._attain_on_top()
+        self.least = np.minimum(floor, self.seen_least)
         if not self._against_own:
             self.most = np.maximum(ceiling, self._single)
             # Attained ends of the largest marginals, where the value alone is not known to be it.
             for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
+                if self._is_over(self._largest):
+                    break
                 self._largest[x] = BestContext(self._f, x, self._beside(x), largest=True)
                 self._largest[x].descend(self._budget)
                 self.seen_most[x] = self._largest[x].value
                 self.most[x] = max(self.most[x], self.seen_most[x])
         for x in range(self._f.n):
+            if self._is_over(self._searches):
+                return self._budget.stop()
             others, attained = self._beside(x), BestContext(self._f, x, self._beside(x))
             if self._branches:
                 search: ContextSearch | FloorSearch = ContextSearch(self._f, x, others, attained, self._budget)
@@ -60,9 +71,26 @@ class SeparableBrackets(MarginalBrackets):
             self._searches.append(search)
             self._budget.nodes += search.nodes
             self._record(x)
-            if stop := self._budget.stop():
-                return stop
         return None
+
+    def _attain_on_top(self) -> None:
+        """Attain a small marginal of every element at once: on top of the strongest elements of all other owners."""
+        f, owners = self._f, self._owners
+        groups = [np.flatnonzero(owners == i) for i in np.unique(owners)]
+        best = np.array([own[self._single[own].argmax()] for own in groups], dtype=np.int64)
+        nothing = np.zeros((1, *f.prior_information.shape))
+        below = np.cumsum(np.concatenate([nothing, f.information[best[:-1]]]), axis=0)
+        above = np.cumsum(np.concatenate([nothing, f.information[best[:0:-1]]]), axis=0)[::-1]
+        others = (f.prior_information + below + above)[owners]
+        marginals = f.value(others + f.information) - f.value(others)
+        contexts = [tuple(np.delete(best, i).tolist()) for i in range(len(best))]
+        self._on_top = {x: contexts[owners[x]] for x in np.flatnonzero(marginals < self._single).tolist()}
+        self.seen_least = np.minimum(self._single, marginals)
+
+    def _is_over(self, searched: Sized) -> bool:
+        """Whether no further element is searched; of elements that are quick to look at, one is in any case."""
+        is_quick = self._f.n * self._f.n_targets <= AT_ONCE
+        return self._budget.stop() is not None and (len(searched) > 0 or not is_quick)
 
     def _beside(self, x: int) -> Choices:
         owner = int(self._owners[x])
@@ -79,19 +107,41 @@ class SeparableBrackets(MarginalBrackets):
 
     def _record(self, x: int) -> None:
         search = self._searches[x]
-        self.seen_least[x] = search.attained.value
-        self.least[x] = min(max(search.lower, 0.0), search.attained.value)
+        if search.attained.value <= self.seen_least[x]:
+            self.seen_least[x] = search.attained.value
+            self._on_top.pop(x, None)
+        self.least[x] = min(max(search.lower, 0.0), self.seen_least[x])
         self._done[x] = search.exhausted
 
     def _attaining(self) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
         smallest: list[tuple[int, ...]] = [()] * self._f.n
         largest = smallest.copy()
+        for x, context in self._on_top.items():
+            smallest[x] = context
         for x, search in enumerate(self._searches):
             self._record(x)
-            smallest[x] = search.attained.context
+            if x not in self._on_top:
+                smallest[x] = search.attained.context
         for x, attained in self._largest.items():
             largest[x] = attained.context
         return smallest, largest
+
+
+def _inverses(information: FloatArray) -> tuple[BoolArray, FloatArray]:
+    """Which matrices (..., d, d) are regular, and their inverses; zero for the others."""
+    inverse = np.zeros_like(information)
+    if information.shape[-1] == 2:
+        a, b, c = information[..., 0, 0], information[..., 0, 1], information[..., 1, 1]
+        low, high = eigenvalues(a, b, c)
+        regular = low * WORST_CONDITION > high
+        scale = np.divide(1.0, determinant(a, b, c), out=np.zeros_like(a), where=regular)
+        inverse[..., 0, 0], inverse[..., 1, 1] = c * scale, a * scale
+        inverse[..., 0, 1] = inverse[..., 1, 0] = -b * scale
+        return regular, inverse
+    values = np.linalg.eigvalsh(information)
+    regular = values[..., 0] * WORST_CONDITION > values[..., -1]
+    inverse[regular] = np.linalg.inv(information[regular])
+    return regular, inverse
 
 
 def choices_beside(f: InformationObjective, owners: IntArray, owner: int) -> Choices:
@@ -100,10 +150,7 @@ def choices_beside(f: InformationObjective, owners: IntArray, owner: int) -> Cho
     elements = np.concatenate([*groups, np.array([], dtype=np.int64)])
     sizes = np.array([len(own) for own in groups], dtype=np.int64)
     information = f.information[elements]
-    eigenvalues = np.linalg.eigvalsh(information)
-    regular = eigenvalues[..., 0] * WORST_CONDITION > eigenvalues[..., -1]
-    inverse = np.zeros_like(information)
-    inverse[regular] = np.linalg.inv(information[regular])
+    regular, inverse = _inverses(information)
     return Choices(
         elements=elements,
         owners=np.repeat(np.arange(len(sizes)), sizes),

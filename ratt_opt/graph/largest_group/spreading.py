@@ -1,20 +1,23 @@
-"""A lower bound on the largest group of seeing robots, by a linear program over links with tree inequalities.
+"""A lower bound on the heaviest group of seeing robots, by a linear program over links with tree inequalities.
 
-Let ``x[e]`` say that link e is cut and ``b[v]`` that robot v is blinded. For a tree of links with root r, the group of
-r keeps every robot v of the tree that sees and whose path to r is whole:
+Let ``x[e]`` say that link e is cut, ``b[v]`` that robot v is blinded, and ``a[v] >= 0`` be weights, 1 for the number of
+robots. For a tree of links with root r, the group of r keeps every robot v of the tree that sees and whose path to r is
+whole:
 
-    sum over v of (1 - b[v] - sum of x[e] on the path from r to v)  <=  seeing robots in the group of r.
+    sum over v of a[v] (1 - b[v] - sum of x[e] on the path from r to v)  <=  weight of the seeing robots of r's group.
 
 The program asks for the x and b within the budgets that make the largest left side least; its inequalities come from
 shortest-path trees. What it says is not taken: for any multipliers ``y >= 0`` of the inequalities an attack leaves a
 group of at least their mean left side, which is least where the attack takes the links and the robots of the largest
-coefficients. That is computed in integers.
+coefficients. That is computed in integers, so weights are integers too.
 
 Source: spreading metrics; Even, Naor, Rao and Schieber, Journal of the ACM 47 (2000), here for cuts within a budget.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["TREES", "TreeProgram", "forced_size"]
+__all__ = ["TREES", "TreeProgram", "forced_size", "forced_weight"]
 
 TREES = "tree inequalities of a linear program, recomputed from their multipliers"
 
@@ -40,28 +43,47 @@ TOWARDS_PROGRAM = 0.2
 to 200 robots: 30 to 45 rounds; at the program's own point (1) more than 100, and at 200 robots no bound in a minute."""
 SLACK, SHORT = 1e-4, 1e-7
 """Trees that the program's point violates by less are not added; every link has at least this length."""
-MOST_ROUNDS = 150
+MOST_TREES = 20_000
 
 
 def forced_size(threat: Threat, budget: Budget, enough: int) -> int:
-    """A number of seeing robots that every attack leaves in some group; looks no further than ``enough``."""
-    program, proved = TreeProgram(threat), 0
-    for _ in range(MOST_ROUNDS):
-        if (
-            proved >= min(enough, ceil(program.needed - SLACK))
-            or budget.stop() is not None
-            or not program.refine(budget)
-        ):
-            break
-        proved = max(proved, program.proved)
-    return proved
+    """A number of seeing robots that every attack leaves in some group; looks no further than ``enough``.
+
+    What was found out about the last few threats is kept, and gone on with.
+    """
+    return _size_program(threat).run(budget, enough)
+
+
+@lru_cache(maxsize=8)
+def _size_program(threat: Threat) -> TreeProgram:
+    return TreeProgram(threat, np.ones(threat.graph.n_robots, dtype=np.int64))
+
+
+def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int) -> int:
+    """A weight that every attack leaves to the seeing robots of some group; looks no further than ``enough``.
+
+    ``weights`` : (N,) of the robots, in [0, 2^20], not all 0
+    """
+    return TreeProgram(threat, weights).run(budget, enough)
+
+
+@dataclass(frozen=True, slots=True)
+class _Tree:
+    """An inequality: ``values`` of its links and robots (``columns``) off ``weight``, that of its robots."""
+
+    columns: IntArray
+    values: IntArray
+    weight: int
 
 
 class TreeProgram:
-    """The program with the inequalities found so far: columns are links, robots, and the largest group."""
+    """The program with the inequalities found so far: columns are links, robots, and the heaviest group.
 
-    def __init__(self, threat: Threat) -> None:
-        self.threat = threat
+    Weights are integers in trees and multiples of the largest in the program.
+    """
+
+    def __init__(self, threat: Threat, weights: IntArray) -> None:
+        self.weights, self.unit = weights, float(weights.max())
         self.links = sorted(threat.graph.links)
         self.n_robots, self.n_links = threat.graph.n_robots, len(self.links)
         self.ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
@@ -77,12 +99,21 @@ class TreeProgram:
         columns = (range(self.n_links), range(self.n_links, self.n_links + self.n_robots))
         rows = rows_of([(list(c), [-1.0] * len(c)) for c in columns], [-float(b) for b in self.budgets])
         cost = np.append(0.0 * one, 1.0)
-        self.program = LinearProgram(cost, 0.0, np.append(one * self.free, float(self.n_robots)), rows=rows)
-        self.trees: list[IntArray] = []  # coefficients of links and robots, and the number of robots
+        self.program = LinearProgram(cost, 0.0, np.append(one * self.free, weights.sum() / self.unit), rows=rows)
+        self.trees: list[_Tree] = []
         self.point, self.size = 0.0 * one, 0.0
         self.inside = self._evenly()
         self.needed = float(self._needed(self.inside)[0].sum(axis=1).max())
         self.multipliers: FloatArray = np.zeros(0)
+        self.best, self.is_done = 0, False
+
+    def run(self, budget: Budget, enough: int) -> int:
+        """Add trees until ``enough`` is proved or nothing more can be; the weight proved so far."""
+        while not (self.is_done or self.best >= min(enough, self.reachable) or budget.stop() is not None):
+            refined = self.refine(budget)
+            self.is_done = not budget.is_over and (not refined or len(self.trees) > MOST_TREES)
+            self.best = max(self.best, self.proved)
+        return self.best
 
     def _evenly(self) -> FloatArray:
         """Both budgets spread over all that can be attacked."""
@@ -97,29 +128,27 @@ class TreeProgram:
         sides = (np.concatenate([self.ends[:, 0], self.ends[:, 1]]), np.concatenate([self.ends[:, 1], self.ends[:, 0]]))
         graph = csr_array((np.concatenate([length, length]), sides), shape=(self.n_robots, self.n_robots))
         distance, before = dijkstra(graph, return_predecessors=True, limit=1.0)
-        kept = np.maximum(1.0 - blind - distance, 0.0)
+        kept = np.maximum(1.0 - blind - distance, 0.0) * (self.weights / self.unit)
         return kept, np.asarray(distance), np.asarray(before, dtype=np.int64)
 
     def refine(self, budget: Budget) -> bool:
         """Add trees and solve again; whether anything was learnt."""
         step = TOWARDS_PROGRAM
-        fresh: list[IntArray] = []
+        fresh: list[_Tree] = []
         while not fresh and step <= 1.0 and not budget.is_over:
             at = step * self.point + (1 - step) * self.inside
             kept, distance, before = self._needed(at)
             if kept.sum(axis=1).max() < self.needed:
                 self.inside, self.needed = at, float(kept.sum(axis=1).max())
             trees = [self._tree(root, *found) for root, found in enumerate(zip(kept, distance, before, strict=True))]
-            fresh = [tree for tree in trees if tree[-1] - tree[:-1] @ self.point > self.size + SLACK]
+            fresh = [t for t in trees if t.weight - t.values @ self.point[t.columns] > (self.size + SLACK) * self.unit]
             step = 1.0 if step < 1.0 < 2 * step else 2 * step
         if not fresh:
             return False
         self.trees += fresh
-        rows = []
-        for tree in fresh:
-            (columns,) = np.nonzero(tree[:-1])
-            rows.append(([*columns.tolist(), len(tree) - 1], [*tree[columns].astype(float).tolist(), 1.0]))
-        self.program.add_rows(rows_of(rows, [float(tree[-1]) for tree in fresh]))
+        last = self.n_links + self.n_robots
+        rows = [([*t.columns.tolist(), last], [*(t.values / self.unit).tolist(), 1.0]) for t in fresh]
+        self.program.add_rows(rows_of(rows, [t.weight / self.unit for t in fresh]))
         claim = self.program.solve(budget.seconds_left)
         if len(claim.x) != self.n_links + self.n_robots + 1 or len(claim.duals) != len(self.trees) + 2:
             return False
@@ -127,26 +156,37 @@ class TreeProgram:
         self.multipliers = claim.duals[2:]
         return True
 
-    def _tree(self, root: int, kept: FloatArray, distance: FloatArray, before: IntArray) -> IntArray:
-        """Of the robots that the group of ``root`` keeps: coefficients of links and robots, and their number."""
-        within = (kept > 0).astype(np.int64)
+    def _tree(self, root: int, kept: FloatArray, distance: FloatArray, before: IntArray) -> _Tree:
+        """The shortest paths from ``root`` to the robots that its group keeps."""
+        within = np.where(kept > 0, self.weights, 0)
         behind, near = within.tolist(), np.flatnonzero(np.isfinite(distance))
-        tree = np.concatenate([np.zeros(self.n_links, dtype=np.int64), within, within.sum(keepdims=True)])
+        links: list[tuple[int, int]] = []
         for robot in near[np.argsort(-distance[near], kind="stable")].tolist():
             if robot != root and behind[robot]:
                 last = before[robot]
-                tree[self.place[robot, last]] = behind[robot]
+                links.append((self.place[robot, last], behind[robot]))
                 behind[last] += behind[robot]
-        return tree
+        columns, values = np.array(links, dtype=np.int64).reshape(-1, 2).T
+        (robots,) = np.nonzero(within)
+        everything = np.concatenate([columns, self.n_links + robots]), np.concatenate([values, within[robots]])
+        return _Tree(*everything, int(within.sum()))
+
+    @property
+    def reachable(self) -> int:
+        """No weight above this can be proved: the best point known keeps no more in any group."""
+        return ceil((self.needed - SLACK) * self.unit)
 
     @property
     def proved(self) -> int:
-        """From the last multipliers, in integers: no attack keeps every group below this many seeing robots."""
+        """From the last multipliers, in integers: every attack leaves some group seeing robots of this weight."""
         weights = np.rint(np.maximum(self.multipliers, 0.0) * SCALE).astype(np.int64)
         used = np.flatnonzero(weights)
         if not len(used):
             return 0
-        total = weights[used] @ np.array([self.trees[k] for k in used])
-        hit = [np.sort(part)[::-1] for part in np.split(np.where(self.free, total[:-1], 0), [self.n_links])]
-        least = int(total[-1]) - sum(int(part[:b].sum()) for part, b in zip(hit, self.budgets, strict=True))
+        total = np.zeros(self.n_links + self.n_robots, dtype=np.int64)
+        for k in used.tolist():
+            total[self.trees[k].columns] += weights[k] * self.trees[k].values
+        hit = [np.sort(part)[::-1] for part in np.split(np.where(self.free, total, 0), [self.n_links])]
+        least = sum(int(weights[k]) * self.trees[k].weight for k in used.tolist())
+        least -= sum(int(part[:b].sum()) for part, b in zip(hit, self.budgets, strict=True))
         return -(-least // int(weights[used].sum()))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt._validation import readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.sensor import Sensor, jacobian, measure, wrap_angle
@@ -15,10 +17,18 @@ from ratt_opt.scenario.sensor import Sensor, jacobian, measure, wrap_angle
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import BoolArray, FloatArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["BearingOnly", "PositionSensor", "RangeBearing", "RangeOnly", "SensorModel", "sensors_of"]
+__all__ = [
+    "BearingOnly",
+    "PositionSensor",
+    "RangeBearing",
+    "RangeOnly",
+    "SensorModel",
+    "robots_by_sensor",
+    "sensors_of",
+]
 
 
 class SensorModel(ABC):
@@ -214,8 +224,21 @@ def sensors_of(
     """
     if sensor is None:
         return tuple(RangeBearing(robot.sensor or scenario.sensor) for robot in scenario.robots)
-    given = (sensor,) * scenario.n_robots if isinstance(sensor, SensorModel) else tuple(sensor)
+    several = tuple(sensor) if isinstance(sensor, Iterable) else ()
+    given = (sensor,) * scenario.n_robots if isinstance(sensor, SensorModel) else several
     if len(given) != scenario.n_robots or not all(isinstance(one, SensorModel) for one in given):
         rule = f"must be a SensorModel, or one for each of {scenario.n_robots} robots"
         raise InputError("sensor", rule, type(sensor).__name__)
     return given
+
+
+def robots_by_sensor(sensors: Sequence[SensorModel]) -> tuple[tuple[SensorModel, IntArray], ...]:
+    """Every different sensor with the robots that have one equal to it, both in the order of the robots."""
+    different: list[tuple[SensorModel, list[int]]] = []
+    for i, sensor in enumerate(sensors):
+        robots = next((robots for known, robots in different if known == sensor), None)
+        if robots is None:
+            different.append((sensor, [i]))
+        else:
+            robots.append(i)
+    return tuple((sensor, readonly(np.array(robots))) for sensor, robots in different)

@@ -10,10 +10,10 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, check_number, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
-from ratt_opt.missions.attack_models import AttackModel, attack_model
-from ratt_opt.missions.attackers import attack_of, attacker_called
 from ratt_opt.missions.belief import Belief
 from ratt_opt.missions.memory import Memory, Pieces
+from ratt_opt.missions.players.attack_models import AttackModel, attack_model
+from ratt_opt.missions.players.attackers import attack_of, attacker_called
 from ratt_opt.missions.replay.cameras import camera_planner
 from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor
 from ratt_opt.missions.sensing import Reading, group_pieces
@@ -26,7 +26,7 @@ from ratt_opt.setfunctions.criteria.trace import TraceObjective
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ratt_opt.missions.attackers import Attacker, OwnAttacker
+    from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
     from ratt_opt.scenario.mrclam_reader import MrclamData
 
 __all__ = ["Replay", "ReplaySettings", "ReplayStep", "replay_mrclam"]
@@ -69,6 +69,13 @@ class Replay(ByValue):
     def nees(self) -> FloatArray:
         """(T,) mean over the landmarks; 2 where the filter is consistent."""
         return readonly(np.array([step.belief.nees(step.belief.mean - step.errors).mean() for step in self.steps]))
+
+    @property
+    def log_score(self) -> FloatArray:
+        """(T,) log density that the beliefs gave to where the landmarks are, mean over them; beliefs that claim too
+        much and beliefs that claim too little both score less than honest ones."""
+        sizes = [np.linalg.slogdet(2 * np.pi * step.belief.covariance)[1].mean() for step in self.steps]
+        return readonly(-(self.nees + np.array(sizes)) / 2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

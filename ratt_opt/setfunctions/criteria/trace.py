@@ -31,7 +31,7 @@ import numpy as np
 
 from ratt_opt._validation import check_finite, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.criteria.two_by_two import trace_gradient, trace_of_inverse
+from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
@@ -134,7 +134,7 @@ class TraceObjective(InformationObjective):
         """The same, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
         values, vectors = np.linalg.eigh(self.prior)
         root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
-        q = np.linalg.eigvalsh(root @ self.information @ root)[..., 1:].clip(0.0)
+        q = _upper_eigenvalues(root, self.information).clip(0.0)
         lower_rank = self.weights * largest * (q / (1 + q)).sum(axis=-1)
         alone = self.criterion(self.prior_information) - self.criterion(self.prior_information + self.information)
         return np.zeros(self.n), np.asarray(np.maximum(alone, lower_rank).sum(axis=-1) * (1 + MARGIN))
@@ -226,8 +226,9 @@ class OutputTraceObjective(TraceObjective):
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted traces of the outputs' covariances."""
-        covariance = np.linalg.inv(posterior_information)
-        return np.asarray(self.weights * np.einsum("mij,...mij->...m", self._square, covariance))
+        from ratt_opt.setfunctions.criteria.compiled_outputs import output_traces  # compiles
+
+        return np.asarray(self.weights * output_traces(posterior_information, self.output))
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1} W_j Lambda_j^{-1}``: (..., M, d, d)."""
@@ -279,6 +280,14 @@ def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
     if (np.linalg.matrix_rank(matrices) < matrices.shape[1]).any():
         raise InputError("output", "must have independent rows", given.shape)
     return matrices
+
+
+def _upper_eigenvalues(root: FloatArray, matrices: FloatArray) -> FloatArray:
+    """All but the smallest eigenvalue of ``root @ matrices @ root``: (M, d, d), (E, M, d, d) -> (E, M, d - 1)."""
+    if matrices.shape[-1] != 2:
+        return np.asarray(np.linalg.eigvalsh(root @ matrices @ root)[..., 1:])
+    entries = [matrices[..., i, j] for i, j in ((0, 0), (0, 1), (1, 1))]
+    return np.asarray(eigenvalues(*congruent((root[:, 0, 0], root[:, 0, 1], root[:, 1, 1]), *entries))[1][..., None])
 
 
 def _pairs(first: FloatArray, second: FloatArray) -> FloatArray:

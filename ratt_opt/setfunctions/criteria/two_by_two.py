@@ -10,12 +10,33 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["determinant", "largest_of_inverse", "logdet_gradient", "trace_gradient", "trace_of_inverse", "triples"]
+__all__ = [
+    "determinant",
+    "eigenvalues",
+    "largest_of_inverse",
+    "logdet_gradient",
+    "trace_gradient",
+    "trace_of_inverse",
+    "triples",
+]
 
 
 def determinant(a: Any, b: Any, c: Any) -> Any:
     """``det L``."""
     return a * c - b * b
+
+
+def congruent(r: Any, a: Any, b: Any, c: Any) -> Any:
+    """Entries of ``R L R``, ``R`` symmetric of entries ``r`` = three arrays."""
+    p, q, s = r
+    first, second, third, fourth = p * a + q * b, p * b + q * c, q * a + s * b, q * b + s * c
+    return first * p + second * q, first * q + second * s, third * q + fourth * s
+
+
+def eigenvalues(a: Any, b: Any, c: Any) -> Any:
+    """The smaller and the larger eigenvalue of ``L``."""
+    mean, radius = (a + c) / 2, np.hypot((a - c) / 2, b)
+    return mean - radius, mean + radius
 
 
 def trace_of_inverse(a: Any, b: Any, c: Any) -> Any:

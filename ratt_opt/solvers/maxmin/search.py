@@ -16,6 +16,7 @@ from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
+from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, nodes_below, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
@@ -63,6 +64,7 @@ class BranchAndBound:
         self.winners = Winners(GroupProofs(self.cuts, self.rule), incumbent.candidates)
         self.rounds = CutRounds(self.cuts, self.winners, incumbent.adversary)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
+        self.small = SmallGroups(task, self.by_winner, incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
         self.roots = [self._first_node()] if roots is None else roots
         for root in self.roots:
@@ -121,6 +123,11 @@ class BranchAndBound:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
         if self.pairs is not None and self.rule.level > 0:
             narrowed = self.pairs.narrow(node, self.rule.better, self.by_winner)
+            if narrowed is None:
+                return None
+            self.frontier.current = node = narrowed
+        if self.rule.level > 0:
+            narrowed = self.small.narrow(node, self.rule.better)
             if narrowed is None:
                 return None
             self.frontier.current = node = narrowed

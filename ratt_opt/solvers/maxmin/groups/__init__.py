@@ -2,5 +2,5 @@
 
 Open ``winners.py`` first: groups that provably stay weak leave one winner. it also divides a node where no winner is
 known. ``closed_group.py`` finds such proofs, remembers them and writes them into the tree. ``pair_outcomes.py`` is a
-shortcut where pairs decide.
+shortcut where pairs decide, ``small_groups.py`` one where groups are small enough to be listed.
 """

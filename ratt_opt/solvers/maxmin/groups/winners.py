@@ -149,9 +149,10 @@ class WinnerDivision:
         Groups that a bound closes within the node's choices need none. A single robot that may win
         with some of its elements only is divided into those and the others, so that the latter close.
         """
-        lone = self._divide_lone_robot(node, outcome)
-        if lone:
-            return lone
+        return self._divide_lone_robot(node, outcome) or self.divide_groups(node, outcome)
+
+    def divide_groups(self, node: TreeNode, outcome: int) -> list[TreeNode]:
+        """The same by the groups alone."""
         parts, open_children = [], []
         for group in self.pool.of_outcome[outcome]:
             proof = self._proofs.find(group, node.choices)

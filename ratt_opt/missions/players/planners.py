@@ -72,4 +72,7 @@ def planner_called(planner: str | Planner) -> Planner:
 
 def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:
     """A planner's elements, checked. InputError : they are no plan of the problem."""
-    return problem.check_plan(plan if isinstance(plan, (np.ndarray, list, tuple)) else plan.elements)
+    elements = plan if isinstance(plan, (np.ndarray, list, tuple)) else getattr(plan, "elements", None)
+    if elements is None:
+        raise InputError("planner", "must return a plan or its elements", type(plan).__name__)
+    return problem.check_plan(elements)

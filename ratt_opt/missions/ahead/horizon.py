@@ -10,7 +10,6 @@ Kalman filter's covariance after all steps; earlier blocks are the smoother's. O
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -25,14 +24,12 @@ if TYPE_CHECKING:
     from ratt_opt.missions.models.targets import TargetMotion
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covariance", "output_matrix", "undominated"]
+__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_position_covariance", "output_matrix"]
 
 OUTPUTS = ("mean", "last")
 NOISE_FLOOR = 1e-6
 """Of a target's covariance: joint states whose steps determine each other (no process noise) get that much noise
 a step, so that their prior is invertible. It moves values by that share."""
-FEW = 4
-"""Matrices compared at once; of more, most are compared in vain."""
 MOST_SEQUENCES = 20_000
 """Of one robot: twelve controls make 1,728 in three steps and 20,736 in four, whose matrices would take gigabytes."""
 
@@ -81,8 +78,8 @@ def extended(scenario: Scenario, sequences: Sequences, motion: RobotMotion) -> S
     return Sequences(readonly(sequences.owner[again]), readonly(controls), readonly(poses))
 
 
-def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:
-    """(M, H d, H d) of the joint state, from the predicted beliefs of its H steps."""
+def joint_position_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:
+    """(M, 2 H, 2 H) of the positions in all steps, from the predicted beliefs of the H steps."""
     n_targets, d = beliefs[0].mean.shape
     horizon = len(beliefs)
     joint = np.zeros((n_targets, horizon * d, horizon * d))
@@ -97,81 +94,16 @@ def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float)
         sizes = np.diagonal(joint, axis1=1, axis2=2).copy()
         sizes[:, :d] = 0.0  # the first step is known as it is
         joint += NOISE_FLOOR * sizes[:, None, :] * np.eye(horizon * d)
-    return joint
+    places = np.array([h * d + axis for h in range(horizon) for axis in range(2)])
+    return joint[:, places[:, None], places]
 
 
-def output_matrix(output: str, horizon: int, dimension: int) -> FloatArray | None:
-    """(q, H d) the part of the joint state that counts; ``None`` where that is the whole of one position.
+def output_matrix(output: str, horizon: int) -> FloatArray | None:
+    """(q, 2 H) the part of all steps' positions that counts; ``None`` where that is the whole of one position.
 
     ``"last"`` : the position at the last step; ``"mean"`` : those of all steps, whose mean trace is the criterion.
     """
-    if horizon == 1 and dimension == 2:
+    if horizon == 1:
         return None
-    steps = range(horizon) if output == "mean" else [horizon - 1]
-    matrix = np.zeros((2 * len(steps), horizon * dimension))
-    for row, h in enumerate(steps):
-        matrix[2 * row : 2 * row + 2, h * dimension : h * dimension + 2] = np.eye(2) / len(steps) ** 0.5
-    return matrix
-
-
-def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dict[int, int]]:
-    """Drop elements than which another of the same robot is nowhere worse; the value of no plan is lost by that.
-
-    Element ``e`` is dominated by ``f`` where ``information[f] - information[e]`` is positive semidefinite for every
-    target and step: criteria do not decrease, so ``f`` in the place of ``e`` keeps any plan's value under any
-    attack. Of equal elements the first stays. Semidefiniteness is decided exactly, on the floats as they are.
-
-    Parameters
-    ----------
-    information : (E, M, H, 2, 2) about the positions, step by step
-    owner : (E,)
-
-    Returns
-    -------
-    the elements kept, ascending, and for each dropped one the kept one that dominates it
-    """
-    by: dict[int, int] = {}
-    entries = np.stack([information[..., 0, 0], information[..., 0, 1], information[..., 1, 1]])
-    entries = entries.reshape(3, len(owner), -1)
-    for robot in np.unique(owner):
-        own = np.flatnonzero(owner == robot)
-        for f in own:
-            if f in by:
-                continue
-            for e in _nearly_dominated(entries, int(f), own):
-                if e != f and e not in by and _dominates(entries[:, f], entries[:, e], first=bool(f < e)):
-                    by[int(e)] = int(f)
-    kept = np.array([e for e in range(len(owner)) if e not in by], dtype=np.int64)
-    # What dominated an element may have been dropped later: by transitivity, so does what dominates it.
-    return kept, {e: _last(by, f) for e, f in by.items()}
-
-
-def _nearly_dominated(entries: FloatArray, f: int, others: IntArray) -> IntArray:
-    """Those that element ``f`` may dominate, but for rounding; a few targets decide of nearly all that it does not."""
-    for start in range(0, entries.shape[2], FEW):
-        block = slice(start, start + FEW)
-        a, b, c = entries[:, f, None, block] - entries[:, others, block]
-        near = (a >= 0) & (c >= 0) & (a * c >= b * b * (1 - 1e-12))
-        others = others[near.all(axis=1)]
-        if len(others) == 1:
-            break
-    return others
-
-
-def _dominates(more: FloatArray, less: FloatArray, *, first: bool) -> bool:
-    if np.array_equal(more, less):
-        return first
-    for a, b, c in zip(*(_exact_difference(x, y) for x, y in zip(more, less, strict=True)), strict=True):
-        if a < 0 or c < 0 or a * c < b * b:
-            return False
-    return True
-
-
-def _exact_difference(more: FloatArray, less: FloatArray) -> list[Fraction]:
-    return [Fraction(x) - Fraction(y) for x, y in zip(more.tolist(), less.tolist(), strict=True)]
-
-
-def _last(by: dict[int, int], element: int) -> int:
-    while element in by:
-        element = by[element]
-    return element
+    whole = np.eye(2 * horizon)
+    return whole / horizon**0.5 if output == "mean" else whole[-2:]

@@ -1,0 +1,101 @@
+"""Elements than which another of the same robot is nowhere worse: dropped, with a proof in exact arithmetic.
+
+Information of two rows differs by ``[[a, b], [b, c]]``, positive semidefinite where ``a >= 0``, ``c >= 0`` and
+``a c >= b^2``. The difference of two floats has the exact difference's sign, and is off by one rounding; so are both
+products by three roundings more. Where ``a c`` and ``b^2`` are farther apart than that, floats decide and
+are right; where they are not, fractions do.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.compiling import numba
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+
+__all__ = ["undominated"]
+
+ROUNDINGS = 1e-15
+"""More than eight roundings: two differences and a product on either side, and the comparison's own."""
+SMALLEST = 1e-290
+"""Products below this lose digits (they are subnormal, or nearly)."""
+NO, OPEN, YES = range(3)
+
+
+def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dict[int, int]]:
+    """Drop elements than which another of the same robot is nowhere worse; the value of no plan is lost by that.
+
+    Element ``e`` is dominated by ``f`` where ``information[f] - information[e]`` is positive semidefinite for every
+    target and step: criteria do not decrease, so ``f`` in the place of ``e`` keeps any plan's value under any
+    attack. Of equal elements the first stays. Semidefiniteness is decided exactly, on the floats as they are.
+
+    Parameters
+    ----------
+    information : (E, M, H, 2, 2) about the positions, step by step
+    owner : (E,)
+
+    Returns
+    -------
+    the elements kept, ascending, and for each dropped one the kept one that dominates it
+    """
+    by: dict[int, int] = {}
+    entries = np.stack([information[..., 0, 0], information[..., 0, 1], information[..., 1, 1]], axis=-1)
+    entries = np.ascontiguousarray(entries.reshape(len(owner), -1, 3))
+    for robot in np.unique(owner):
+        own = np.flatnonzero(owner == robot)
+        found = _compared(entries[own])
+        for f in range(len(own)):
+            if int(own[f]) in by:
+                continue
+            for e in np.flatnonzero(found[f]):
+                pair = int(own[e]), int(own[f])
+                if pair[0] not in by and (found[f, e] == YES or _dominates(entries[pair[1]], entries[pair[0]])):
+                    by[pair[0]] = pair[1]
+    kept = np.array([e for e in range(len(owner)) if e not in by], dtype=np.int64)
+    # What dominated an element may have been dropped later: by transitivity, so does what dominates it.
+    return kept, {e: _last(by, f) for e, f in by.items()}
+
+
+@numba.njit(cache=True)
+def _compared(entries: Any) -> Any:
+    """(K, K) whether the first of a pair dominates the second, as far as floats tell; of equal ones the first does."""
+    count, size = entries.shape[:2]
+    found = np.zeros((count, count), np.int8)
+    for f in range(count):
+        for e in range(count):
+            if e == f:
+                continue
+            answer, same = YES, True
+            for k in range(size):
+                a = entries[f, k, 0] - entries[e, k, 0]
+                b = entries[f, k, 1] - entries[e, k, 1]
+                c = entries[f, k, 2] - entries[e, k, 2]
+                same = same and a == 0.0 and b == 0.0 and c == 0.0
+                more, less = a * c, b * b
+                if a < 0.0 or c < 0.0 or (more < less * (1 - ROUNDINGS) and less > SMALLEST):
+                    answer = NO
+                    break
+                if b != 0.0 and not (more > less * (1 + ROUNDINGS) and less > SMALLEST):
+                    answer = OPEN
+            found[f, e] = answer if not same or f < e else NO
+    return found
+
+
+def _dominates(more: FloatArray, less: FloatArray) -> bool:
+    """The same of one pair, exactly: (K, 3) entries."""
+    for row, other in zip(more.tolist(), less.tolist(), strict=True):
+        a, b, c = (Fraction(x) - Fraction(y) for x, y in zip(row, other, strict=True))
+        if a < 0 or c < 0 or a * c < b * b:
+            return False
+    return True
+
+
+def _last(by: dict[int, int], element: int) -> int:
+    while element in by:
+        element = by[element]
+    return element

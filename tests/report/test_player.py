@@ -1,0 +1,80 @@
+"""``player.html`` in a real browser: it loads without a fault, steps, plays, and shows the mission's numbers."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from tests.report.browser import opened
+
+
+@pytest.fixture(scope="module")
+def mission():
+    scenario = ro.random_scenario(5, 3, alpha_s=1, alpha_c=4, seed=3)
+    return ro.run_mission(scenario, steps=4, attacks="persistent", sharing="all surviving")
+
+
+@pytest.fixture(scope="module")
+def browser(mission, tmp_path_factory):
+    path = mission.animate(tmp_path_factory.mktemp("player") / "player.html")
+    with opened(path, tmp_path_factory.mktemp("profile")) as page:
+        yield page
+
+
+def show(browser, step: int) -> np.ndarray:
+    """(800, 800, 4) pixels of the map after the slider was moved."""
+    script = (
+        "const s = document.getElementById('step'); s.value = arguments[0]; s.dispatchEvent(new Event('input'));"
+        "const c = document.getElementById('map');"
+        "return Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)"
+    )
+    return np.array(browser.execute_script(script, step), dtype=np.uint8).reshape(800, 800, 4)
+
+
+def test_it_loads_without_an_error_and_fetches_nothing(browser) -> None:
+    assert browser.get_log("browser") == []
+    assert browser.execute_script("return performance.getEntriesByType('resource').length") == 0
+    assert "5 robots, 3 targets" in browser.find_element("tag name", "h1").text
+
+
+def test_every_step_shows_its_numbers_and_another_map(browser, mission) -> None:
+    maps = []
+    for k, step in enumerate(mission.steps):
+        maps.append(show(browser, k))
+        text = browser.find_element("id", "text").text
+        assert text.startswith(f"Step {k + 1} of 4: RMSE ")
+        assert float(text.split("RMSE ")[1].split()[0]) == pytest.approx(mission.rmse[k], rel=6e-3)
+        assert f"{len(step.attack.sensing)} robots blinded, {len(step.attack.links)} links cut" in text
+    drawn = [int((picture[..., 3] > 0).sum()) for picture in maps]
+    assert min(drawn) > 1000
+    assert all((a != b).any() for a, b in pairwise(maps))
+
+
+def test_robots_are_where_the_mission_had_them(browser, mission) -> None:
+    """A mark of the role's colour around every robot that sees, next to its heading's line."""
+    view = browser.execute_script("return [data.view, data.colours]")
+    (x0, x1, y0, y1), colours = view
+    scale = 800 / max(x1 - x0, y1 - y0)
+    picture = show(browser, 3)
+    step = mission.steps[3]
+    for i, (x, y, heading) in enumerate(step.poses):
+        colour = [int(colours[step.role(i)][k : k + 2], 16) for k in (1, 3, 5)]
+        column, row = (x - x0) * scale - 5 * np.cos(heading), 800 - (y - y0) * scale + 5 * np.sin(heading)
+        near = picture[int(row) - 4 : int(row) + 5, int(column) - 4 : int(column) + 5, :3].reshape(-1, 3).astype(int)
+        assert np.abs(near - colour).sum(axis=1).min() < 12, step.role(i)
+
+
+def test_it_plays_and_pauses(browser) -> None:
+    show(browser, 0)
+    button = browser.find_element("id", "play")
+    button.click()
+    assert button.text == "Pause"
+    browser.implicitly_wait(0)
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    WebDriverWait(browser, 10).until(lambda page: not page.find_element("id", "text").text.startswith("Step 1 "))
+    button.click()
+    assert button.text == "Play"
