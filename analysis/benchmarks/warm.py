@@ -1,8 +1,8 @@
 """Warm starts: a scenario that moves step by step, planned anew cold and from the plan and the result before.
 
-Run as ``python -m analysis.benchmarks.warm [--robots 10 20] [--objectives ...] [--steps 50] [--gap G] [--seed S]``.
-Robots carry out the best plan of each step and targets move as their motion says; what is believed of the targets stays
-the same.
+Run as ``python -m analysis.benchmarks.warm [--robots 10 20] [--objectives ...] [--steps 50] [--gap G] [--seed S]``;
+with ``--leaves`` it says what proofs of the step before still prove. Robots carry out the best plan of each step and
+targets move as their motion says; what is believed of the targets stays the same.
 """
 
 from __future__ import annotations
@@ -15,10 +15,14 @@ import numpy as np
 
 from analysis.tables import print_table
 from ratt_opt import random_scenario, solve_maxmin
+from ratt_opt.bounds.cuts import combined_bound, tangent_cut
+from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf
+from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
     from ratt_opt import MaxMinResult, Problem, Scenario
-    from ratt_opt._validation import IntArray
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.solvers.maxmin.proof import UpperProof
 
 BUDGETS = {10: (3, 11), 20: (6, 47)}
 TARGETS = {10: 15, 20: 20}
@@ -69,6 +73,51 @@ def measure(scenario: Scenario, name: str, steps: int, gap: float) -> dict[str, 
     return row | {"brackets_apart": worst}
 
 
+def leaves_that_close(problem: Problem, proof: UpperProof, level: float, gap: float) -> FloatArray:
+    """How far, relative to ``level``, each leaf of an earlier proof is from closing: at most ``gap`` where it does.
+
+    The cuts touch where they did, and leaves keep their weights.
+    """
+    cuts = [tangent_cut(problem, cut.group, cut.point, cut.target) for cut in proof.cuts]
+    constants, scores = np.array([cut.constant for cut in cuts]), np.array([cut.scores for cut in cuts])
+    places, bounds = [problem.choices], []
+    for node in proof.tree:
+        choices = places.pop()
+        if isinstance(node, Leaf):
+            used = list(node.cuts)
+            bounds.append(combined_bound(constants[used], scores[used], np.array(node.weights), choices)[0])
+        elif isinstance(node, ElementBranch):
+            places += [with_choice(choices, node.robot, np.array(part)) for part in reversed(node.parts)]
+        else:
+            places += [choices] * len(node.parts)
+    return (np.array(bounds) - level) / abs(level) - gap
+
+
+def measure_leaves(scenario: Scenario, name: str, steps: int, gap: float) -> list[dict[str, Any]]:
+    """What the proof of each step still proves of the next one."""
+    before, rows = solve_maxmin(scenario.problem(name), gap=gap), []
+    for step in range(steps):
+        earlier = scenario.problem(name)
+        scenario = moved(scenario, before.elements)
+        found = solve_maxmin(scenario.problem(name), gap=gap)
+        if before.proof is not None:
+            spare = -leaves_that_close(earlier, before.proof, before.lower, gap)
+            missing = leaves_that_close(scenario.problem(name), before.proof, found.lower, gap)
+            rows.append(
+                {
+                    "step": step,
+                    "leaves": len(missing),
+                    "close": float(np.mean(missing <= 0)),
+                    "median_spare": float(np.median(spare)),
+                    "median_missing": float(np.median(missing)),
+                    "robots_changed": int((found.elements != before.elements).sum()),
+                    "nodes": found.nodes,
+                }
+            )
+        before = found
+    return rows
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -77,14 +126,20 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=50)
     parser.add_argument("--gap", type=float, default=1e-6)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--leaves", action="store_true", help="what earlier proofs still prove, in place of times")
     options = parser.parse_args()
     rows: list[dict[str, object]] = []
     for robots in options.robots:
         alpha_s, alpha_c = BUDGETS[robots]
         for name in options.objectives:
             scenario = random_scenario(robots, TARGETS[robots], alpha_s=alpha_s, alpha_c=alpha_c, seed=options.seed)
+            if options.leaves:
+                title = f"What proofs of the step before still prove: {robots} robots, {name}"
+                print_table(title, measure_leaves(scenario, name, options.steps, options.gap))
+                continue
             rows.append({"robots": robots, "objective": name} | measure(scenario, name, options.steps, options.gap))
-    print_table(f"Steps of a moving team, medians over {options.steps}", rows)
+    if rows:
+        print_table(f"Steps of a moving team, medians over {options.steps}", rows)
 
 
 if __name__ == "__main__":

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import logging
-import multiprocessing
-import os
-import signal
-import threading
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from analysis.studies.versions import VERSIONS
 from ratt_opt.errors import InputError
+from ratt_opt.processes import local_processes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["dask_cluster", "has_workers", "local_processes", "open_executor"]
 
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 PATIENCE = 10
 """Seconds to wait for a scheduler to answer, and for its first worker."""
 
@@ -43,42 +38,6 @@ def has_workers(executor: Executor) -> bool:
         return bool(client.nthreads())
     except (OSError, ValueError, RuntimeError, TimeoutError):
         return False
-
-
-@contextmanager
-def local_processes(workers: int | None) -> Iterator[Executor]:
-    """Start local processes by spawn (fork deadlocks with threads), with one BLAS thread each.
-
-    Leaving the block by an exception stops them at once.
-    """
-    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
-    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))  # inherited by every process that is started
-    known = set(multiprocessing.active_children())
-    executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
-    try:
-        yield executor
-    except BaseException:
-        # Not cancelled first: the pool would then report its cancelled trials as broken, with a traceback.
-        for process in set(multiprocessing.active_children()) - known:
-            process.terminate()
-        raise
-    finally:
-        executor.shutdown()
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
-
-
-def _follow_parent() -> None:
-    """Leave Ctrl-C to the parent, and end with it even when it is killed without a word."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-
-    def watch() -> None:
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
 
 
 @contextmanager

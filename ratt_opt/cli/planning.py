@@ -44,6 +44,7 @@ def bound(
         float, typer.Option("--time-limit", help="Seconds for all searches; the certificate comes on top.")
     ] = TIME_LIMIT,
     gap: Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")] = GAP,
+    workers: Annotated[int, typer.Option("--workers", help="Processes that search for the best plan.")] = 1,
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
 ) -> None:
@@ -54,7 +55,7 @@ def bound(
     from ratt_opt.scenario.files import load_input
 
     source = load_input(file)
-    _bound(source, out, objective, time_limit, gap, certificate=certificate, as_json=as_json)
+    _bound(source, out, objective, time_limit, gap, workers, certificate=certificate, as_json=as_json)
 
 
 def _bound(
@@ -63,6 +64,7 @@ def _bound(
     objective: str = "trace",
     time_limit: float = TIME_LIMIT,
     gap: float = GAP,
+    workers: int = 1,
     *,
     certificate: bool,
     as_json: bool,
@@ -74,7 +76,7 @@ def _bound(
     from ratt_opt.report.write import FILES, write_report
 
     folder = output_directory(out, PROOF, *FILES)
-    report = main_job(source, objective=objective, time_limit=time_limit, gap=gap)
+    report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, workers=workers)
     wanted = certificate and not report.interrupted
     with Step("report and figure"):
         files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)

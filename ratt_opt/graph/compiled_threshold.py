@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
+from ratt_opt.compiling import numba
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
 from ratt_opt.graph.separable_groups import count_ones

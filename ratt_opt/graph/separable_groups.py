@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
+from ratt_opt.compiling import numba
 from ratt_opt.graph.communication import neighbour_masks
 
 if TYPE_CHECKING:

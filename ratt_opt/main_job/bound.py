@@ -22,11 +22,13 @@ from ratt_opt.problem import Plan, Problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
+from ratt_opt.solvers.maxmin.subtrees.crew import check_workers
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from concurrent.futures import Executor
     from pathlib import Path
 
     from ratt_opt.bounds.guarantees import Guarantee
@@ -103,6 +105,7 @@ def bound(
     time_limit: float | None = 60.0,
     certificate: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
+    workers: int | Executor | None = None,
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
@@ -117,6 +120,7 @@ def bound(
         the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit
     certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
+    workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`
 
     Raises
     ------
@@ -126,13 +130,14 @@ def bound(
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
+    check_workers(problem, workers)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
         alpha_cs, robust = _planned(problem, budget)
         baselines = _kept(budget, lambda: tuple(_baselines(problem, budget)))
     with steps("the best possible plan"):
-        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers)
         optimum, best = _best(problem, search, budget)
     with steps("other attacks on the recommended plan"):
         shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)

@@ -19,9 +19,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
+from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.setfunctions.criteria.two_by_two import triples

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 
 from ratt_opt.attackers.by_prices.compiled import gather, value_of
+from ratt_opt.compiling import numba
 
 __all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "trade", "weak_subset"]
 

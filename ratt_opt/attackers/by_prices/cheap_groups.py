@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 
 from ratt_opt.attackers.by_prices.compiled import value_of
 from ratt_opt.attackers.by_prices.flow import ALWAYS
+from ratt_opt.compiling import numba
 
 __all__ = ["BLINDED", "NOBODY", "SEEING", "cheap_group"]
 

@@ -19,11 +19,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from ratt_opt.attackers.by_prices.flow import ALWAYS, augment, open_flow
 from ratt_opt.attackers.by_prices.needs import admit, blind_fewer, knapsack_need, settle
+from ratt_opt.compiling import numba
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]
 

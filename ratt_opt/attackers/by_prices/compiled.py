@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 
+from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, TRACE, team_criterion
 
 __all__ = ["gather", "value_of"]

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
+
+from ratt_opt.compiling import numba
 
 __all__ = ["next_cover"]
 

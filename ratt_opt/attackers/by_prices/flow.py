@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
+from ratt_opt.compiling import numba
 
 __all__ = ["ALWAYS", "augment", "open_flow"]
 

@@ -18,10 +18,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
 from ratt_opt.attackers.by_size.disjoint_sets import Columns
+from ratt_opt.compiling import numba
 from ratt_opt.highs import LinearProgram, rows_of
 from ratt_opt.stopping import Stop
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
 from ratt_opt.attackers.by_size.low_lists import spend_look
+from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

@@ -13,10 +13,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
 from ratt_opt.budget import OutOfBudget
+from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 from ratt_opt.stopping import Stop
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
 from ratt_opt.budget import Budget
+from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
+
+from ratt_opt.compiling import numba
 
 __all__ = ["MARGIN", "ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
 

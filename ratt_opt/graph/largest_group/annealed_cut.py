@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 
+from ratt_opt.compiling import numba
 from ratt_opt.graph.largest_group.counting import largest_left
 
 if TYPE_CHECKING:

@@ -11,8 +11,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
+
+from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 
+from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria import two_by_two
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective

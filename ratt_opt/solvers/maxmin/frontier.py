@@ -16,6 +16,11 @@ __all__ = ["ClosingRule", "Frontier"]
 WIDEST_GAP = 0.5
 """Relative gaps count as at most this where they say above which level a plan would have to be."""
 
+MARGINS = 8
+"""Roundings of a value that a bound may stay above a level it cannot be told from: tangents carry margins for their own
+rounding, of some such. Half of what a result counts as closed. With 1 a team whose optimum is 0 was divided on
+the winners of dozens of outcomes, without end."""
+
 
 class ClosingRule:
     """A bound closes a node where no plan below it can be better than the best known, by more than the gap.
@@ -26,7 +31,7 @@ class ClosingRule:
 
     def __init__(self, plans: Candidates, gap: float) -> None:
         self.plans, self.gap = plans, gap
-        self._rounding = plans.pool.objective.rounding
+        self._rounding = MARGINS * plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
@@ -52,8 +57,14 @@ class Frontier:
 
     def __init__(self, rule: ClosingRule) -> None:
         self.rule = rule
+        self.empty()
+
+    def empty(self) -> None:
+        """Forget all nodes."""
         self.current: TreeNode | None = None
         """The node in work, which is part of the bound."""
+        self.lent: list[TreeNode] = []
+        """Open nodes that others search, which are part of the bound too."""
         self._queue: list[tuple[float, int, TreeNode]] = []
         self._pushed = 0
         self._closed: list[TreeNode] = []
@@ -67,6 +78,7 @@ class Frontier:
         still = [-self._queue[0][0]] if self._queue else []
         if self.current is not None:
             still.append(self.current.bound)
+        still.extend(node.bound for node in self.lent)
         return max(self._finished, self._lowest, *still)
 
     @property
@@ -84,6 +96,24 @@ class Frontier:
         self.current = node = self._queue[0][2]  # before it leaves the queue: an interrupt must not lose it
         heapq.heappop(self._queue)
         return node
+
+    def lend(self, most: int) -> list[TreeNode]:
+        """Take so many open nodes of largest bound out of the queue that do not close, for others to search."""
+        nodes: list[TreeNode] = []
+        while len(nodes) < most and not self.is_closed:
+            node = self._queue[0][2]
+            self.lent.append(node)  # before it leaves the queue: an interrupt must not lose it
+            heapq.heappop(self._queue)
+            nodes.append(node)
+        return nodes
+
+    def take_back(self, nodes: list[TreeNode]) -> None:
+        """End the lending of nodes that are accounted for: divided, closed or queued again."""
+        self.lent = [node for node in self.lent if not any(node is other for other in nodes)]
+
+    def __len__(self) -> int:
+        """How many nodes are queued."""
+        return len(self._queue)
 
     def close(self, node: TreeNode) -> None:
         """Finish a node whose bound closes it."""

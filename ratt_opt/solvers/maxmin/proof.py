@@ -118,6 +118,11 @@ class TreeNode:
         winners = self.winners if winner is None else {**self.winners, winner[0]: winner[1]}
         return TreeNode(self.choices if choices is None else choices, winners, self.bound, self.leaf)
 
+    @property
+    def is_single(self) -> bool:
+        """Whether it stands for one plan."""
+        return all(len(choice) == 1 for choice in self.choices)
+
     def tighten(self, leaf: Leaf, bound: float) -> None:
         """Keep a leaf that bounds the node by less than its own does."""
         if bound < self.bound:

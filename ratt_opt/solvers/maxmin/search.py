@@ -49,7 +49,14 @@ cuts all nodes inherit, 2 take 32 and 40 take 34. Larger teams were not measured
 class BranchAndBound:
     """The search; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
-    def __init__(self, task: Task, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> None:
+    def __init__(
+        self,
+        task: Task,
+        incumbent: Incumbent,
+        gap: float,
+        pairs: PairOutcomes | None,
+        roots: list[TreeNode] | None = None,
+    ) -> None:
         self.task, self.pool, self.incumbent, self.pairs = task, incumbent.pool, incumbent, pairs
         self.rule = ClosingRule(incumbent.candidates, gap)
         self.frontier = Frontier(self.rule)
@@ -59,8 +66,9 @@ class BranchAndBound:
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(task, self.by_winner, incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
-        self._root = self._first_node()
-        self.frontier.push(self._root)
+        self.roots = [self._first_node()] if roots is None else roots
+        for root in self.roots:
+            self.frontier.push(root)
 
     @property
     def upper(self) -> float:
@@ -69,39 +77,47 @@ class BranchAndBound:
 
     def use(self, cuts: list[int]) -> None:
         """Let the first programs hold these cuts, those that are usable everywhere."""
-        winners = [self.winners.of(self._root, int(outcome)) for outcome in self.cuts.outcomes[cuts]]
+        winners = [self.winners.of(self.roots[0], int(outcome)) for outcome in self.cuts.outcomes[cuts]]
         for k, winner in zip(cuts, winners, strict=True):
             if winner == self.cuts.groups[k]:
                 self.rounds.use(k)
 
-    def proof(self) -> UpperProof:
-        """The proof of :attr:`upper`: winners decided for all plans, then the tree."""
-        used = {k for node in nodes_below(self._root) if node.split is None for k in node.leaf.cuts}
-        root = self.winners.above(self._root, {int(self.cuts.outcomes[k]) for k in used})
+    def proof(self, number: int = 0) -> UpperProof:
+        """The proof of the bound below one of the roots: winners decided for all plans, then the tree."""
+        below = self.roots[number]
+        used = {k for node in nodes_below(below) if node.split is None for k in node.leaf.cuts}
+        root = self.winners.above(below, {int(self.cuts.outcomes[k]) for k in used})
         return upper_proof(root, self.pool.attack, self.cuts.record)
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
-        budget, frontier = turns.budget, self.frontier
-        while True:
-            if frontier.is_closed:
-                reopened = frontier.reopen()
-                self.winners.reconsider()
-                if not reopened:
-                    return Stop.GAP
-                continue
-            if (stop := budget.stop() or turns.stop()) is not None:
+        while not self.is_finished():
+            if (stop := turns.budget.stop() or turns.stop()) is not None:
                 return stop
-            node = frontier.take()
-            budget.nodes += 1
-            if (stop := self._explore(node, turns)) is not None:
-                assert frontier.current is not None
-                frontier.push(frontier.current)
-                frontier.current = None
+            if (stop := self.explore_next(turns)) is not None:
                 return stop
-            frontier.current = None
             if progress is not None:
-                progress(budget.nodes, self.incumbent.proved.lower, self.upper)
+                progress(turns.budget.nodes, self.incumbent.proved.lower, self.upper)
+        return Stop.GAP
+
+    def is_finished(self) -> bool:
+        """Whether every open node closes, and everything that was closed still does."""
+        if not self.frontier.is_closed:
+            return False
+        reopened = self.frontier.reopen()
+        self.winners.reconsider()
+        return not reopened
+
+    def explore_next(self, turns: Turns) -> Stop | None:
+        """Bound the open node of largest bound, then close it or divide it; why to stop where it is neither."""
+        node = self.frontier.take()
+        turns.budget.nodes += 1
+        stop = self._explore(node, turns)
+        if stop is not None:
+            assert self.frontier.current is not None
+            self.frontier.push(self.frontier.current)
+        self.frontier.current = None
+        return stop
 
     def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
@@ -200,6 +216,12 @@ class Turns:
     def __init__(self, budget: Budget, incumbent: Incumbent) -> None:
         self.budget, self._incumbent = budget, incumbent
         self._turn = budget.part(SEARCH_SHARE)
+
+    @property
+    def seconds_left(self) -> float:
+        """Seconds until it is time to stop, as far as that is known."""
+        left = self.budget.seconds_left
+        return left if self._incumbent.is_proved else min(left, self._turn.seconds_left)
 
     def stop(self) -> Stop | None:
         """Why to stop searching now, if at all."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import islice
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,6 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.any_function import search_any
@@ -22,6 +20,8 @@ from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
+from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
+from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
@@ -29,6 +29,9 @@ from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from concurrent.futures import Executor
+
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
@@ -37,9 +40,6 @@ if TYPE_CHECKING:
 
 __all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "solve_maxmin"]
 
-LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
-"""Up to so many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
-most in vain. Not measured."""
 ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
@@ -56,6 +56,7 @@ def solve_maxmin(
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     start: ArrayLike | Plan | MaxMinResult | None = None,
+    workers: int | Executor | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
@@ -75,15 +76,21 @@ def solve_maxmin(
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
         problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
+    workers : processes on this machine (started where a search takes longer than a second), or an executor that runs
+        anything, such as a Dask client's; ``None`` or 1 searches alone. A worker that dies costs what it was at, a
+        second of work. Which of equally good plans is found, and how many nodes that takes, may differ from run to
+        run. Set functions that are no information criterion are searched alone
 
     Raises
     ------
-    InputError : a limit is negative, ``start`` is a plan but not one element per robot, or the objective is no
-        information criterion and falls where it was looked at.
+    InputError : a limit is negative, ``start`` is a plan but not one element per robot, ``workers`` is neither a number
+        nor an executor or cannot receive the problem, or the objective is no information criterion and falls where it
+        was looked at.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
+    check_workers(problem, workers)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap)
@@ -93,7 +100,7 @@ def solve_maxmin(
     incumbent = Incumbent(problem, pool, first, budget)
     search: BranchAndBound | None = None
     try:
-        _list_outcomes(problem, pool)
+        pool.list_all()
         outcomes = warm.add_outcomes(pool)
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
@@ -101,7 +108,9 @@ def solve_maxmin(
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
         search.use(warm.add_cuts(search.cuts, outcomes))
-        stop = _search_and_prove(search, Turns(budget, incumbent), progress)
+        with open_crew(workers) as crew:
+            run = search.run if crew is None else SharedSearch(search, crew).run
+            stop = _search_and_prove(search, run, Turns(budget, incumbent), progress)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -119,12 +128,14 @@ def _first_plans(
     return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
 
 
-def _search_and_prove(search: BranchAndBound, turns: Turns, progress: Progress) -> Stop:
+def _search_and_prove(
+    search: BranchAndBound, run: Callable[[Turns, Progress], Stop], turns: Turns, progress: Progress
+) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
             progress(turns.budget.nodes, search.incumbent.proved.lower, search.upper)
-        stop = search.run(turns, progress)
+        stop = run(turns, progress)
         if not turns.prove():
             return stop
 
@@ -155,17 +166,6 @@ def _result(
         worst_case=proved.worst_case,
         proof=search.proof() if search is not None and bounded else None,
     )
-
-
-def _list_outcomes(problem: Problem, pool: OutcomePool) -> None:
-    """Fill the pool with all non-dominated outcomes where there are few."""
-    if problem.n_robots > LISTED_ROBOTS or not problem.threat.is_symmetric:
-        return
-    outcomes = list(islice(non_dominated_outcomes(problem.threat), LISTED_OUTCOMES + 1))
-    if len(outcomes) <= LISTED_OUTCOMES:
-        for outcome in outcomes:
-            pool.add_outcome(outcome)
-        pool.complete = True
 
 
 def check_limits(gap: float, time_limit: float | None, max_nodes: int | None = None) -> None:

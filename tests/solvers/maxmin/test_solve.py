@@ -27,8 +27,7 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin import solve
-from ratt_opt.solvers.maxmin.plans import adversary
+from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
@@ -114,7 +113,7 @@ def test_equals_the_exhaustive_optimum(seed: int) -> None:
 def test_quick_attacks_that_see_nothing_cost_time_only(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Plans look better than they are until they are attacked exactly; what was closed on their word is reopened."""
     monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
-    monkeypatch.setattr(solve, "LISTED_ROBOTS", 0)
+    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
     monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
     rng = np.random.default_rng([6, seed])
     problem = random_problem(rng, int(rng.integers(2, 6)), kind=list(OBJECTIVES)[seed % 3], controls=4)

@@ -37,6 +37,11 @@ class Winners:
         self._winner = np.zeros(0, dtype=np.int64)
         self._closed: dict[int, list[tuple[int, ClosedGroup]]] = {}
 
+    @property
+    def decided(self) -> dict[int, int]:
+        """Outcome -> winner, where other groups were closed for all plans."""
+        return {outcome: int(self._winner[outcome]) for outcome in self._closed}
+
     def at(self, node: TreeNode) -> IntArray:
         """(O,) winner of each outcome at a node; negative where that is not decided."""
         self._grow()

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.graph.outcomes import realise
+from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
 __all__ = ["OutcomePool"]
+
+LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
+"""Up to so many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
+most in vain. Not measured."""
 
 
 class OutcomePool:
@@ -55,6 +60,24 @@ class OutcomePool:
     def add_outcome(self, outcome: Outcome) -> int:
         """Add an outcome that some attack has; the attack is found once it is asked for."""
         return self._add(outcome, outcome)
+
+    def origin(self, outcome: int) -> Attack | Outcome:
+        """What an outcome was added by; light to send elsewhere."""
+        return self._attacks[outcome]
+
+    def add_origin(self, origin: Attack | Outcome) -> int:
+        """Add what another pool of the same problem was told."""
+        return self.add(origin) if isinstance(origin, Attack) else self.add_outcome(origin)
+
+    def list_all(self) -> None:
+        """Add all non-dominated outcomes where there are few."""
+        if self.problem.n_robots > LISTED_ROBOTS or not self.problem.threat.is_symmetric:
+            return
+        outcomes = list(islice(non_dominated_outcomes(self.problem.threat), LISTED_OUTCOMES + 1))
+        if len(outcomes) <= LISTED_OUTCOMES:
+            for outcome in outcomes:
+                self.add_outcome(outcome)
+            self.complete = True
 
     def _add(self, left: Iterable[frozenset[int]], origin: Attack | Outcome) -> int:
         numbers = tuple(sorted({self._group(tuple(sorted(group))) for group in left if group} or {self._group(())}))

@@ -1,0 +1,70 @@
+"""Numba, with interrupts (Ctrl-C) that are answered while it compiles: modules of compiled loops take it from here.
+
+Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
+those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
+fails with an error of its own. So it is raised again as soon as the callback has ended.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from typing import TYPE_CHECKING, Any
+
+import numba
+from numba.core import event
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+__all__ = ["numba"]
+
+DROPPED_IN = {"_raw_object_cache_notify", "_raw_object_cache_getbuffer", "__del__"}
+"""Functions called by compiled code or the collector, which drop exceptions."""
+AGAIN_AFTER = 0.01
+"""Seconds until a dropped interrupt comes again."""
+
+
+class _Interrupts(event.Listener):
+    """Handles interrupts while the main thread compiles, or loads what was compiled; both may nest."""
+
+    def __init__(self) -> None:
+        self._depth = 0
+        self._before: Any = None
+
+    def on_start(self, event: object) -> None:
+        """Handle interrupts from now on, in the place of whoever raises them otherwise."""
+        del event
+        if threading.current_thread() is not threading.main_thread():
+            return
+        self._depth += 1
+        if self._depth == 1 and callable(before := signal.getsignal(signal.SIGINT)):
+            self._before = before
+            signal.signal(signal.SIGINT, self._interrupt)
+
+    def on_end(self, event: object) -> None:
+        """Handle them as before."""
+        del event
+        if threading.current_thread() is not threading.main_thread():
+            return
+        self._depth -= 1
+        if self._depth == 0 and self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+            self._before = None
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        if _is_dropped_in(frame):
+            threading.Timer(AGAIN_AFTER, signal.raise_signal, [number]).start()
+        else:
+            self._before(number, frame)
+
+
+def _is_dropped_in(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_name in DROPPED_IN:
+            return True
+        frame = frame.f_back
+    return False
+
+
+event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]

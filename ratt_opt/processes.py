@@ -1,0 +1,125 @@
+"""Worker processes on this machine, as executors: one pool, or processes of which each may be lost alone."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+__all__ = ["SeparateProcesses", "local_processes"]
+
+T = TypeVar("T")
+
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@contextmanager
+def local_processes(workers: int | None) -> Iterator[Executor]:
+    """Start local processes by spawn (fork deadlocks with threads), with one BLAS thread each.
+
+    Leaving the block by an exception stops them at once.
+    """
+    known = set(multiprocessing.active_children())
+    with _one_thread_each():
+        executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
+        try:
+            yield executor
+        except BaseException:
+            # Not cancelled first: the pool would then report its cancelled trials as broken, with a traceback.
+            for process in set(multiprocessing.active_children()) - known:
+                process.terminate()
+            raise
+        finally:
+            executor.shutdown()
+
+
+class SeparateProcesses(Executor):
+    """So many pools of one process each, started when asked for first: one that dies takes no other's work along.
+
+    Unlike a pool of several processes it goes on after that: the next call starts another one. Shutting down ends
+    them at once, whatever they are at.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self._pools: list[ProcessPoolExecutor | None] = [None] * workers
+        self._running: list[list[Future[Any]]] = [[] for _ in range(workers)]
+        self._processes: list[Any] = []
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Run a call on the process that has the fewest left."""
+        for futures in self._running:
+            futures[:] = [future for future in futures if not future.done()]
+        k = min(range(len(self._pools)), key=lambda i: len(self._running[i]))
+        try:
+            future = self._pool(k).submit(fn, *args, **kwargs)
+        except BrokenProcessPool:  # it died since
+            self._pools[k] = None
+            future = self._pool(k).submit(fn, *args, **kwargs)
+        self._running[k].append(future)
+        return future
+
+    def _pool(self, k: int) -> ProcessPoolExecutor:
+        pool = self._pools[k]
+        if pool is None:
+            known = set(multiprocessing.active_children())
+            pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), initializer=_follow_parent)
+            with _one_thread_each(), _uninterrupted():
+                pool.submit(os.getpid)  # starts it
+            self._pools[k] = pool
+            self._processes += set(multiprocessing.active_children()) - known
+        return pool
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002  (nothing waits)
+        """End all processes now."""
+        for process in self._processes:
+            with suppress(ValueError):  # closed already
+                process.terminate()
+        for pool in self._pools:
+            if pool is not None:
+                pool.shutdown()
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Processes started meanwhile use one BLAS thread."""
+    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Processes started meanwhile never see Ctrl-C, not even before they can say so; here it comes afterwards."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _follow_parent() -> None:
+    """Leave Ctrl-C to the parent, and end with it even when it is killed without a word."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
