@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 
 if TYPE_CHECKING:
@@ -14,6 +16,8 @@ __all__ = ["upper_record"]
 
 DIGITS = 9
 """Digits kept of a Fenchel point: any point is valid, and the bound changes by the square of its error."""
+LARGEST_CONDITION = 1e6
+"""Of the matrices whose points are shortened: beyond it so few digits could leave one that is not positive definite."""
 
 
 def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
@@ -35,7 +39,9 @@ def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
     for k in used:
         cut = proof.cuts[k]
         if (key := (cut.point.tobytes(), cut.target)) not in points:
-            points[key] = len(points), _short(objective.fenchel_point(cut.point, cut.target))
+            point = objective.fenchel_point(cut.point, cut.target)
+            kept = point if np.linalg.cond(cut.point).max() > LARGEST_CONDITION else _short(point)
+            points[key] = len(points), kept
         cuts.append([attack_number[cut.attack], groups[cut.attack].index(tuple(sorted(cut.group))), points[key][0]])
     return {
         "attacks": [

@@ -122,6 +122,12 @@ def test_a_sample_of_the_extremes(number: int, tmp_path: Path, capsys: pytest.Ca
     check(*CASES[number][1:], tmp_path, capsys)
 
 
+def test_an_extreme_whose_tangents_need_all_their_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Shortened to nine digits they would not be positive definite."""
+    (found,) = (case for case in CASES if case[0] == "information ('information', 0, 1, 0, 0) matrix 1e+12")
+    assert check(found[1], "logdet", tmp_path, capsys)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(20))
 def test_all_extremes(part: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
