@@ -19,7 +19,7 @@ import numpy as np
 from analysis.benchmarks.earlier_edition import earlier_attack
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
-from ratt_opt.attackers.by_prices.compiled import gather
+from ratt_opt.attackers.by_prices.groups.compiled import gather
 from ratt_opt.attackers.by_prices.team import Links, Team
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.problem import Attack

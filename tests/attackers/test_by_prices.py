@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_prices import cover
-from ratt_opt.attackers.by_prices.blinding import ABSENT, WEAK, weak_subset
-from ratt_opt.attackers.by_prices.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
-from ratt_opt.attackers.by_prices.columns import FINISHED, Prices, Question, Stack, enumerate_groups
-from ratt_opt.attackers.by_prices.cover import next_cover
+from ratt_opt.attackers.by_prices.groups import cover
+from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, WEAK, weak_subset
+from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
+from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
+from ratt_opt.attackers.by_prices.groups.cover import next_cover
+from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup
 from ratt_opt.attackers.by_prices.team import Links, Team
-from ratt_opt.attackers.by_prices.weak_sizes import WeakSizes
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget

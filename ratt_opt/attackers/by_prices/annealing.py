@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.compiled import value_of
+from ratt_opt.attackers.by_prices.groups.compiled import value_of
 from ratt_opt.compiling import numba
 
 __all__ = ["Cooling", "State", "anneal"]

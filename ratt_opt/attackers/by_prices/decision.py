@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.cheap_groups import BLINDED, cheap_group
-from ratt_opt.attackers.by_prices.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
-from ratt_opt.attackers.by_prices.cover import FOUND, PAUSED, next_cover
+from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, cheap_group
+from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
+from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
 from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.starts import Split
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
     from ratt_opt.attackers.by_prices.team import Links, Team
-    from ratt_opt.attackers.by_prices.weak_sizes import WeakSizes
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
@@ -116,7 +116,7 @@ class Decision:
 
     def learn(self, split: Split) -> None:
         """Add the groups of an attack to the program."""
-        from ratt_opt.attackers.by_prices.compiled import gather
+        from ratt_opt.attackers.by_prices.groups.compiled import gather
 
         sums = np.empty_like(self.team.prior)
         for label in np.unique(split.group):

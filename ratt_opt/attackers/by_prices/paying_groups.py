@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_prices.groups.seeing_sets import FINISHED, PAUSED, Flows, SeeingStack, search_seeing_sets
 from ratt_opt.attackers.by_prices.prices import KnownGroup
-from ratt_opt.attackers.by_prices.seeing_sets import FINISHED, PAUSED, Flows, SeeingStack, search_seeing_sets
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.by_prices.columns import Prices, Question
+    from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
     from ratt_opt.attackers.by_prices.team import Links, Team
     from ratt_opt.budget import Budget
 

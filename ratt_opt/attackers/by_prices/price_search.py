@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_prices.decision import Decision, Verdict
+from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links
-from ratt_opt.attackers.by_prices.weak_sizes import WeakSizes
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import OutOfBudget
 from ratt_opt.stopping import Stop

@@ -61,7 +61,7 @@ class Starts:
         self.best: Split | None = None
 
     def _value(self, sums: np.ndarray) -> float:
-        from ratt_opt.attackers.by_prices.compiled import value_of
+        from ratt_opt.attackers.by_prices.groups.compiled import value_of
 
         return float(value_of(self._team, sums))
 

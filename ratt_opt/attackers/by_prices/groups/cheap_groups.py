@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.compiled import value_of
-from ratt_opt.attackers.by_prices.flow import ALWAYS
+from ratt_opt.attackers.by_prices.groups.compiled import value_of
+from ratt_opt.attackers.by_prices.groups.flow import ALWAYS
 from ratt_opt.compiling import numba
 
 __all__ = ["BLINDED", "NOBODY", "SEEING", "cheap_group"]

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.blinding import UNDECIDED, WEAK, exchange, trade, weak_subset
-from ratt_opt.attackers.by_prices.compiled import gather
-from ratt_opt.attackers.by_prices.flow import ALWAYS
+from ratt_opt.attackers.by_prices.groups.blinding import UNDECIDED, WEAK, exchange, trade, weak_subset
+from ratt_opt.attackers.by_prices.groups.compiled import gather
+from ratt_opt.attackers.by_prices.groups.flow import ALWAYS
 from ratt_opt.compiling import numba
 
 __all__ = ["admit", "blind_fewer", "knapsack_need", "settle"]

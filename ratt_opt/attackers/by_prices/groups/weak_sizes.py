@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.blinding import ABSENT, weak_subset
+from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, weak_subset
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.compiled import gather, value_of
+from ratt_opt.attackers.by_prices.groups.compiled import gather, value_of
 from ratt_opt.compiling import numba
 
 __all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "trade", "weak_subset"]

@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.flow import ALWAYS, augment, open_flow
-from ratt_opt.attackers.by_prices.needs import admit, blind_fewer, knapsack_need, settle
+from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
+from ratt_opt.attackers.by_prices.groups.needs import admit, blind_fewer, knapsack_need, settle
 from ratt_opt.compiling import numba
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]

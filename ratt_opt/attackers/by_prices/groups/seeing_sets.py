@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.compiled import value_of
-from ratt_opt.attackers.by_prices.flow import ALWAYS, augment, open_flow
+from ratt_opt.attackers.by_prices.groups.compiled import value_of
+from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
 from ratt_opt.compiling import numba
 
 __all__ = ["Flows", "SeeingStack", "search_seeing_sets"]
