@@ -78,11 +78,11 @@ def worst_case_attack(
       partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, and prices that
-      no weak group pays (``by_prices``; a node is a branch on one robot), until closed or out of the budget: give one,
-      as graphs of 50 robots can take hours to close (of another search's budget that limits nothing, half a million
-      nodes). Relies on a non-decreasing objective, as above; targets of
-      any dimension. Compiling takes about a minute once per machine.
+    - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
+      (``tree_bound.py``), and prices that no weak group pays (``by_prices``; a node is a branch on one robot), until
+      closed or out of the budget: give one, as graphs of 50 robots can take hours to close (of another search's budget
+      that limits nothing, half a million nodes). Relies on a non-decreasing objective, as above; targets of any
+      dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
@@ -173,7 +173,7 @@ def _any_function(task: AttackTask) -> Stop:
 
 
 def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
-    """The forced size, then partitions where they are few; elsewhere annealed attacks before it and prices after it."""
+    """The forced size, then partitions where they are few; elsewhere annealed attacks before, prices after it."""
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
@@ -182,10 +182,11 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     if is_brief and task.budget.max_nodes is None and math.isinf(task.budget.seconds_left):
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
     prices = _price_search(task) if task.budget.stop() is None else None
-    if prices is None:
-        return forced_group_bound(task, team)
-    prices.anneal(INNER_STARTS if is_brief else FIRST_STARTS)
+    if prices is not None:
+        prices.anneal(INNER_STARTS if is_brief else FIRST_STARTS)
     least = _by_trees(task, is_brief=is_brief)
+    if prices is None:
+        return forced_group_bound(task, team, least)
     return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
 
 
