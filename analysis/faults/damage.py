@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -73,5 +74,5 @@ def _replace_one(document: Any, rng: np.random.Generator) -> None:
         elif way == 3 and rng.random() < 0.3:
             del document[key]
         else:
-            document[key] = VALUES[int(rng.integers(len(VALUES)))]
+            document[key] = deepcopy(VALUES[int(rng.integers(len(VALUES)))])
         return
