@@ -9,7 +9,7 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.largest_group.counting import counting_bound
-from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.largest_group.smallest import by_search
 from ratt_opt.graph.separable_groups import LARGEST_MASK
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
@@ -25,6 +25,7 @@ MILP_NODES = 1_000
 """Nodes of the integer program for ``n_max`` on large graphs that are not complete; keeps RATT deterministic."""
 
 
+@Step("the smallest largest group")
 def equivalent_sensing_attacks(problem: Problem) -> int:
     """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``.
 
@@ -38,9 +39,7 @@ def equivalent_sensing_attacks(problem: Problem) -> int:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
     if problem.n_robots > LARGEST_MASK:  # nothing but the bound is known of larger teams
         return problem.n_robots - counting_bound(problem.threat)
-    found = smallest_largest_group(
-        problem.communication, problem.alpha_c, protected_links=problem.protected_links, max_nodes=MILP_NODES
-    )
+    found = by_search(replace(problem.threat, alpha_s=0), Budget(max_nodes=MILP_NODES))
     return problem.n_robots - (found.lower if found.n_max is None else found.n_max)
 
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.separable_groups import PartitionSearch
 
-__all__ = ["by_separable_groups", "by_subsets", "smallest_largest_group"]
+__all__ = ["by_search", "by_separable_groups", "by_subsets", "smallest_largest_group"]
 
 AUTOMATIC_NODES = 20_000_000
 """Groups that ``method="auto"`` tries before it turns to the integer program (some ten seconds)."""
@@ -107,18 +107,24 @@ def smallest_largest_group(
 
 
 def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
-    n_robots = threat.graph.n_robots
+    if threat.links_alike or threat.graph.n_robots <= LARGEST_LATTICE:
+        return by_search(threat, budget)
+    known = by_spreading(threat, budget)
+    return known if known.is_exact or budget.is_over else by_search(threat, budget, known)
+
+
+def by_search(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup:
+    """The first of the exact ways that applies, from what is ``known``; that, or counting, where none does."""
     if threat.links_alike:
         return by_caa(threat)
-    if n_robots <= LARGEST_LATTICE:
+    if threat.graph.n_robots <= LARGEST_LATTICE:
         return by_subsets(threat, budget)
-    found = by_spreading(threat, budget)
-    if not found.is_exact and not budget.is_over:
-        searched = by_separable_groups(threat, budget.part(max_nodes=AUTOMATIC_NODES), found)
-        found = found if searched is None else searched
-    if not found.is_exact and n_robots <= LARGEST_AUTOMATIC_PROGRAM and not budget.is_over:
-        found = by_integer_program(threat, budget, found)
-    return found
+    found = by_separable_groups(threat, budget.part(max_nodes=AUTOMATIC_NODES), known)
+    if found is not None and (found.is_exact or budget.is_over):
+        return found
+    if threat.graph.n_robots <= LARGEST_AUTOMATIC_PROGRAM:
+        return by_integer_program(threat, budget, known)
+    return found or known or by_counting(threat, budget)
 
 
 def by_spreading(threat: Threat, budget: Budget) -> LargestGroup:
