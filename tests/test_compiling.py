@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 import signal
 from pathlib import Path
@@ -15,6 +16,7 @@ from ratt_opt.compiling import numba
 SOURCES = sorted(Path(ratt_opt.__file__).parent.rglob("*.py"))
 
 
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # when it comes between `open` and `with`
 @pytest.mark.parametrize("cached", [False, True])
 @pytest.mark.parametrize("callback", ["_object_cache_notify", "_object_cache_getbuffer"])
 def test_one_in_a_callback_of_the_compiler_comes_after_it(callback, cached, monkeypatch, tmp_path):
@@ -43,6 +45,7 @@ def test_one_in_a_callback_of_the_compiler_comes_after_it(callback, cached, monk
     with pytest.raises(KeyboardInterrupt):  # noqa: PT012  (it comes some time later)
         while True:  # compiled once, and then run until the interrupt is here
             doubled((1.0, 2.0))
+    gc.collect()
     assert met
     assert signal.getsignal(signal.SIGINT) is before
     assert doubled((1.0, 2.0)) == 6.0
