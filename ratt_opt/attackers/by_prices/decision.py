@@ -203,9 +203,8 @@ class Decision:
         while True:
             budget.check()
             found, links = self.prices.solve(threshold, budget.seconds_left), self.threat.alpha_c + MARGIN
-            if not self.prices.add(
-                self._cheap(found.scaled(links) if found.links > links else found, threshold, budget)
-            ):
+            asked = found.scaled(links) if found.links > links else found
+            if not self.prices.add(self._cheap(asked, threshold, budget)):
                 return found
 
     def _cheap(self, prices: PriceVector, threshold: float, budget: Budget) -> list[KnownGroup]:
