@@ -204,9 +204,9 @@ def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
 
 def _price_search(task: AttackTask) -> PriceSearch | None:
     """The search by prices, for criteria with compiled code."""
-    from ratt_opt.attackers.by_prices.team import Team
+    from ratt_opt.attackers.by_prices.team import PricedTeam
 
-    team = Team.of(task.problem.objective, task.values.plan)
+    team = PricedTeam.of(task.problem.objective, task.values.plan)
     if team is None:
         return None
     from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles

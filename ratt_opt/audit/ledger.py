@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from ratt_opt.audit.appendix.entry import Detour, Entry, Reference, SizedClaim
+    from ratt_opt.audit.appendix.entry import Detour, Entry, EntryName, SizedClaim
     from ratt_opt.audit.appendix.roles import Team
     from ratt_opt.audit.engine.claim import Claim
     from ratt_opt.audit.engine.decide import Decision
@@ -244,12 +244,12 @@ def _decide_all(
 
 def _add_other_verdicts(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> None:
     """For each refuted entry: does the conclusion hold without it, and which weaker step serves (entries' verdicts)?"""
-    verdicts: dict[Reference, set[str]] = {}
+    verdicts: dict[EntryName, set[str]] = {}
     for entry, record in zip(entries, records, strict=True):
         for name in entry.names:
             verdicts.setdefault(name, set()).add(record["verdict"])
 
-    def other(name: Reference) -> OtherEntry:
+    def other(name: EntryName) -> OtherEntry:
         found = verdicts.get(name, set())
         return {"entry": str(name), "verdict": next(iter(found)) if len(found) == 1 else None}
 
