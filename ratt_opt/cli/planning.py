@@ -106,7 +106,7 @@ def _certified(report: "BoundReport", folder: Path) -> "BoundReport":
     began = monotonic()
     failure: BaseException | None = None
     try:
-        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF)
+        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, source=report.source)
     except ProofError as error:
         proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
     except KeyboardInterrupt as error:
