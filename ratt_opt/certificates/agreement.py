@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.certificates.write import problem_document
 from ratt_opt.scenario.model import Scenario
 
@@ -142,6 +143,7 @@ def _information(scenario: Scenario, robot: Robot) -> Iterator[list[list[arb]]]:
         angle = _rounded(target.heading + turn, target.heading, turn, share=OF_POSITIONS)
         aims.append(_moved((target.x, target.y), period * target.speed, angle))
     for speed, turn_rate in robot.controls:
+        tick()
         here = _moved((robot.x, robot.y), period * speed, arb(robot.heading))
         turn = period * turn_rate
         heading = _rounded(robot.heading + turn, robot.heading, turn, 4.0, share=OF_POSITIONS)

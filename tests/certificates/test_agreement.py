@@ -14,8 +14,10 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.certificates.agreement import differences
+from ratt_opt.certificates.verifier.work import limited
 from ratt_opt.certificates.write import problem_document
 from ratt_opt.cli import run
+from ratt_opt.errors import UndecidedError
 from ratt_opt.scenario.sensor import Sensor
 
 SENSORS = [
@@ -77,6 +79,14 @@ def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
         assert other == record or difference(other)
     weighted = scenario.replace(targets=(first.replace(weight=1.0 + 2**-52), *others))
     assert difference(problem_document(weighted.problem("logdet"))) == "its weights differs"
+
+
+def test_a_comparison_counts_as_work_of_the_verifier() -> None:
+    """Of a thousand robots and targets it takes minutes."""
+    scenario = _drawn(0)
+    moved = _shifted(problem_document(scenario.problem()), np.random.default_rng(0), 2)
+    with limited(1e-9), pytest.raises(UndecidedError, match="not decided within"):
+        differences(scenario, "trace")(moved)
 
 
 def test_links_within_a_range_may_differ_where_rounding_decides() -> None:
