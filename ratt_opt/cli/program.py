@@ -34,28 +34,26 @@ ERRORS = {
 """Exit codes of the errors that users can act on; the first kind that fits counts."""
 
 
-class _DeliveredHelp:
-    """A command whose help is printed like its results: where it cannot arrive, that is said."""
-
-    def get_help_option(self, ctx: typer.Context) -> Any:
-        option = super().get_help_option(ctx)  # type: ignore[misc]
-        if option is not None:
-            option.callback = _show_help
-        return option
+class _Command(TyperCommand):
+    def get_help_option(self, ctx: Any) -> Any:
+        return _delivered(super().get_help_option(ctx))
 
 
-class _Command(_DeliveredHelp, TyperCommand):
-    pass
+class _Group(TyperGroup):
+    def get_help_option(self, ctx: Any) -> Any:
+        return _delivered(super().get_help_option(ctx))
 
 
-class _Group(_DeliveredHelp, TyperGroup):
-    pass
+def _delivered(option: Any) -> Any:
+    """The option ``--help``, which prints like a command prints its results: where it cannot arrive, that is said."""
 
+    def show_help(ctx: typer.Context, _: object, wanted: bool) -> None:
+        if wanted and not ctx.resilient_parsing:
+            print_lines([ctx.get_help()])
+            ctx.exit()
 
-def _show_help(ctx: typer.Context, _: object, wanted: bool) -> None:
-    if wanted and not ctx.resilient_parsing:
-        print_lines([ctx.get_help()])
-        ctx.exit()
+    option.callback = show_help
+    return option
 
 
 app = typer.Typer(

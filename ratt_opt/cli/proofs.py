@@ -83,11 +83,11 @@ def audit(
 
     An interrupt (Ctrl-C) writes what is decided so far, marked incomplete, and exits with 130.
     """
-    from ratt_opt.audit.ledger import run_audit
+    from ratt_opt.audit.ledger import FILES, run_audit
     from ratt_opt.report.tables import audit_table
 
     ledger = run_audit(out, quick=quick)
-    files = [str(out / name) for name in ("audit.json", "audit.html", "audit.md")]
+    files = [str(out / name) for name in FILES]
     if as_json:
         kept = {name: value for name, value in ledger.document().items() if name in SUMMARY}
         head = {"format": "ratt-opt audit summary", "version": 1}
