@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LONGEST",
+    "MISSION",
     "STUDY",
     "SWEEP",
     "Campaign",
@@ -46,6 +47,7 @@ STUDY = Study(
     cases=tuple(Case(n_robots=n, n_targets=1, alpha_s=0, alpha_c=0) for n in (1, 2)),
     measure="analysis.faults.campaign:measure",
 )
+MISSION: dict[str, Any] = {"steps": 3, "seed": 1}
 SWEEP = replace(STUDY, name="sweep", measure="analysis.faults.campaign:measure_slowly")
 
 
@@ -103,6 +105,7 @@ class Campaign:
             for trial in range(3):
                 for case in range(len(STUDY.cases)):
                     journal.append(run_trial(STUDY, case, trial))
+        ro.run_mission(scenario, **MISSION, journal=home / "mission.jsonl")
         self.files = {
             file.relative_to(home).as_posix(): file.read_bytes() for file in home.rglob("*") if file.is_file()
         }
