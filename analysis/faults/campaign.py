@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import signal
 import tempfile
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from time import monotonic, sleep
+from time import monotonic, process_time, sleep
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -126,7 +127,7 @@ class Campaign:
         rng = np.random.default_rng([self.seed, number])
         names = list(kinds)
         kind = names[int(rng.choice(len(names), p=np.array([kinds[name][0] for name in names])))]
-        before = signal.signal(signal.SIGALRM, hang)
+        before, used = signal.signal(signal.SIGALRM, hang), process_time()
         start_clock()
         try:
             with tempfile.TemporaryDirectory(dir=self.folder) as place:
@@ -136,7 +137,11 @@ class Campaign:
             self.faults[number] = f"{kind}: {fault}"
         except _HangError:
             outcome = "fault"
-            self.faults[number] = f"{kind}: more than {LONGEST:g} s"
+            # Where those are many a busy machine may be the reason: --case runs one again.
+            machine = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
+            self.faults[number] = (
+                f"{kind}: more than {LONGEST:g} s, {process_time() - used:.1f} s of them at work; {machine}"
+            )
         except Exception as fault:  # noqa: BLE001  (every exception that reaches this is what the campaign looks for)
             outcome = "fault"
             self.faults[number] = f"{kind}: {type(fault).__name__}: {fault}"
