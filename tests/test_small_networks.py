@@ -15,7 +15,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_prices.team import Team
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES, information_data, range_bearing
@@ -74,7 +74,7 @@ def by_prices(problem, plan):
     """The search that larger teams need, whatever would be chosen for this one."""
     values, nothing = PlanValues(problem, plan), ro.Attack()
     bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
-    search = PriceSearch(AttackTask(problem, values, bracket, Budget()), Team.of(problem.objective, values.plan))
+    search = PriceSearch(AttackTask(problem, values, bracket, Budget()), PricedTeam.of(problem.objective, values.plan))
     search.anneal(1)
     search.run()
     return bracket

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import gather
-from ratt_opt.attackers.by_prices.team import Links, Team
+from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
 
 def plain_annealing(problem: Problem, plan: IntArray, seconds: float, seed: int) -> float:
     """Worst value that annealing from the whole team finds, cooled again and again for so many seconds."""
-    team, links, rng = Team.of(problem.objective, plan), Links.of(problem.threat), np.random.default_rng(seed)
+    team, links, rng = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), np.random.default_rng(seed)
     assert team is not None
     n_robots, whole, best = problem.n_robots, problem.objective(plan), np.inf
     heat, ends = np.array([HOT, COLD]) * whole, time.monotonic() + seconds
