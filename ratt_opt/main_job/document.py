@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
+    from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
@@ -72,8 +73,13 @@ def attack_document(
     results: Mapping[str, AttackResult],
     critical: Sequence[Criticality] | None = None,
     budgets: Sequence[BreakingBudget] | None = None,
+    *,
+    best_links: Mapping[str, BestLinks] | None = None,
 ) -> dict[str, Any]:
-    """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
+    """Return the attacks on one plan as JSON-ready values, and what to protect or add where that was asked for.
+
+    ``best_links`` : by what is done with them, "protect" and "add"
+    """
     document = {
         "format": "ratt-opt attack",
         "version": VERSION,
@@ -85,6 +91,8 @@ def attack_document(
         document["critical"] = [_critical(row) for row in critical]
     if budgets is not None:
         document["breaking_budgets"] = [_budget(row) for row in budgets]
+    if best_links:
+        document["best_links"] = {name: found.to_dict() for name, found in best_links.items()}
     return document
 
 
