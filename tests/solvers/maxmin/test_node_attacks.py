@@ -20,7 +20,7 @@ BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 6), (6, 0, 11))
 """(N, sensing, links) that leave several groups."""
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(48))
 def test_searches_agree_with_exhaustive_search_wherever_they_stop(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """As large teams are searched: outcomes are not listed beforehand, and known ones are exchanged."""
     monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
@@ -30,7 +30,7 @@ def test_searches_agree_with_exhaustive_search_wherever_they_stop(seed: int, mon
     problem = threatened(ragged(rng, robots, 4, list(OBJECTIVES)[seed % 3]), alpha_s, alpha_c)
     best = exhaustive_optimum(problem)
     slack = 1e-9 * best.upper + 16 * problem.objective.rounding
-    for nodes in (1, 2, 3, 5, None):
+    for nodes in (1, 2, 4, None):
         found = solve_maxmin(problem, gap=0, max_nodes=nodes)
         assert found.lower - slack <= best.lower
         assert best.upper <= found.upper + slack
@@ -69,17 +69,21 @@ def test_nodes_are_attacked_only_where_robots_and_links_are_alike() -> None:
     assert NodeAttacks.of(guarded, OutcomePool(guarded), Budget()) is None
 
 
-def test_a_worse_outcome_is_found_next_to_a_known_one() -> None:
+def test_worse_outcomes_are_found_next_to_known_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = random_scenario(20, 20, alpha_s=0, alpha_c=132, seed=0).problem()
-    plan, pool = ratt(problem).elements, OutcomePool(problem)
+    pool = OutcomePool(problem)
     judge = Adversary(problem, pool, Budget())
-    assert judge.learn(plan)
-    rng, known = np.random.default_rng(0), len(pool)
-    other = np.array([rng.choice(choice) for choice in problem.choices])
-    before = pool.plan_value(other)
-    assert judge.learn(other)
-    assert len(pool) > known
-    assert pool.plan_value(other) < before
+    assert judge.learn(ratt(problem).elements)
+    anew = []
+    monkeypatch.setattr(judge, "_quick_attack", lambda *_: anew.append(1) or pool.attack(0))
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        plan = np.array([rng.choice(choice) for choice in problem.choices])
+        before, tried = pool.plan_value(plan), len(anew)
+        if judge.learn(plan):
+            assert len(anew) == tried
+            assert pool.plan_value(plan) < before
+    assert len(anew) < 20
 
 
 @pytest.mark.slow
