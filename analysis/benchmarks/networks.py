@@ -20,7 +20,7 @@ from analysis.benchmarks.earlier_edition import earlier_attack
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
 from ratt_opt.attackers.by_prices.groups.compiled import gather
-from ratt_opt.attackers.by_prices.team import Links, Team
+from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.networks import NETWORK_FAMILIES, network_scenario
@@ -85,7 +85,7 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
 
 def plain_annealing(problem: Problem, plan: IntArray, seconds: float, seed: int) -> float:
     """Worst value that annealing from the whole team finds, cooled again and again for so many seconds."""
-    team, links, rng = Team.of(problem.objective, plan), Links.of(problem.threat), np.random.default_rng(seed)
+    team, links, rng = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), np.random.default_rng(seed)
     assert team is not None
     n_robots, whole, best = problem.n_robots, problem.objective(plan), np.inf
     heat, began = np.array([HOT, COLD]) * whole, time.perf_counter()

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._version import __version__
 from ratt_opt.report.description import describe
+from ratt_opt.scenario.problem_record import ProblemRecord
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -137,12 +136,9 @@ def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
 
 def _input(source: object) -> dict[str, Any] | None:
     """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` where a problem was given."""
-    dump = getattr(source, "model_dump", None)
-    if dump is None:
+    if not isinstance(source, ProblemRecord):
         return None
-    document = dump(mode="json")
-    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return {"sha256": hashlib.sha256(canonical.encode()).hexdigest(), "document": document}
+    return {"sha256": source.digest, "document": source.model_dump(mode="json")}
 
 
 def _cast(report: BoundReport) -> dict[str, Any]:
