@@ -154,15 +154,21 @@ class BranchAndBound:
                 return None
 
     def _narrow(self, node: TreeNode) -> TreeNode | None:
-        """What no linear program is needed for; ``None`` where the node is divided, or closed."""
+        """What remains without any linear program; ``None`` where the node is divided, or closed.
+
+        The whole node is attacked where some outcome's winner is open: elsewhere relaxed plans find what hurts.
+        """
         better = self.rule.better
-        narrowed = node if self.pairs is None else self.pairs.narrow(node, better, self.by_winner)
-        narrowed = None if narrowed is None else self.small.narrow(narrowed, better)
-        if narrowed is not None and self.node_attacks is not None:
-            self.frontier.current = narrowed
-            if self.node_attacks.learn(narrowed.choices, better):
-                narrowed = self.small.narrow(narrowed, better)
-        return narrowed
+        if self.pairs is not None:
+            left = self.pairs.narrow(node, better, self.by_winner)
+            if left is None:
+                return None
+            self.frontier.current = node = left
+        left = self.small.narrow(node, better)
+        if left is None or self.node_attacks is None or not (self.winners.at(left) < 0).any():
+            return left
+        self.frontier.current = left
+        return self.small.narrow(left, better) if self.node_attacks.learn(left.choices, better) else left
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one where it is better.
