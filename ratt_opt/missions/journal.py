@@ -113,11 +113,7 @@ def _write(file: Path, records: Sequence[Mapping[str, Any]]) -> None:
 
 def _sealed(record: Mapping[str, Any]) -> str:
     """A line of the file, without its end."""
-    return json.dumps({**record, SEAL: _checksum(record)})
-
-
-def _checksum(record: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(record).encode()).hexdigest()[:16]
+    return json.dumps({**record, SEAL: hashlib.sha256(json.dumps(record).encode()).hexdigest()[:16]})
 
 
 def _parsed(file: Path, number: int, line: str) -> dict[str, Any]:
@@ -129,7 +125,8 @@ def _parsed(file: Path, number: int, line: str) -> dict[str, Any]:
         raise FileFormatError(f"{file} line {number}", "must be a JSON object", line)
     if number == 1 and record.get("format") != FORMAT:
         raise FileFormatError(f"{file} line 1", "must be a mission's journal", record.get("format"))
-    if record.pop(SEAL, None) != _checksum(record):
+    record.pop(SEAL, None)
+    if _sealed(record) != line:
         raise FileFormatError(f"{file} line {number}", "must be as it was written (its checksum says otherwise)", line)
     return record
 

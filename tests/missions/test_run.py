@@ -280,7 +280,7 @@ def test_a_damaged_journal_is_refused_by_its_line(tmp_path) -> None:
     changes = ({"elements": [first + 1, *step["elements"][1:]]}, {"sensing": []}, {"checksum": "0" * 16}, {"more": 1})
     damaged = [json.dumps(step | change) for change in changes if step | change != step]
     without = json.dumps({name: value for name, value in step.items() if name != "checksum"})
-    for line in (*damaged, without, lines[1].replace('"step": 0', '"step": true'), "[" * 100_000, "7"):
+    for line in (*damaged, without, lines[1].replace('"step": 0', '"step": true'), lines[1] + " ", "[" * 100_000, "7"):
         journal.write_text("\n".join([lines[0], line, lines[2], ""]))
         with pytest.raises(InputError, match=r"j line 2 must be (as it was written|a JSON object)") as refused:
             run_mission(scenario_of(), steps=2, journal=journal)
