@@ -35,7 +35,7 @@ MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
 WORK = 10_000_000
 """Criteria of single targets between two looks at the clock: a tenth of a second or less."""
-QUICK = 2_000_000
+QUICK = 4_000_000
 """The same for a list that is wanted only if it is short."""
 NODES_OF_A_LOOK = 10_000
 """Nodes that the work between two looks counts as: about as many partial sets are looked at."""
