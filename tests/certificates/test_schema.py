@@ -52,6 +52,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
             certify(problem, solve_maxmin(problem), path)
             made[f"{name}, {links}"] = json.loads(path.read_text(encoding="utf-8"))
     made["enumerated"] = made["trace, path"] | {"lower": ENUMERATED}
+    made["with its source"] = made["trace, path"] | {"made_from": "0123456789abcdef" * 4}
     return made
 
 
