@@ -7,21 +7,27 @@ first, so that the cases in which strong robots see close early.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["ENUMERATED", "lower_proof"]
 
+LARGEST_PLAIN = 12
+"""Robots up to which a cover is found sooner than compiled code is loaded."""
 LARGEST_TREE = 200_000
 """Most nodes of a tree."""
 MOST_CRITERIA = 60_000_000
@@ -30,6 +36,8 @@ NODES_TIMES_PAIRS = 20_000_000
 """Most nodes of an attack tree, times pairs of robots."""
 ENUMERATED: dict[str, Any] = {"kind": "enumerated"}
 """Says that the outcomes were enumerated in floating point: not a proof."""
+COVERING = "covering all attacks"
+"""What is told while a cover is built."""
 
 
 class _NotClosedError(Exception):
@@ -51,19 +59,29 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     """
     if problem.communication.is_complete:
         size = forced_group_size(problem.n_robots, problem.alpha_s, problem.alpha_c)
-        tree = _attempt(_ForcedSize(_Cases(problem, elements, threshold), size, max_nodes))
+        tree = _attempt(partial(_forced_size_tree, _Cases(problem, elements, threshold), size, max_nodes))
         if tree is not None:
             return {"kind": "forced_size", "size": size, "tree": tree}
     fewer = min(max_nodes, NODES_TIMES_PAIRS // problem.n_robots**2)
-    tree = _attempt(_AttackTree(_Cases(problem, elements, threshold), fewer))
+    tree = _attempt(_AttackTree(_Cases(problem, elements, threshold), fewer).run)
     return ENUMERATED if tree is None else {"kind": "attack_tree", "tree": tree}
 
 
-def _attempt(search: _ForcedSize | _AttackTree) -> list[int] | None:
+def _attempt(search: Callable[[], list[int] | None]) -> list[int] | None:
     try:
-        return search.run()
+        return search()
     except (_NotClosedError, UndecidedError):
         return None
+
+
+def _forced_size_tree(cases: _Cases, size: int, max_nodes: int) -> list[int] | None:
+    """Compiled for larger teams, where the criterion and its targets have compiled loops."""
+    team = PlanarTeam.of(cases.objective, cases.elements)
+    if team is None or cases.problem.n_robots <= LARGEST_PLAIN:
+        return _ForcedSize(cases, size, max_nodes).run()
+    from ratt_opt.certificates.forced_size import forced_size_tree  # compiles
+
+    return forced_size_tree(team, size, cases.threshold, max_nodes)
 
 
 @dataclass(slots=True)
@@ -121,6 +139,7 @@ class _ForcedSize:
         tree: list[int] = []
         stack = [(self.cases.start(), 0, 0)]
         while stack:
+            tell(COVERING, len(tree))
             posterior, depth, out = stack.pop()
             if out > len(order) - self.size:
                 tree.append(-2)
@@ -167,6 +186,7 @@ class _AttackTree:
         stack = [_Case()]
         while stack:
             tick()
+            tell(COVERING, len(tree))
             case = stack.pop()
             if self._infeasible(case):
                 tree.append(-1)
