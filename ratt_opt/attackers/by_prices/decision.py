@@ -81,10 +81,14 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """``split`` : an attack below the threshold, where it is reached."""
+    """``split`` : an attack below the threshold, where it is reached.
+
+    ``prices`` : that no weak group pays and that claim more links than the budget, where these refuted it
+    """
 
     verdict: Verdict
     split: Split | None = None
+    prices: PriceVector | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,9 +140,9 @@ class Decision:
         while budget.nodes - spent < nodes:
             found = self._settled(threshold, budget)
             if found.links > self.threat.alpha_c + MARGIN:
-                verdict = self._refute(threshold, size, budget)
-                if verdict is not None:
-                    return Answer(verdict=verdict)
+                answer = self._refute(threshold, size, budget)
+                if answer is not None:
+                    return answer
                 continue
             verdict = self._answered(found, (threshold, size, -LOWERED), budget)
             if verdict is Verdict.REFUTED:
@@ -149,7 +153,7 @@ class Decision:
                 self._attempt *= LONGER
         return Answer(verdict=Verdict.OPEN)
 
-    def _refute(self, threshold: float, size: int, budget: Budget) -> Verdict | None:
+    def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
         """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
 
         The prices furthest below what known groups cost prune best, once the groups that pay them are known: they soon
@@ -162,14 +166,14 @@ class Decision:
             if answer is None:
                 break
             if answer is not Verdict.REACHED:
-                return answer
+                return Answer(verdict=answer, prices=slackest)
         found = self._settled(threshold, budget)
         if found.links <= links:
             return None
         for prices in (found.scaled(links), found.for_robots(links, self.threat.n_blinded)):
             answer = self._answered(prices, asked, budget)
             if answer is not None:
-                return answer if answer is not Verdict.REACHED else None
+                return None if answer is Verdict.REACHED else Answer(verdict=answer, prices=prices)
         self._attempt *= LONGER
         return None
 
