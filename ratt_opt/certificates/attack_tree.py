@@ -42,6 +42,7 @@ class AttackTree:
         self.worth: dict[frozenset[int], bool] = {}
 
     def run(self) -> list[int]:
+        """Return the tree, or raise ``NotClosedError``."""
         tree: list[int] = []
         stack = [_Case()]
         while stack:

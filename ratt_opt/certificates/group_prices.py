@@ -14,7 +14,7 @@ import numpy as np
 from ratt_opt.attackers.by_prices.team import Links, Team
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.certificates.group_bounds import ELSE, OPEN, OUTSIDE, SEEING, BLINDED, GroupBounds
+from ratt_opt.certificates.group_bounds import BLINDED, ELSE, OPEN, OUTSIDE, SEEING, GroupBounds
 from ratt_opt.certificates.plan_sets import NotClosedError
 from ratt_opt.certificates.size_tree import SizeTree
 from ratt_opt.certificates.verifier.work import seconds_left, tick
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["group_price_proof"]
 
-SEARCHED = 20_000_000
-"""Nodes of the search for prices."""
+SEARCHED = 2_000_000
+"""Nodes of the search for prices: seconds, up to half a minute at 30 robots."""
 
 LARGEST_PROOF = 1_500_000
 """Most integers of a proof; the verifier reads files of two million."""
@@ -41,6 +41,11 @@ class _Node:
     posterior: FloatArray
     room: int
     grown: bool = True
+
+    @classmethod
+    def of(cls, part: IntArray, posterior: FloatArray, room: int) -> _Node:
+        """One in which a robot has begun to see; without room, no other can."""
+        return cls(part if room else np.where(part == OPEN, ELSE, part), posterior, room)
 
 
 def group_price_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
@@ -77,13 +82,15 @@ def _prices(sets: PlanSets) -> tuple[PriceVector, int]:
         raise NotClosedError
     sizes = WeakSizes(team, PlanarTeam.of(problem.objective, sets.elements))
     budget = Budget(None if seconds == np.inf else seconds)
+    decision = Decision(team, Links.of(problem.threat), problem.threat, sizes)
     try:
-        answer = Decision(team, Links.of(problem.threat), problem.threat, sizes).decide(sets.threshold, budget, SEARCHED)
+        prices = decision.refuting_prices(sets.threshold, budget, SEARCHED)
+        size = sizes.largest(sets.threshold, budget)
     except OutOfBudget:
         raise NotClosedError from None
-    if answer.prices is None:
+    if prices is None:
         raise NotClosedError
-    return answer.prices, sizes.largest(sets.threshold, budget)
+    return prices, size
 
 
 class _SeeingTree:
@@ -99,7 +106,7 @@ class _SeeingTree:
 
     def run(self, size: int) -> list[int]:
         n_robots = len(self.own)
-        stack = [_Node(np.full(n_robots, OPEN), self.sets.start(), size)]
+        stack = [_Node.of(np.full(n_robots, OPEN), self.sets.start(), size)]
         while stack:
             tick()
             if len(self.tree) > self.max_nodes or len(self.tree) + self.bounds.length > LARGEST_PROOF:
@@ -165,7 +172,7 @@ class _SeeingTree:
                 i = int(inside[np.argmax(worth[inside])])
                 self.tree.append(2 * i)
                 stack.append(_Node(_with(part, i, ELSE), node.posterior, node.room, grown=False))
-                stack.append(_Node(_with(part, i, SEEING), self.sets.extend(node.posterior, i), node.room - 1))
+                stack.append(_Node.of(_with(part, i, SEEING), self.sets.extend(node.posterior, i), node.room - 1))
                 return
         inside = np.flatnonzero(sides[-1] & (part == ELSE))
         if not len(inside):

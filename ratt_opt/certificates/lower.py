@@ -12,6 +12,7 @@ from ratt_opt.certificates.attack_tree import AttackTree
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.size_tree import SizeTree
+from ratt_opt.certificates.verifier.work import limited, seconds_left
 from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 
@@ -27,6 +28,8 @@ LARGEST_TREE = 200_000
 """Most nodes of a tree."""
 NODES_TIMES_PAIRS = 20_000_000
 """Most nodes of an attack tree, times pairs of robots."""
+SHARE_OF_OTHERS = 0.4
+"""Of the seconds left that each kind but the last may take."""
 ENUMERATED: dict[str, Any] = {"kind": "enumerated"}
 """Says that the outcomes were enumerated in floating point: not a proof."""
 
@@ -57,10 +60,14 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
         fewer = min(max_nodes, NODES_TIMES_PAIRS // problem.n_robots**2)
         return {"kind": "attack_tree", "tree": AttackTree(sets(), fewer).run()}
 
-    ways: list[Callable[[], dict[str, Any]]] = [by_cases, lambda: group_price_proof(sets(), max_nodes)]
+    def by_prices() -> dict[str, Any]:
+        return group_price_proof(sets(), max_nodes)
+
+    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_prices]
     for way in [by_size, *ways] if problem.communication.is_complete else ways:
         try:
-            return way()
+            with limited(seconds_left() * (1.0 if way is by_prices else SHARE_OF_OTHERS)):
+                return way()
         except (NotClosedError, UndecidedError):
             continue
     return ENUMERATED

@@ -38,18 +38,23 @@ class PlanSets:
 
     @property
     def objective(self) -> InformationObjective:
+        """The criterion."""
         return self.problem.information_objective
 
     def order(self) -> list[int]:
+        """Robots, strongest first."""
         return [int(i) for i in np.argsort(-self.objective.singletons()[self.elements], kind="stable")]
 
     def start(self) -> FloatArray:
+        """The posterior information of nobody, (M, d, d)."""
         return self.objective.prior_information
 
     def extend(self, posterior: FloatArray, robot: int) -> FloatArray:
+        """That of a set with one robot more."""
         return np.asarray(posterior + self.objective.information[self.elements[robot]])
 
     def enough(self, posterior: FloatArray) -> bool:
+        """Whether a set with this posterior is worth the threshold."""
         self._count(1)
         return float(self.objective.value(posterior)) >= self.threshold
 
@@ -70,5 +75,3 @@ class PlanSets:
         self.looked_at += sets * self.objective.n_targets
         if self.looked_at > MOST_CRITERIA:
             raise NotClosedError
-
-

@@ -19,6 +19,7 @@ class SizeTree:
         self.sets, self.size, self.max_nodes = sets, size, max_nodes
 
     def run(self) -> list[int]:
+        """Return the tree, or raise ``NotClosedError``."""
         order = self.sets.order()[::-1]
         own = self.sets.objective.information[self.sets.elements[order]]
         tree: list[int] = []

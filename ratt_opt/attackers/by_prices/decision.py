@@ -153,6 +153,21 @@ class Decision:
                 self._attempt *= LONGER
         return Answer(verdict=Verdict.OPEN)
 
+    def refuting_prices(self, threshold: float, budget: Budget, nodes: int) -> PriceVector | None:
+        """Prices that refute the threshold without covers; ``None`` where there are none, or not after so many nodes.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        size, spent = self._sizes.largest(threshold, budget), budget.nodes
+        self._attempt = FIRST_ATTEMPT
+        while budget.nodes - spent < nodes and self._settled(threshold, budget).links > self.threat.alpha_c + MARGIN:
+            answer = self._refute(threshold, size, budget)
+            if answer is not None:
+                return answer.prices if answer.verdict is Verdict.REFUTED else None
+        return None
+
     def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
         """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
 

@@ -1,7 +1,7 @@
 """The plan keeps a value under every attack on any graph, by prices of robots that no group worth less pays.
 
-In units of which ``half_link`` are half a link, robot i has a price p_i, of any sign, and a blinded robot costs u >= 0. Say
-a group g of which the robots b are blinded *pays* if
+In units of which ``half_link`` are half a link, robot i has a price p_i, of any sign, and a blinded robot costs
+u >= 0. Say a group g of which the robots b are blinded *pays* if
 
     sum of p_i over g  >  half_link * (links between g and the others) + u |b|.
 
@@ -55,9 +55,10 @@ class _Case:
 def check_group_prices(about: Statement, part: Any, worth: Worth) -> int:
     """Check the proof; returns its leaves.
 
-    Cases in preorder, 2i: robot i sees in the group; or does not. 2i + 1: robot i, which does not see, is blinded in the
-    group; or outside. -1: the robots that see are worth the claim. -2 - 2r: at most r further robots see, as any r + 1 of
-    the open ones bring the group to the claim; one case follows. -3 - 2k: no group of the case pays, by flow k.
+    Cases in preorder, 2i: robot i sees in the group; or does not. 2i + 1: robot i, which does not see, is blinded in
+    the group; or outside. -1: the robots that see are worth the claim. -2 - 2r: at most r further robots see, as any
+    r + 1 of the open ones bring the group to the claim; one case follows. -3 - 2k: no group of the case pays, by flow
+    k.
     """
     names = "kind half_link robots blinded size sizes flows tree"
     _, half, robots, blinded, size, sizes, flows, tree = fields("lower proof", part, names)
@@ -82,8 +83,9 @@ def check_group_prices(about: Statement, part: Any, worth: Worth) -> int:
         else:
             i, asks_place = divmod(index("lower tree", node, 2 * about.n), 2)
             if asks_place:
-                placed = i in case.others - case.blind - case.outside and i not in about.safe_robots
-                need(placed, f"lower proof: robot {i} cannot be placed")
+                placed = i in case.seeing | case.blind | case.outside | about.safe_robots
+                cannot_see = i in case.others or not case.room
+                need(cannot_see and not placed, f"lower proof: robot {i} cannot be placed")
                 yield replace(case, blind=case.blind | {i})
                 yield replace(case, outside=case.outside | {i})
                 return

@@ -17,8 +17,8 @@ __all__ = ["check_size_tree"]
 def check_size_tree(n: int, size: int, tree: object, worth: Worth) -> int:
     """Check that every set of ``size`` of ``n`` robots is worth it; returns the number of leaves.
 
-    In preorder, i >= 0: robot i is in the set; or not. -1: the robots I in the set are worth it. -2: fewer than ``size``
-    robots are left. -3: some robots are missing, and I with any so many of those undecided is worth it.
+    In preorder, i >= 0: robot i is in the set; or not. -1: the robots I in the set are worth it. -2: fewer than
+    ``size`` robots are left. -3: some robots are missing, and I with any so many of those undecided is worth it.
     """
 
     def expand(node: Any, case: Any) -> Iterator[Any]:

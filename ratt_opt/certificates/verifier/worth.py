@@ -60,8 +60,8 @@ class Worth:
     def require(self, known: Known, others: Iterable[int] = (), count: int = 0) -> None:
         """Check that the set is worth it: alone, or with any ``count`` of the ``others``.
 
-        With r = count robots T, L(S + T) is the average over T of L(S) + r information[i], and phi is concave in L: it is
-        worth the average there at least.
+        With r = count robots T, L(S + T) is the average over T of L(S) + r information[i], and phi is concave in L: it
+        is worth the average there at least.
         """
         inside, sums = known
         quick = self._quick
