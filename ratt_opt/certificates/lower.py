@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.attack_tree import AttackTree
+from ratt_opt.certificates.forced_size import forced_size_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.size_tree import SizeTree
@@ -45,8 +46,8 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 
     Returns
     -------
-    A ``forced_size`` proof where the complete graph allows one, else an ``attack_tree``, else ``group_prices``, else
-    ``ENUMERATED``.
+    A ``forced_size`` proof where the complete graph allows one, else an ``attack_tree``, a ``forced_size`` proof by
+    trees of links, or ``group_prices``, else ``ENUMERATED``.
     """
 
     def sets() -> PlanSets:
@@ -56,6 +57,9 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
         size = forced_group_size(problem.n_robots, problem.alpha_s, problem.alpha_c)
         return {"kind": "forced_size", "size": size, "tree": SizeTree(sets(), size, max_nodes).run()}
 
+    def by_trees() -> dict[str, Any]:
+        return forced_size_proof(sets(), max_nodes)
+
     def by_cases() -> dict[str, Any]:
         fewer = min(max_nodes, NODES_TIMES_PAIRS // problem.n_robots**2)
         return {"kind": "attack_tree", "tree": AttackTree(sets(), fewer).run()}
@@ -63,7 +67,7 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     def by_prices() -> dict[str, Any]:
         return group_price_proof(sets(), max_nodes)
 
-    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_prices]
+    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices]
     for way in [by_size, *ways] if problem.communication.is_complete else ways:
         try:
             with limited(seconds_left() * (1.0 if way is by_prices else SHARE_OF_OTHERS)):

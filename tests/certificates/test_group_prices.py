@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import copy
+from itertools import combinations
 
 import networkx as nx
 import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import Problem, ProofError, network_scenario, ratt, worst_case_attack
+from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, ratt, worst_case_attack
+from ratt_opt.budget import Budget
+from ratt_opt.certificates.forced_size import forced_size_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.write import _prior_range, problem_document
+from ratt_opt.graph.largest_group.spreading import forced_size_trees
 from tests.certificates.cases import certified
 from tests.certificates.test_mutations import accepted, changed, is_false, places, variants
 from tests.oracles import brute_force_worst_case
@@ -63,6 +67,50 @@ def small_proofs(seeds):
         problem, plan, worst = drawn(seed)
         if worst > 1e-3:
             yield problem, plan, worst, proof(problem, plan, worst * (1 - 1e-7))
+
+
+def check_sizes(seeds, least):
+    """What trees of links force is left by every attack; the proof of the weakest set of that size, or none."""
+    proved = 0
+    for seed in seeds:
+        problem, plan, worst = drawn(seed)
+        size, _ = forced_size_trees(problem.threat, Budget())
+        if not size:
+            continue
+        weakest = min(problem.objective([plan[i] for i in s]) for s in combinations(range(problem.n_robots), size))
+        assert weakest <= worst * (1 + 1e-9) + 1e-12
+        if weakest <= 1e-3:
+            continue
+        part = forced_size_proof(PlanSets(problem, np.array(plan), weakest * (1 - 1e-9)), NODES)
+        assert checker(problem, plan).check(part, exact(weakest * (1 - 2e-9))) > 0
+        for broken, text in broken_trees(part):
+            with pytest.raises((ProofError, FileFormatError), match=text):
+                checker(problem, plan).check(broken, exact(weakest * (1 - 2e-9)))
+        proved += 1
+    assert proved >= least
+
+
+def broken_trees(part):
+    """Proofs with one fault each, and its name."""
+    yield part | {"trees": []}, "not every attack"
+    yield part | {"size": part["size"] + 1}, "not every attack|must be an integer"
+    trees = copy.deepcopy(part["trees"])
+    with_links = next((tree for tree in trees if tree["links"]), None)
+    if with_links is not None:
+        i, j = with_links["links"][0]
+        with_links["links"].append([j, i])
+        yield part | {"trees": trees}, "no tree of the graph"
+        with_links["links"] = []
+        yield part | {"trees": trees}, "in no tree"
+
+
+def test_forced_sizes_by_trees():
+    check_sizes(range(30), 5)
+
+
+@pytest.mark.slow
+def test_more_forced_sizes_by_trees():
+    check_sizes(range(100, 700), 100)
 
 
 def check_small(seeds, least):

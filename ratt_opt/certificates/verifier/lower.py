@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt.certificates.verifier.forced_size import is_forced, is_forced_by_trees
 from ratt_opt.certificates.verifier.group_prices import check_group_prices
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
 from ratt_opt.certificates.verifier.size_tree import check_size_tree
-from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.certificates.verifier.worth import Worth
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["LowerCheck", "is_forced"]
+__all__ = ["LowerCheck"]
 
 
 class LowerCheck:
@@ -33,8 +33,7 @@ class LowerCheck:
         """
         kind = part.get("kind") if isinstance(part, dict) else None
         if kind == "forced_size":
-            _, size, tree = fields("lower proof", part, "kind size tree")
-            return self._check_forced_size(index("forced size", size, self.about.n + 1), tree, Worth(self.about, lower))
+            return self._check_forced_size(part, Worth(self.about, lower))
         if kind == "attack_tree":
             return self._check_attack_tree(fields("lower proof", part, "kind tree")[1], Worth(self.about, lower))
         if kind == "group_prices":
@@ -44,12 +43,18 @@ class LowerCheck:
         need(kind == "enumerated", f"lower proof: the kind must be {kinds}")
         return 0
 
-    def _check_forced_size(self, size: int, tree: object, worth: Worth) -> int:
+    def _check_forced_size(self, part: dict[str, Any], worth: Worth) -> int:
         """Every attack leaves a group with ``size`` seeing robots, and every such set is worth it."""
-        complete = 2 * len(self.about.links) == self.about.n * (self.about.n - 1)
-        forced = complete and is_forced(self.about.n, self.about.alpha_s, self.about.alpha_c, size)
+        about, has_trees = self.about, "trees" in part
+        _, given, tree, *trees = fields("lower proof", part, "kind size tree trees" if has_trees else "kind size tree")
+        size = index("forced size", given, about.n + 1)
+        if has_trees:
+            forced = is_forced_by_trees(about, size, trees[0])
+        else:
+            complete = 2 * len(about.links) == about.n * (about.n - 1)
+            forced = complete and is_forced(about.n, about.alpha_s, about.alpha_c, size)
         need(forced, f"lower proof: not every attack is shown to leave a group of {size}")
-        return check_size_tree(self.about.n, size, tree, worth)
+        return check_size_tree(about.n, size, tree, worth)
 
     def _check_attack_tree(self, tree: object, worth: Worth) -> int:
         """Cases over attacks; ``parts`` are pairwise in different groups, each within one.
@@ -93,18 +98,3 @@ class LowerCheck:
         lost = len(between) + sum(sum(c) - max(c, default=0) for c in counts)
         protected = between & self.about.safe_links or blind & self.about.safe_robots
         return lost > self.about.alpha_c or len(blind) > self.about.alpha_s or bool(protected)
-
-
-def is_forced(n: int, alpha_s: int, alpha_c: int, size: int) -> bool:
-    """Whether every attack on the complete graph of n robots leaves a group with ``size`` seeing robots.
-
-    Otherwise groups n_1 + ... = n have (n^2 - sum n_k^2) / 2 <= alpha_c links between them and, to bring each below
-    ``size``, sum max(0, n_k - size + 1) <= alpha_s. ``best[r][x]``: largest sum n_k^2 of r robots, blinding x.
-    """
-    best = [[0] * (alpha_s + 1)]
-    for r in range(1, n + 1):
-        tick()
-        options = [range(1, min(r, size - 1 + x) + 1) for x in range(alpha_s + 1)]
-        part = [[k * k + best[r - k][x - max(0, k - size + 1)] for k in ks] for x, ks in enumerate(options)]
-        best.append([max(values, default=-n * n - 1) for values in part])
-    return size == 0 or n * n - best[n][alpha_s] > 2 * alpha_c
