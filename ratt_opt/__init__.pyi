@@ -45,6 +45,11 @@ from .attackers.criticality import (
     breaking_budgets as breaking_budgets,
     BreakingBudget as BreakingBudget,
 )
+from .attackers.link_choice.best_links import (
+    links_to_protect as links_to_protect,
+    links_to_add as links_to_add,
+    BestLinks as BestLinks,
+)
 
 # == Missions
 from .missions.players.attack_models import (

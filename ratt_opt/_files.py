@@ -46,7 +46,7 @@ def output_directory(path: str | Path, *names: str) -> Path:
             pass
     except (OSError, ValueError) as error:
         raise InputError("out", "must be a folder that can be written", f"{folder} ({_reason(error)})") from None
-    for name in names:
+    for name in (MIXED, *names):
         output_file(folder / name)
     return folder
 

@@ -6,7 +6,7 @@ terminal, in worker processes and in threads other than the main one; nothing st
 
 from __future__ import annotations
 
-import shutil
+import os
 import sys
 import threading
 from contextlib import ContextDecorator, suppress
@@ -94,12 +94,20 @@ class _Screen:
     def _write(self, text: str) -> None:
         if text or self._dirty:
             with suppress(OSError, ValueError):
-                sys.stderr.write(ERASE + text[: shutil.get_terminal_size().columns - 1])
+                sys.stderr.write(ERASE + text[: _columns() - 1])
                 sys.stderr.flush()
             self._dirty = bool(text)
 
 
 _SCREEN = _Screen()
+
+
+def _columns() -> int:
+    """Of the terminal that standard error is, whatever standard output is: a longer line could not be erased."""
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or 80
+    except (OSError, ValueError):
+        return 80
 
 
 def _somebody_looks() -> bool:

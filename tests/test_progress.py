@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import pty
 import re
+import struct
 import subprocess
 import sys
+import termios
 
 import pytest
 
@@ -39,10 +42,11 @@ with p.Step("outer"):
 """
 
 
-def on_a_terminal(code: str) -> tuple[str, str]:
-    """Standard output, and what a terminal on standard error was sent."""
+def on_a_terminal(code: str, columns: int = 0) -> tuple[str, str]:
+    """Standard output, and what a terminal of so many columns (0: it does not say) on standard error was sent."""
     master, terminal = pty.openpty()
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "100"}
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=terminal, env=environment)
     os.close(terminal)
     shown = b""
@@ -62,6 +66,13 @@ def test_a_step_over_two_seconds_is_shown_with_its_time_and_then_erased() -> Non
     assert printed == "done\n"
     assert re.search(r"looking for a violation of submodularity \([01] s\)", shown)
     assert shown.endswith(ERASE)
+
+
+def test_a_line_fits_the_terminal_that_it_is_erased_on() -> None:
+    """Standard output is another one, or none, and says nothing about it."""
+    _, shown = on_a_terminal(SLOW_SEARCH, columns=20)
+    lines = set(shown.split(ERASE))
+    assert lines == {"", "looking for a viola"}
 
 
 def test_a_short_step_shows_nothing() -> None:

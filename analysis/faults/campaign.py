@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import signal
 import tempfile
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from time import monotonic, sleep
+from time import monotonic, process_time, sleep
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LONGEST",
+    "MISSION",
     "STUDY",
     "SWEEP",
     "Campaign",
@@ -46,6 +48,7 @@ STUDY = Study(
     cases=tuple(Case(n_robots=n, n_targets=1, alpha_s=0, alpha_c=0) for n in (1, 2)),
     measure="analysis.faults.campaign:measure",
 )
+MISSION: dict[str, Any] = {"steps": 3, "seed": 1}
 SWEEP = replace(STUDY, name="sweep", measure="analysis.faults.campaign:measure_slowly")
 
 
@@ -103,6 +106,7 @@ class Campaign:
             for trial in range(3):
                 for case in range(len(STUDY.cases)):
                     journal.append(run_trial(STUDY, case, trial))
+        ro.run_mission(scenario, **MISSION, journal=home / "mission.jsonl")
         self.files = {
             file.relative_to(home).as_posix(): file.read_bytes() for file in home.rglob("*") if file.is_file()
         }
@@ -123,7 +127,7 @@ class Campaign:
         rng = np.random.default_rng([self.seed, number])
         names = list(kinds)
         kind = names[int(rng.choice(len(names), p=np.array([kinds[name][0] for name in names])))]
-        before = signal.signal(signal.SIGALRM, hang)
+        before, used = signal.signal(signal.SIGALRM, hang), process_time()
         start_clock()
         try:
             with tempfile.TemporaryDirectory(dir=self.folder) as place:
@@ -133,7 +137,11 @@ class Campaign:
             self.faults[number] = f"{kind}: {fault}"
         except _HangError:
             outcome = "fault"
-            self.faults[number] = f"{kind}: more than {LONGEST:g} s"
+            # Where those are many a busy machine may be the reason: --case runs one again.
+            machine = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
+            self.faults[number] = (
+                f"{kind}: more than {LONGEST:g} s, {process_time() - used:.1f} s of them at work; {machine}"
+            )
         except Exception as fault:  # noqa: BLE001  (every exception that reaches this is what the campaign looks for)
             outcome = "fault"
             self.faults[number] = f"{kind}: {type(fault).__name__}: {fault}"

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 import ratt_opt as ro
-from analysis.faults.campaign import LONGEST, STUDY, Campaign, command, hang
+from analysis.faults.campaign import LONGEST, MISSION, STUDY, Campaign, command, hang
 from analysis.faults.damage import ODD, damaged
 from analysis.faults.results import check_results, earlier_results
 from analysis.faults.truth import truth
@@ -95,6 +95,26 @@ def _journal(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
     assert set(lines) <= set(whole.splitlines()), "a row was accepted that nobody wrote"
     assert len(done) == len(lines) == len(set(lines)), "a row was lost or repeated"
     assert not lines or header == whole.splitlines()[0], "a header was accepted that nobody wrote"
+    return "done"
+
+
+def _mission(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
+    """A mission that goes on from a damaged journal is the same mission, or is refused."""
+    whole = campaign.files["mission.jsonl"]
+    lines = whole.splitlines(keepends=True)
+    k = int(rng.integers(len(lines)))
+    hurt = b"".join([*lines[:k], damaged(lines[k], rng), *lines[k + 1 :]])
+    path = campaign.put(place, "mission.jsonl", hurt if rng.random() < 0.7 else whole[: int(rng.integers(len(whole)))])
+    scenario = ro.load_scenario(campaign.put(place, "scenario.json"))
+    refusal = ""
+    try:
+        ro.run_mission(scenario, **MISSION, journal=path)
+    except ro.InputError as error:
+        refusal = str(error)
+    if refusal:
+        assert refusal.isprintable(), "a refusal is not one line"
+        return "refused"
+    assert path.read_bytes() == whole, "a damaged journal made another mission"
     return "done"
 
 
@@ -202,10 +222,11 @@ def _closed(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
 
 
 INSIDE: dict[str, tuple[float, Kind]] = {
-    "certificate": (0.5115, _verify),
+    "certificate": (0.4915, _verify),
     "input": (0.194, _attack),
     "flags": (0.1, _flags),
     "journal": (0.1, _journal),
+    "mission journal": (0.02, _mission),
     "full disk": (0.03, _full_disk),
     "full disk in bound": (0.005, _full_disk_in_bound),
     "interrupt": (0.04, _interrupted),

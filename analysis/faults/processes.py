@@ -51,6 +51,7 @@ def _commands(campaign: Campaign, place: Path) -> list[list[str]]:
         ["new", "--robots", "2", "--targets", "1", "--sensing-attacks", "0", "--link-attacks", "0", "--seed", "1",
          "--out", str(place / "n.json")],
         ["schema"],
+        ["attack", "--help"],
     ]  # fmt: skip
 
 

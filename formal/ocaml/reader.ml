@@ -246,9 +246,18 @@ let proofs pb prior_range upper lower =
         lower_part = lower_proof lower }
   | _ -> assert false
 
+(* What the problem is said to be made from: no statement depends on it. *)
+let without_origin = function
+  | Record pairs when List.mem_assoc "made_from" pairs ->
+      let is_digit c = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') in
+      (match List.assoc "made_from" pairs with
+      | String text when String.length text = 64 && String.for_all is_digit text -> Record (List.remove_assoc "made_from" pairs)
+      | _ -> format "made_from" "must be a SHA-256 of 64 lower-case hexadecimal digits")
+  | document -> document
+
 let certificate document =
   match
-    fields "certificate" [ "format"; "version"; "problem"; "plan"; "claim"; "prior_eigenvalue"; "upper"; "lower" ] document
+    fields "certificate" [ "format"; "version"; "problem"; "plan"; "claim"; "prior_eigenvalue"; "upper"; "lower" ] (without_origin document)
   with
   | [ String "ratt-opt certificate"; Number "1"; stated; plan; claimed; prior_range; upper; lower ] ->
       let pb, _ = problem stated in

@@ -15,7 +15,7 @@ from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_atta
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, PlanValues
-from ratt_opt.attackers.tree_bound import size_bound, tree_bound
+from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.largest_group.spreading import forced_size
@@ -195,7 +195,7 @@ def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
     objective, threat, part = task.problem.objective, task.problem.threat, task.budget.part(TREE_SHARE)
     assert isinstance(objective, InformationObjective)
     size = forced_size(threat, part, threat.graph.n_robots)
-    task.bracket.raise_lower(size_bound(objective, task.values.plan, size))
+    task.bracket.raise_lower(first_bound(objective, task.values.plan, threat, size))
     if not is_brief:
         task.bracket.raise_lower(tree_bound(objective, task.values.plan, threat, part, task.bracket.upper))
     task.budget.check()
@@ -204,9 +204,9 @@ def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
 
 def _price_search(task: AttackTask) -> PriceSearch | None:
     """The search by prices, for criteria with compiled code."""
-    from ratt_opt.attackers.by_prices.team import Team
+    from ratt_opt.attackers.by_prices.team import PricedTeam
 
-    team = Team.of(task.problem.objective, task.values.plan)
+    team = PricedTeam.of(task.problem.objective, task.values.plan)
     if team is None:
         return None
     from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles

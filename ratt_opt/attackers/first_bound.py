@@ -20,20 +20,27 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["first_bound", "strongest_left", "weakest_average"]
+__all__ = ["first_bound", "rounded_down", "strongest_left", "weakest_average"]
 
 ROUNDING = 1e-12
 """Relative: values are sums of a few hundred numbers."""
 
 
-def first_bound(objective: InformationObjective, plan: IntArray, threat: Threat) -> float:
-    """No attack on a plan (N,) leaves less; relies on a non-decreasing objective. ``-inf`` where all may be blinded."""
-    size = forced_survivors(threat)
+def first_bound(objective: InformationObjective, plan: IntArray, threat: Threat, least: int = 0) -> float:
+    """No attack on a plan (N,) leaves less; relies on a non-decreasing objective. ``-inf`` where all may be blinded.
+
+    ``least`` : seeing robots that are known to be left in some group
+    """
+    size = max(forced_survivors(threat), least)
     if size == 0:
         return -np.inf
     single = objective.extensions(np.array([], dtype=np.int64), plan)
     weakest = max(float(np.sort(single)[size - 1]), weakest_average(objective, plan, size))
-    bound = max(strongest_left(single, threat), weakest)
+    return rounded_down(max(strongest_left(single, threat), weakest), objective)
+
+
+def rounded_down(bound: float, objective: InformationObjective) -> float:
+    """The bound, less what floating-point sums of the objective's values may be off by."""
     return bound - ROUNDING * abs(bound) - objective.rounding
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.first_bound import ROUNDING, weakest_average
+from ratt_opt.attackers.first_bound import rounded_down, weakest_average
 from ratt_opt.graph.largest_group.spreading import forced_size, forced_weight
 
 if TYPE_CHECKING:
@@ -26,14 +26,9 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["size_bound", "tree_bound"]
+__all__ = ["tree_bound"]
 
 LARGEST_WEIGHT = 2**20
-
-
-def size_bound(objective: InformationObjective, plan: IntArray, size: int) -> float:
-    """Sets of at least ``size`` robots of a plan (N,) are worth no less; relies on a non-decreasing objective."""
-    return _rounded(weakest_average(objective, plan, size), objective) if size else -np.inf
 
 
 def tree_bound(objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, enough: float) -> float:
@@ -49,11 +44,7 @@ def tree_bound(objective: InformationObjective, plan: IntArray, threat: Threat, 
         larger = weakest_average(objective, plan, k + 1) if k < seeing else np.inf
         best = max(best, min(kept, larger))
         low, high = (k + 1, high) if larger < kept else (low, k - 1)
-    return _rounded(best, objective) if best > -np.inf else best
-
-
-def _rounded(bound: float, objective: InformationObjective) -> float:
-    return bound - ROUNDING * abs(bound) - objective.rounding
+    return rounded_down(best, objective) if best > -np.inf else best
 
 
 def _kept_value(objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, k: int) -> float:

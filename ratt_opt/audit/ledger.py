@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt._files import output_directory, write_atomically, write_json
+from ratt_opt._files import output_directory, write_json, write_together
 from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EnumeratedEntry, entries_of
 from ratt_opt.audit.appendix.patterns import pattern1_chains, pattern2_chains, submodular_chains
 from ratt_opt.audit.appendix.readings import dominance_entries, readings_of_sets, readings_of_the_attack
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from ratt_opt.audit.appendix.entry import Detour, Entry, Reference, SizedClaim
+    from ratt_opt.audit.appendix.entry import Detour, Entry, EntryName, SizedClaim
     from ratt_opt.audit.appendix.roles import Team
     from ratt_opt.audit.engine.claim import Claim
     from ratt_opt.audit.engine.decide import Decision
@@ -45,7 +45,10 @@ if TYPE_CHECKING:
     from ratt_opt.audit.report.findings import Finding
     from ratt_opt.audit.report.records import EntryRecord, LedgerDocument, OtherEntry
 
-__all__ = ["Ledger", "all_entries", "decide_entry", "run_audit"]
+__all__ = ["FILES", "Ledger", "all_entries", "decide_entry", "run_audit"]
+
+FILES = ("audit.json", "audit.html", "audit.md")
+"""What :func:`run_audit` writes."""
 
 FORMAT = "ratt-opt audit, version 1"
 ENUMERATED = "exhaustive enumeration"
@@ -185,7 +188,7 @@ def run_audit(
     time_limit: float | None = None,
     budget: Budget | None = None,
 ) -> Ledger:
-    """Decide every entry and write ``audit.json``, ``audit.html`` and ``audit.md`` to the folder ``out``.
+    """Decide every entry and write ``FILES`` to the folder ``out``.
 
     A keyboard interrupt, or a spent time limit, writes what is decided so far, marked incomplete.
 
@@ -201,7 +204,7 @@ def run_audit(
     ------
     InputError : ``out`` cannot be written.
     """
-    folder, own = output_directory(out), Budget.inside(budget, time_limit)
+    folder, own = output_directory(out, *FILES), Budget.inside(budget, time_limit)
     entries: list[Entry] = []
     records: list[EntryRecord] = []
     with suppress(OutOfBudget), paced(own):
@@ -210,10 +213,13 @@ def run_audit(
     _add_other_verdicts(entries[: len(records)], records)
     ledger = Ledger(records=tuple(records), seconds=own.elapsed, complete=complete, quick=quick)
     document = ledger.document()
-    write_json(folder / "audit.json", document)
     html, markdown = html_report(document), markdown_report(document)
-    write_atomically(folder / "audit.html", lambda file: file.write_text(html, encoding="utf-8"))
-    write_atomically(folder / "audit.md", lambda file: file.write_text(markdown, encoding="utf-8"))
+    writers = (
+        lambda file: write_json(file, document),
+        lambda file: file.write_text(html, encoding="utf-8"),
+        lambda file: file.write_text(markdown, encoding="utf-8"),
+    )
+    write_together(folder, dict(zip(FILES, writers, strict=True)))
     return ledger
 
 
@@ -244,12 +250,12 @@ def _decide_all(
 
 def _add_other_verdicts(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> None:
     """For each refuted entry: does the conclusion hold without it, and which weaker step serves (entries' verdicts)?"""
-    verdicts: dict[Reference, set[str]] = {}
+    verdicts: dict[EntryName, set[str]] = {}
     for entry, record in zip(entries, records, strict=True):
         for name in entry.names:
             verdicts.setdefault(name, set()).add(record["verdict"])
 
-    def other(name: Reference) -> OtherEntry:
+    def other(name: EntryName) -> OtherEntry:
         found = verdicts.get(name, set())
         return {"entry": str(name), "verdict": next(iter(found)) if len(found) == 1 else None}
 

@@ -2,8 +2,9 @@
 
 Two machines compute the matrices of one scenario with differences in the last digits (vector instructions). So they
 are enclosed anew from the scenario's own numbers, in ball arithmetic that shares nothing with the code that
-computed them: every stored number must lie in the ball of all values that rounding can give. A change of the data that
-moves a number out of it is refused. Everything that is not computed must be equal.
+computed them: every stored number must lie in the ball of all values that rounding can give, and links within a range
+must be those that the balls of the distances allow. A change of the data that moves a number out of its ball is
+refused. Everything that is not computed must be equal.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.certificates.write import problem_document
 from ratt_opt.scenario.model import Scenario
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Robot, Target
     from ratt_opt.scenario.sensor import Sensor
 
-__all__ = ["same_problem"]
+__all__ = ["differences"]
 
 OF_POSITIONS = 2.0**-49
 """Rounding of a position or an angle, relative to the largest number it is made of: a few roundings of 2^-53."""
@@ -33,27 +35,65 @@ BITS = 160
 Point = tuple[arb, arb]
 
 
-def same_problem(given: Scenario | InformationInput, objective: str) -> Callable[[Any], bool]:
-    """Return the test whether a certificate's problem record is about ``given``.
+def differences(given: Scenario | InformationInput, objective: str) -> Callable[[Any], str]:
+    """Return what says of a certificate's problem record how it differs from ``given``: nothing, or words.
 
     The matrices of an information file are not computed, and must be equal.
     """
     expected = problem_document(given.problem(objective))
 
-    def test(record: Any) -> bool:
-        if record == expected or not isinstance(given, Scenario) or not isinstance(record, dict):
-            return bool(record == expected)
-        computed = {"prior", "information"}
-        if {k: v for k, v in record.items() if k not in computed} != {
-            k: v for k, v in expected.items() if k not in computed
-        }:
-            return False
+    def difference(record: Any) -> str:
+        if record == expected:
+            return ""
+        if not isinstance(record, dict) or set(record) != set(expected):
+            return "its record has other fields"
+        if not isinstance(given, Scenario):
+            return _unequal(record, expected, set())
         with ctx.workprec(BITS):
-            return _inside(record.get("prior"), (_prior(target) for target in given.targets)) and _inside(
-                record.get("information"), (row for robot in given.robots for row in _information(given, robot))
+            return (
+                _unequal(record, expected, {"prior", "information", "links"})
+                or ("" if _linked(given, record["links"], expected["links"]) else "its links differ")
+                or _outside(record, "prior", (_prior(target) for target in given.targets))
+                or _outside(
+                    record, "information", (row for robot in given.robots for row in _information(given, robot))
+                )
             )
 
-    return test
+    return difference
+
+
+def _unequal(record: dict[str, Any], expected: dict[str, Any], computed: set[str]) -> str:
+    names = [name for name in expected if name not in computed and record[name] != expected[name]]
+    if "objective" in names:
+        return f"its criterion is {record['objective']!s:.20}, not {expected['objective']}"
+    return f"its {names[0]} differs" if names else ""
+
+
+def _outside(record: dict[str, Any], name: str, enclosed: Iterator[Any]) -> str:
+    return (
+        ""
+        if _inside(record[name], enclosed)
+        else f"its {name} is not what comes of the given one, however it is rounded"
+    )
+
+
+def _linked(given: Scenario, stored: Any, expected: list[list[int]]) -> bool:
+    """Whether links are those of the scenario, where they follow from a range but for those that rounding decides."""
+    if stored == expected or given.communication_range is None:
+        return bool(stored == expected)
+    try:
+        differing = {(i, j) for i, j in stored} ^ {(i, j) for i, j in expected}
+    except (TypeError, ValueError):
+        return False
+    return all(_at_range(given, *link) for link in differing)
+
+
+def _at_range(given: Scenario, *link: Any) -> bool:
+    if not all(type(i) is int and 0 <= i < given.n_robots for i in link):
+        return False
+    a, b = (given.robots[i] for i in link)
+    distance = ((arb(a.x) - b.x) ** 2 + (arb(a.y) - b.y) ** 2).sqrt()
+    return bool(_rounded(distance, a.x, b.x, a.y, b.y, share=OF_POSITIONS).overlaps(arb(given.communication_range)))
 
 
 def _inside(stored: Any, enclosed: Iterator[Any]) -> bool:
@@ -103,6 +143,7 @@ def _information(scenario: Scenario, robot: Robot) -> Iterator[list[list[arb]]]:
         angle = _rounded(target.heading + turn, target.heading, turn, share=OF_POSITIONS)
         aims.append(_moved((target.x, target.y), period * target.speed, angle))
     for speed, turn_rate in robot.controls:
+        tick()
         here = _moved((robot.x, robot.y), period * speed, arb(robot.heading))
         turn = period * turn_rate
         heading = _rounded(robot.heading + turn, robot.heading, turn, 4.0, share=OF_POSITIONS)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.team import Links, Team
+from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_bounds import BLINDED, ELSE, OPEN, OUTSIDE, SEEING, GroupBounds
@@ -73,16 +73,16 @@ def group_price_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 
 def _prices(sets: PlanSets) -> tuple[PriceVector, int]:
     """Prices that refute the threshold, and the largest size of a set worth less."""
-    from ratt_opt.attackers.by_prices.decision import Decision  # compiles
+    from ratt_opt.attackers.by_prices.decision import ThresholdDecision  # compiles
     from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 
     problem, seconds = sets.problem, seconds_left()
-    team = Team.of(problem.objective, sets.elements)
+    team = PricedTeam.of(problem.objective, sets.elements)
     if team is None:
         raise NotClosedError
     sizes = WeakSizes(team, PlanarTeam.of(problem.objective, sets.elements))
     budget = Budget(None if seconds == np.inf else seconds)
-    decision = Decision(team, Links.of(problem.threat), problem.threat, sizes)
+    decision = ThresholdDecision(team, Links.of(problem.threat), problem.threat, sizes)
     try:
         prices = decision.refuting_prices(sets.threshold, budget, SEARCHED)
         size = sizes.largest(sets.threshold, budget)

@@ -20,6 +20,7 @@ from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.progress import Step
+from ratt_opt.scenario.problem_record import ProblemRecord
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
 
@@ -119,7 +120,7 @@ def _is_known(problem: Problem) -> bool:
 
 
 def certify_if_possible(
-    problem: Problem, result: MaxMinResult, path: str | Path | None, budget: Budget | None = None
+    problem: Problem, result: MaxMinResult, path: str | Path | None, budget: Budget | None = None, source: object = None
 ) -> Certification:
     """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` where no certificate is wanted.
 
@@ -136,7 +137,7 @@ def certify_if_possible(
     if result.proof is None:
         return Certification(why_not="the search stopped before it proved a bound")
     try:
-        return Certification(certificate=certify(problem, result, path, budget=budget))
+        return Certification(certificate=certify(problem, result, path, budget=budget, source=source))
     except (InputError, UndecidedError, MemoryError) as error:
         reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
         return Certification(why_not=f"could not be made: {reason}", final=False)
@@ -149,6 +150,7 @@ def certify(
     *,
     time_limit: float | None = None,
     budget: Budget | None = None,
+    source: object = None,
 ) -> Certificate:
     """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver.
 
@@ -163,6 +165,7 @@ def certify(
     ----------
     time_limit : seconds, verification included; unlimited by default
     budget : an outer search's budget: its seconds count too
+    source : the scenario or information that the problem was made from, if it is known: its SHA-256 is stated
 
     Raises
     ------
@@ -176,7 +179,13 @@ def certify(
         tick()
         record = upper_record(problem, result.proof)
         return write_certificate(
-            problem, result.elements, lower=result.lower, upper=result.upper, upper_part=record, path=path
+            problem,
+            result.elements,
+            lower=result.lower,
+            upper=result.upper,
+            upper_part=record,
+            path=path,
+            source=source,
         )
 
 
@@ -189,6 +198,7 @@ def write_certificate(
     upper: float,
     upper_part: dict[str, Any],
     path: str | Path,
+    source: object = None,
 ) -> Certificate:
     """Write a certificate of the bracket, verify the file, and say how far its claim had to move.
 
@@ -197,6 +207,7 @@ def write_certificate(
     elements : (N,) the plan
     lower, upper : the bracket as computed in floating point [unit of the objective]
     upper_part : the record of the upper proof
+    source : as for :func:`certify`
 
     Raises
     ------
@@ -207,10 +218,12 @@ def write_certificate(
     prior_range = _prior_range(problem, record, plan)
     check = UpperCheck(Statement(record, plan, prior_range))
     high = max(float(upper), _proved_upper(check, upper_part), 0.0)
+    origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
     for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
         document = {
             "format": FORMAT,
             "version": VERSION,
+            **origin,
             "problem": record,
             "plan": plan,
             "claim": {"lower": low, "upper": high},
@@ -238,13 +251,7 @@ def _write_verified(document: dict[str, Any], path: str | Path, shaved: float, r
         found.append(verify_certificate(file, expected_problem=document["problem"], time_limit=seconds or None))
 
     target = write_atomically(path, write)
-    return Certificate(
-        path=target,
-        verified=found[0],
-        lower_shaved=shaved,
-        upper_raised=raised,
-        size=len(text),
-    )
+    return Certificate(path=target, verified=found[0], lower_shaved=shaved, upper_raised=raised, size=len(text))
 
 
 def _compact(value: object) -> str:

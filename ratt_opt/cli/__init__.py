@@ -6,8 +6,10 @@ Open ``program.py`` first: the list of commands, exit codes, errors in one line.
 goes, ``exit_codes.py`` how a command ends; ``interrupts.py`` and ``faults.py`` are the last line of defence.
 """
 
+import logging
 import os
 import sys
+import warnings
 
 from ratt_opt.cli.exit_codes import FAULT, INTERRUPTED
 
@@ -47,6 +49,13 @@ def _hold_streams() -> None:
             os.open(os.devnull, os.O_RDWR)
 
 
+def _draw_into_files() -> None:
+    """Whatever windows other programs draw into; not a word on fonts that lack a letter or cannot be kept."""
+    os.environ["MPLBACKEND"] = "agg"
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from")
+
+
 def run(arguments: list[str]) -> int:
     """Run one command line and return its exit code; every error is one line on standard error."""
     from ratt_opt.cli.interrupts import Interrupts
@@ -57,6 +66,7 @@ def run(arguments: list[str]) -> int:
             from ratt_opt._cache import provide_cache
             from ratt_opt.cli.program import run_program
 
+            _draw_into_files()
             provide_cache()
             return run_program(arguments)
         except KeyboardInterrupt:

@@ -2,13 +2,18 @@
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, ObjectiveOption
 from ratt_opt.cli.terminal import print_json, print_tables
 from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.link_choice.best_links import BestLinks
+    from ratt_opt.graph.communication import Link
+    from ratt_opt.problem import Problem
 
 __all__ = ["attack"]
 
@@ -26,11 +31,19 @@ def attack(
         float | None,
         typer.Option("--below", help="Also find the smallest budgets that push the plan below this value."),
     ] = None,
+    protect: Annotated[
+        int, typer.Option("--protect", min=0, help="Also find so many links whose protection gains most.")
+    ] = 0,
+    add: Annotated[int, typer.Option("--add", min=0, help="Also find so many new links that gain most.")] = 0,
+    reach: Annotated[
+        float | None, typer.Option("--reach", help="Longest new link [m]; any by default. Needs robots' positions.")
+    ] = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
     from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
     from ratt_opt.attackers.exact import attack_survey
+    from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
     from ratt_opt.main_job.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
@@ -38,12 +51,31 @@ def attack(
 
     if below is not None and not math.isfinite(below):
         raise InputError("--below", "must be a finite number", below)
-    problem = load_input(file).problem(objective)
+    source = load_input(file)
+    problem = source.problem(objective)
     elements = load_plan(plan, problem)
     results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
     critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else None
     budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
+    links: dict[str, BestLinks] = {}
+    if protect:
+        links["protect"] = links_to_protect(problem, elements, protect, time_limit=time_limit)
+    if add:
+        near = None if reach is None else new_links_within(source, problem, reach)
+        links["add"] = links_to_add(problem, elements, add, candidates=near, time_limit=time_limit)
     if as_json:
-        print_json(attack_document(objective, elements, results, critical, budgets))
+        print_json(attack_document(objective, elements, results, critical, budgets, best_links=links))
     else:
-        print_tables(attack_tables(results, critical, budgets, below))
+        print_tables(attack_tables(results, critical, budgets, below, best_links=links))
+
+
+def new_links_within(source: object, problem: "Problem", reach: float) -> "list[Link]":
+    """Pairs of robots without a link that are close enough for one.
+
+    Raises ``InputError`` : the input does not say where the robots are.
+    """
+    from ratt_opt.scenario.model import Scenario
+
+    if not isinstance(source, Scenario):
+        raise InputError("--reach", "needs a scenario, which says where the robots are", type(source).__name__)
+    return sorted(set(source.pairs_within(reach)) - problem.communication.links)

@@ -28,11 +28,12 @@ PROOF, EARLIER_PROOF = "certificate.json", "certificate.earlier.json"
 def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> None:
     """Plan, attack and bound the paper's small scenario (4 robots, 4 targets), end to end."""
     from ratt_opt._files import output_directory
+    from ratt_opt.report.write import FILES
     from ratt_opt.scenario.files import save_scenario
     from ratt_opt.scenario.generator import random_scenario
 
     scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=DEMO_SEED)
-    save_scenario(scenario, output_directory(out) / "scenario.json")
+    save_scenario(scenario, output_directory(out, PROOF, EARLIER_PROOF, *FILES) / "scenario.json")
     _bound(scenario, out, certificate=certificate, as_json=as_json)
 
 
@@ -75,7 +76,7 @@ def _bound(
     from ratt_opt.report.tables import report_tables
     from ratt_opt.report.write import FILES, write_report
 
-    folder = output_directory(out, PROOF, *FILES)
+    folder = output_directory(out, PROOF, EARLIER_PROOF, *FILES)
     report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, workers=workers)
     wanted = certificate and not report.interrupted
     with Step("report and figure"):
@@ -106,7 +107,7 @@ def _certified(report: "BoundReport", folder: Path) -> "BoundReport":
     began = monotonic()
     failure: BaseException | None = None
     try:
-        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF)
+        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, source=report.source)
     except ProofError as error:
         proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
     except KeyboardInterrupt as error:

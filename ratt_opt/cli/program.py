@@ -10,6 +10,7 @@ import re
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from ratt_opt._version import __version__
 from ratt_opt.cli.attacking import attack
@@ -32,26 +33,55 @@ ERRORS = {
 }
 """Exit codes of the errors that users can act on; the first kind that fits counts."""
 
+
+class _Command(TyperCommand):
+    def get_help_option(self, ctx: Any) -> Any:
+        return _delivered(super().get_help_option(ctx))
+
+
+class _Group(TyperGroup):
+    def get_help_option(self, ctx: Any) -> Any:
+        return _delivered(super().get_help_option(ctx))
+
+
+def _delivered(option: Any) -> Any:
+    """The option ``--help``, which prints like a command prints its results: where it cannot arrive, that is said."""
+
+    def show_help(ctx: typer.Context, _: object, wanted: bool) -> None:
+        if wanted and not ctx.resilient_parsing:
+            print_lines([ctx.get_help()])
+            ctx.exit()
+
+    option.callback = show_help
+    return option
+
+
 app = typer.Typer(
     name="ratt-opt",
+    cls=_Group,
     help="Plan robot teams that keep tracking targets under attack, and prove how good each plan is.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 for command in (demo, new, bound, attack, track, verify, audit, schema):
-    app.command()(command)
+    app.command(cls=_Command)(command)
 
 # Typer's own usage errors (unknown option, missing value, ...) share this base; typer does not export it.
 _UsageError: Any = typer.BadParameter.__mro__[1]
 
 
 @app.callback(invoke_without_command=True)
-def _version(version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False) -> None:
+def _alone(
+    ctx: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
+) -> None:
     if version:
         print_lines([__version__])
         raise typer.Exit
+    if ctx.invoked_subcommand is None:
+        print_lines([ctx.get_help()])
+        raise InputError("command", "must be given", "none")
 
 
 def run_program(arguments: list[str]) -> int:

@@ -46,23 +46,32 @@ def verify(
         from ratt_opt.certificates.extracted import check_extracted, find_checker
 
         checker = find_checker()
-    expected = None
+    given = expected = None
     if problem is not None:
-        from ratt_opt.certificates.agreement import same_problem
+        from ratt_opt.certificates.agreement import differences
         from ratt_opt.scenario.files import load_input
 
-        expected = same_problem(load_input(problem), objective)
+        given = load_input(problem)
+        expected = differences(given, objective)
     with Step("checking the certificate"):
         found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
         second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     if as_json:
+        about = {} if given is None else {"given": given.digest}
         checked = {} if second is None else {"verified": asdict(second)}
-        print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **checked})
+        print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **about, **checked})
     else:
-        print_lines(
-            [*found.lines(), *([] if second is None else [f"ratt-check, whose proof is checked: {second.text}"])]
-        )
+        about_given = [] if given is None else [_about(given.digest, found.made_from)]
+        checked_lines = [] if second is None else [f"ratt-check, whose proof is checked: {second.text}"]
+        print_lines([*found.lines(), *about_given, *checked_lines])
     return 0 if found.lower_proved and (second is None or second.lower_proved) else UPPER_ONLY
+
+
+def _about(given: str, made_from: str | None) -> str:
+    """Say of a file which problem it holds: that of the certificate, made from it or from another one."""
+    if given == made_from:
+        return "the given file: the very input that it was made from"
+    return f"the given file: the same problem, its matrices up to rounding (the input's SHA-256 {given})"
 
 
 def audit(
@@ -74,11 +83,11 @@ def audit(
 
     An interrupt (Ctrl-C) writes what is decided so far, marked incomplete, and exits with 130.
     """
-    from ratt_opt.audit.ledger import run_audit
+    from ratt_opt.audit.ledger import FILES, run_audit
     from ratt_opt.report.tables import audit_table
 
     ledger = run_audit(out, quick=quick)
-    files = [str(out / name) for name in ("audit.json", "audit.html", "audit.md")]
+    files = [str(out / name) for name in FILES]
     if as_json:
         kept = {name: value for name, value in ledger.document().items() if name in SUMMARY}
         head = {"format": "ratt-opt audit summary", "version": 1}

@@ -77,9 +77,8 @@ def print_tables(tables: Iterable[RenderableType]) -> None:
 
 def flush() -> None:
     """Send on what was printed; raises :class:`OutputError` where it cannot arrive."""
-    if sys.stdout is not None:
-        with _delivered():
-            pass
+    with _delivered():
+        pass
 
 
 def abandon_output() -> None:

@@ -58,13 +58,13 @@ def track(
     from ratt_opt.missions.players.planners import MaxMinPlanner
     from ratt_opt.missions.run import run_mission
     from ratt_opt.missions.world import MissionModel
-    from ratt_opt.report.mission.write import write_mission
+    from ratt_opt.report.mission.write import FILES, write_mission
     from ratt_opt.scenario.files import load_scenario
 
     if time_limit is not None and planner != "maxmin":
         raise InputError("--time-limit", "must come with --planner maxmin", planner)
     scenario = load_scenario(file)
-    folder = output_directory(out)
+    folder = output_directory(out, *FILES)
     model = MissionModel(motion=motion, linearisation=linearisation, beam=beam)
     chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
     missions = []

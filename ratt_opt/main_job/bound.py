@@ -130,6 +130,7 @@ def bound(
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
     problem = _problem_of(scenario_or_problem, objective)
+    source = None if isinstance(scenario_or_problem, Problem) else scenario_or_problem
     check_workers(problem, workers)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
@@ -147,7 +148,9 @@ def bound(
         guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, budget, k=k, c=c))
     with steps("certificate"):
         interrupted = budget.stop() is Stop.INTERRUPTED
-        proof, failure = (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate, whole)
+        proof, failure = (
+            (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate, whole, source)
+        )
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -162,7 +165,7 @@ def bound(
         certificate=proof,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
-        source=None if isinstance(scenario_or_problem, Problem) else scenario_or_problem,
+        source=source,
         views=views,
         seeds={"random": RANDOM_SEED},
         interrupted=interrupted,
@@ -194,11 +197,11 @@ def _best(problem: Problem, search: Callable[..., MaxMinResult], budget: Budget)
 
 
 def _certified(
-    problem: Problem, optimum: MaxMinResult, path: str | Path | None, budget: Budget
+    problem: Problem, optimum: MaxMinResult, path: str | Path | None, budget: Budget, source: object
 ) -> tuple[Certification, ProofError | None]:
     """The certificate or why there is none, and the fault that the verifier found in our own proof."""
     try:
-        return certify_if_possible(problem, optimum, path, budget), None
+        return certify_if_possible(problem, optimum, path, budget, source=source), None
     except ProofError as failure:
         return Certification(why_not=f"the proof has a fault: {failure}", final=False), failure
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._version import __version__
 from ratt_opt.report.description import describe
+from ratt_opt.scenario.problem_record import ProblemRecord
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
+    from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.write import Certification
     from ratt_opt.curvatures.curvature import Curvature
@@ -73,8 +73,13 @@ def attack_document(
     results: Mapping[str, AttackResult],
     critical: Sequence[Criticality] | None = None,
     budgets: Sequence[BreakingBudget] | None = None,
+    *,
+    best_links: Mapping[str, BestLinks] | None = None,
 ) -> dict[str, Any]:
-    """Return the attacks on one plan as JSON-ready values, and what to protect where that was asked for."""
+    """Return the attacks on one plan as JSON-ready values, and what to protect or add where that was asked for.
+
+    ``best_links`` : by what is done with them, "protect" and "add"
+    """
     document = {
         "format": "ratt-opt attack",
         "version": VERSION,
@@ -86,6 +91,8 @@ def attack_document(
         document["critical"] = [_critical(row) for row in critical]
     if budgets is not None:
         document["breaking_budgets"] = [_budget(row) for row in budgets]
+    if best_links:
+        document["best_links"] = {name: found.to_dict() for name, found in best_links.items()}
     return document
 
 
@@ -137,12 +144,9 @@ def _shared(report: BoundReport, plan: PlanAssessment) -> dict[str, Any]:
 
 def _input(source: object) -> dict[str, Any] | None:
     """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` where a problem was given."""
-    dump = getattr(source, "model_dump", None)
-    if dump is None:
+    if not isinstance(source, ProblemRecord):
         return None
-    document = dump(mode="json")
-    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return {"sha256": hashlib.sha256(canonical.encode()).hexdigest(), "document": document}
+    return {"sha256": source.digest, "document": source.model_dump(mode="json")}
 
 
 def _cast(report: BoundReport) -> dict[str, Any]:

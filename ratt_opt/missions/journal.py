@@ -1,5 +1,7 @@
 """What survives a kill: one line a step with its decisions, from which a mission is replayed and goes on.
 
+Each line carries a checksum of the rest of it: what was damaged since is refused by its line.
+
 Everything else in a mission follows from its arguments and the seed, so that a replay is the mission, to the bit.
 """
 
@@ -25,6 +27,10 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
 
 __all__ = ["Journal"]
+
+FORMAT = "ratt-opt mission journal"
+SEAL = "checksum"
+"""The field of a line's checksum."""
 
 
 @dataclass(slots=True)
@@ -54,19 +60,17 @@ class Journal:
         file = output_file(path)
         text = json.dumps([scenario.model_dump(mode="json"), dict(settings)], sort_keys=True)
         head = {
-            "format": "ratt-opt mission journal",
+            "format": FORMAT,
             "version": 1,
             "mission": hashlib.sha256(text.encode()).hexdigest(),
         }
         journal = cls(file, head)
         *whole, torn = _lines(file)
         if not whole:
-            if not json.dumps(head).startswith(torn):
+            if not _sealed(head).startswith(torn):
                 raise FileFormatError(f"{file} line 1", "must be a mission's journal", torn)
             return journal
         first, *rest = [_parsed(file, number, line) for number, line in enumerate(whole, start=1)]
-        if first.get("format") != head["format"]:
-            raise FileFormatError(f"{file} line 1", "must be a mission's journal", first.get("format"))
         if first != head:
             raise InputError(
                 "journal", "must be of the same mission (scenario, seed, all settings), or removed to begin anew", file
@@ -100,20 +104,30 @@ def _write(file: Path, records: Sequence[Mapping[str, Any]]) -> None:
     """Append records, or begin the file with a first pair of them."""
     try:
         with file.open("w" if len(records) > 1 else "a", encoding="utf-8") as stream:
-            stream.write("".join(json.dumps(record) + "\n" for record in records))
+            stream.write("".join(_sealed(record) + "\n" for record in records))
             stream.flush()
             os.fsync(stream.fileno())
     except OSError as error:
         raise InputError("journal", "must be a file that can be written", f"{file} ({error.strerror})") from None
 
 
+def _sealed(record: Mapping[str, Any]) -> str:
+    """A line of the file, without its end."""
+    return json.dumps({**record, SEAL: hashlib.sha256(json.dumps(record).encode()).hexdigest()[:16]})
+
+
 def _parsed(file: Path, number: int, line: str) -> dict[str, Any]:
     try:
         record = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict):
         raise FileFormatError(f"{file} line {number}", "must be a JSON object", line)
+    if number == 1 and record.get("format") != FORMAT:
+        raise FileFormatError(f"{file} line 1", "must be a mission's journal", record.get("format"))
+    record.pop(SEAL, None)
+    if _sealed(record) != line:
+        raise FileFormatError(f"{file} line {number}", "must be as it was written (its checksum says otherwise)", line)
     return record
 
 
@@ -122,9 +136,9 @@ def _decision(file: Path, step: int, record: dict[str, Any]) -> tuple[IntArray, 
     try:
         if record["step"] != step:
             raise FileFormatError(where, f"must be step {step}", record["step"])
-        links = frozenset((int(i), int(j)) for i, j in record["links"])
+        links = frozenset((i, j) for i, j in record["links"])
         return readonly(np.array(record["elements"], dtype=np.int64)), Attack(frozenset(record["sensing"]), links)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         if isinstance(error, InputError):
             raise
         raise FileFormatError(where, "must hold step, elements, sensing and links", sorted(record)) from None

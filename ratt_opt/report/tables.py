@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
+    from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.write import Certification
     from ratt_opt.main_job.result import BoundReport
@@ -52,13 +53,20 @@ def attack_tables(
     critical: Iterable[Criticality] | None,
     budgets: Iterable[BreakingBudget] | None,
     below: float | None,
+    *,
+    best_links: Mapping[str, BestLinks] | None = None,
 ) -> Iterable[Table]:
-    """Yield the attacks on a plan, and, where asked for, what to protect and what pushes it ``below`` a value."""
+    """Yield the attacks on a plan, and, where asked for, what to protect or add and what pushes it ``below`` a value.
+
+    ``best_links`` : by what is done with them, "protect" and "add"
+    """
     yield _attacks(results)
     if critical is not None:
         yield _critical(critical)
     if budgets is not None:
         yield _budgets(budgets, f"{below}")
+    if best_links:
+        yield _best_links(best_links)
 
 
 def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
@@ -103,6 +111,16 @@ def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
         table.add_row(str(row.alpha_s), str(row.alpha_c), up(row.value, 8), "yes" if row.is_proved else "no")
     if not table.row_count:
         table.caption = "no attack on what is not protected leaves less"
+    return table
+
+
+def _best_links(found: Mapping[str, BestLinks]) -> Table:
+    """One row a kind of change: the best links, and the worst case with them."""
+    table = _table("the best links", "what to do", "links", "worst case with them", "no choice keeps more than")
+    for what, best in found.items():
+        links = ", ".join(f"{i}-{j}" for i, j in best.links) or "none gains anything"
+        table.add_row(what, links, bracket_text(best.lower, best.after.upper), up(best.upper, 8))
+        table.caption = f"without them {bracket_text(best.before.lower, best.before.upper)}; the plan is the same"
     return table
 
 

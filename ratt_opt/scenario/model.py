@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from ratt_opt._validation import readonly
+from ratt_opt._validation import check_number, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.motion import move_robots, predict_targets
 from ratt_opt.scenario.problem_record import Link, ProblemRecord
@@ -172,9 +172,11 @@ class Scenario(ProblemRecord):
         """The communication graph of robots at poses (N, 3), or ``None`` for the complete one."""
         if self.communication_range is None:
             return super().graph
-        apart = np.linalg.norm(poses[:, None, :2] - poses[None, :, :2], axis=-1)
-        close = np.argwhere(np.triu(apart <= self.communication_range, 1))
-        return self._graph_of((int(i), int(j)) for i, j in close)
+        return self._graph_of(_pairs_within(poses, self.communication_range))
+
+    def pairs_within(self, reach: float) -> tuple[tuple[int, int], ...]:
+        """Pairs of robots ``(i, j)``, ``i < j``, at most ``reach`` [m] apart, ascending; linked or not."""
+        return _pairs_within(self.poses, check_number("reach", reach, low=0))
 
     @cached_property
     def element_labels(self) -> tuple[str, ...]:
@@ -212,3 +214,9 @@ class Scenario(ProblemRecord):
                 rule,
                 tuple(self.predicted_targets[j].tolist()),
             )
+
+
+def _pairs_within(poses: FloatArray, reach: float) -> tuple[tuple[int, int], ...]:
+    apart = np.linalg.norm(poses[:, None, :2] - poses[None, :, :2], axis=-1)
+    close = np.argwhere(np.triu(apart <= reach, 1))
+    return tuple((int(i), int(j)) for i, j in close)

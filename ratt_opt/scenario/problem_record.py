@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from typing import TYPE_CHECKING, Annotated
 
 import networkx as nx
@@ -67,6 +69,12 @@ class ProblemRecord(Record):
         return f"{type(self).__name__}({sizes}, alpha_s={self.alpha_s}, alpha_c={self.alpha_c})"
 
     __str__ = __repr__
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the contents as canonical JSON (sorted fields, shortest round-trip floats, UTF-8)."""
+        text = json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
 
     @property
     def graph(self) -> nx.Graph | None:

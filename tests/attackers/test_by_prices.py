@@ -18,7 +18,7 @@ from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup
-from ratt_opt.attackers.by_prices.team import Links, Team
+from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -52,7 +52,7 @@ def run_prices(problem, plan, **limits):
     values = PlanValues(problem, plan)
     nothing = ro.Attack()
     bracket, budget = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0), Budget(**limits)
-    search = PriceSearch(AttackTask(problem, values, bracket, budget), Team.of(problem.objective, values.plan))
+    search = PriceSearch(AttackTask(problem, values, bracket, budget), PricedTeam.of(problem.objective, values.plan))
     try:
         search.anneal(4)
         stop = search.run()
@@ -96,7 +96,7 @@ def test_a_bracket_that_is_stopped_is_valid(nodes):
 @pytest.mark.parametrize("seed", range(12))
 def test_weak_subsets_against_all_of_them(seed):
     problem, plan = team_problem(seed, 8)
-    team, links = Team.of(problem.objective, plan), Links.of(problem.threat)
+    team, links = PricedTeam.of(problem.objective, plan), Links.of(problem.threat)
     group = np.random.default_rng(seed).random(8) < 0.8
     members = np.flatnonzero(group).tolist()
     free = [i for i in members if not links.seeing[i]]
@@ -118,7 +118,7 @@ def test_the_enumeration_lists_every_group_that_pays(seed):
     """Against all connected groups and all blindings, at random prices."""
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
-    team, links = Team.of(problem.objective, plan), Links.of(problem.threat)
+    team, links = PricedTeam.of(problem.objective, plan), Links.of(problem.threat)
     whole = problem.objective(plan)
     threshold, blinded, robot = whole * rng.uniform(0.4, 0.9), rng.uniform(0.2, 2), rng.uniform(0, 2, 7)
     sets = [s for k in range(8) for s in combinations(range(7), k)]
@@ -191,7 +191,7 @@ def reduced_cost(problem, part, prices):
 def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
-    team, links, threat = Team.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
     threshold, prices = problem.objective(plan) * rng.uniform(0.4, 0.9), (rng.uniform(0, 2, 7), rng.uniform(0.2, 2))
     found, part = [], np.zeros(7, dtype=np.int8)
     for first in range(7):
@@ -219,7 +219,7 @@ def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
 @pytest.mark.parametrize("seed", range(12))
 def test_no_weak_set_is_larger_than_its_size(seed):
     problem, plan = team_problem(seed, 7)
-    team, planar = Team.of(problem.objective, plan), PlanarTeam.of(problem.objective, plan)
+    team, planar = PricedTeam.of(problem.objective, plan), PlanarTeam.of(problem.objective, plan)
     values = {s: problem.objective(plan[list(s)]) for k in range(8) for s in combinations(range(7), k)}
     sizes = WeakSizes(team, planar)
     for share in (0.3, 0.6, 0.9):
@@ -269,7 +269,7 @@ def least_cost(problem, plan, threshold, prices):
 def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
-    team, links, threat = Team.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
     threshold, prices = problem.objective(plan) * rng.uniform(0.4, 0.9), (rng.uniform(0, 2, 6), rng.uniform(0.0, 2))
     size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
     raised = max(least_cost(problem, plan, threshold, prices), 0) + 0.5  # some groups pay

@@ -7,7 +7,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.first_bound import first_bound
-from ratt_opt.attackers.tree_bound import size_bound, tree_bound
+from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.budget import Budget
 from ratt_opt.graph.largest_group.spreading import forced_size
 from tests.oracles import brute_force_worst_case
@@ -23,7 +23,7 @@ def test_no_attack_leaves_less(name, seed):
     worst, threat = brute_force_worst_case(problem, plan), problem.threat
     slack = 1e-9 * max(abs(worst), 1.0)
     size = forced_size(threat, Budget(), problem.n_robots)
-    assert size_bound(problem.objective, plan, size) <= worst + slack
+    assert first_bound(problem.objective, plan, threat, size) <= worst + slack
     assert tree_bound(problem.objective, plan, threat, Budget(), np.inf) <= worst + slack
 
 

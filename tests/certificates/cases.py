@@ -11,7 +11,7 @@ import numpy as np
 from ratt_opt import Problem, exhaustive_optimum, worst_case_attack
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.write import write_certificate
-from ratt_opt.solvers.maxmin.proof import Cut, ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, TangentCut, UpperProof, WinnerBranch
 from tests.strategies import OBJECTIVES
 
 
@@ -34,7 +34,7 @@ def one_leaf_per_plan(problem: Problem) -> UpperProof:
         for group in groups:
             point = f.posterior_information(np.array([plan[r] for r in group], dtype=np.int64))
             target = int(np.argmax(f.weights / np.linalg.eigvalsh(point)[:, 0]))
-            cuts.append(Cut(attack=len(attacks) - 1, group=group, point=point, target=target))
+            cuts.append(TangentCut(attack=len(attacks) - 1, group=group, point=point, target=target))
             leaves.append(Leaf(cuts=(len(cuts) - 1,), weights=(1.0,)))
         return leaves if len(leaves) == 1 else [WinnerBranch(attack=len(attacks) - 1, parts=groups), *leaves]
 

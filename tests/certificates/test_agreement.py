@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.certificates.agreement import same_problem
+from ratt_opt.certificates.agreement import differences
+from ratt_opt.certificates.verifier.work import limited
 from ratt_opt.certificates.write import problem_document
 from ratt_opt.cli import run
+from ratt_opt.errors import UndecidedError
 from ratt_opt.scenario.sensor import Sensor
 
 SENSORS = [
@@ -56,13 +58,14 @@ def _shifted(record: dict[str, Any], rng: np.random.Generator, ulps: int) -> dic
 def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
     scenario, rng = _drawn(seed), np.random.default_rng(seed)
     record = problem_document(scenario.problem("logdet"))
-    test = same_problem(scenario, "logdet")
-    assert test(record)
+    difference = differences(scenario, "logdet")
+    assert difference(record) == ""
     moved = _shifted(record, rng, 2)
     assert moved != record
-    assert test(moved)
-    assert not test(_shifted(record, rng, 2) | {"alpha_s": 0})
-    assert not test(record | {"prior": record["prior"][::-1]})
+    assert difference(moved) == ""
+    assert difference(_shifted(record, rng, 2) | {"alpha_s": 0}) == "its alpha_s differs"
+    assert "its prior is not what comes of" in difference(record | {"prior": record["prior"][::-1]})
+    assert difference(problem_document(scenario.problem("trace"))) == "its criterion is trace, not logdet"
     first, *others = scenario.targets
     for changed in (
         scenario.replace(targets=(first.replace(x=first.x + 1e-9), *others)),
@@ -73,12 +76,45 @@ def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
         scenario.replace(alpha_c=0),
     ):
         other = problem_document(changed.problem("logdet"))
-        assert other == record or not test(other)
+        assert other == record or difference(other)
     weighted = scenario.replace(targets=(first.replace(weight=1.0 + 2**-52), *others))
-    assert not test(problem_document(weighted.problem("logdet")))
+    assert difference(problem_document(weighted.problem("logdet"))) == "its weights differs"
 
 
-def test_a_certificate_made_without_vector_instructions_is_accepted(tmp_path: Path) -> None:
+def test_a_comparison_counts_as_work_of_the_verifier() -> None:
+    """Of a thousand robots and targets it takes minutes."""
+    scenario = _drawn(0)
+    moved = _shifted(problem_document(scenario.problem()), np.random.default_rng(0), 2)
+    with limited(1e-9), pytest.raises(UndecidedError, match="not decided within"):
+        differences(scenario, "trace")(moved)
+
+
+def test_links_within_a_range_may_differ_where_rounding_decides() -> None:
+    """Robots 3, 4 and 5 apart: on a machine that rounds the longest up, it is no link."""
+    made = ro.random_scenario(3, 2, alpha_s=0, alpha_c=0, seed=1)
+    places = ((0.1, 0.0), (0.1, 3.0), (4.1, 3.0))
+    robots = tuple(robot.replace(x=x, y=y) for robot, (x, y) in zip(made.robots, places, strict=True))
+    scenario = made.replace(robots=robots, communication_range=5.0)
+    record, difference = problem_document(scenario.problem()), differences(scenario, "trace")
+    assert difference(record) == ""
+    for links, same in (
+        ([[0, 1], [1, 2]], True),
+        ([[0, 1], [0, 2], [1, 2]], True),
+        ([[0, 1], [0, 2]], False),
+        ([[0, 1]], False),
+        ([[0, 1], [1, 2], [0, 3]], False),
+        ([[0, 1], [1, 2], [0, 2.5]], False),
+        ([[0, 1], [1, 2], 0], False),
+        (0, False),
+    ):
+        assert difference(record | {"links": links}) == ("" if same else "its links differ")
+    further = scenario.replace(communication_range=5.0 + 1e-9)
+    assert differences(further, "trace")(record | {"links": [[0, 1], [1, 2]]}) == "its links differ"
+
+
+def test_a_certificate_made_without_vector_instructions_is_accepted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The same file on a processor that lacks them; the matrices differ there in their last digits, or are equal."""
     path, out = tmp_path / "s.json", tmp_path / "o"
     ro.save_scenario(_drawn(0), path)
@@ -86,14 +122,44 @@ def test_a_certificate_made_without_vector_instructions_is_accepted(tmp_path: Pa
         [sys.executable, "-c", "from numpy._core._multiarray_umath import __cpu_dispatch__ as d; print(*d)"],
         capture_output=True, text=True, check=True,
     ).stdout.strip()  # fmt: skip
-    environment = os.environ | {"NPY_DISABLE_CPU_FEATURES": features, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": ""}
+    without = {"NPY_DISABLE_CPU_FEATURES": features, "OPENBLAS_CORETYPE": "PRESCOTT"}
+    environment = os.environ | without | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": ""}
     command = [sys.executable, "-c", "from ratt_opt.cli import main; main()", "bound", str(path), "--out", str(out)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     certificate = str(out / "certificate.json")
-    assert json.loads((out / "report.json").read_text())["certificate"]["verified"]
+    report = json.loads((out / "report.json").read_text())
+    assert report["certificate"]["verified"]
+    source = report["input"]["sha256"]
+    assert json.loads(Path(certificate).read_text())["made_from"] == source
     assert run(["verify", certificate, "--problem", str(path)]) == 0
+    assert "the given file: the very input that it was made from" in capsys.readouterr().out
     other = tmp_path / "t.json"
     scenario = _drawn(0)
     ro.save_scenario(scenario.replace(robots=(scenario.robots[0].replace(x=1.0), *scenario.robots[1:])), other)
     assert run(["verify", certificate, "--problem", str(other)]) == 1
+    assert f"made from the input with SHA-256 {source}" in capsys.readouterr().err
+    named = scenario.replace(robots=tuple(robot.replace(name=f"r{k}") for k, robot in enumerate(scenario.robots)))
+    ro.save_scenario(named, other)
+    assert run(["verify", certificate, "--problem", str(other), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["made_from"], found["given"]) == (source, named.digest)
+    assert source != named.digest
+
+
+def test_only_a_hash_says_what_a_certificate_was_made_from(tmp_path: Path) -> None:
+    """No proof needs it: files without one, of earlier releases or of problems in Python, stay what they are."""
+    scenario = _drawn(1)
+    problem, path = scenario.problem(), tmp_path / "c.json"
+    result = ro.solve_maxmin(problem)
+    assert ro.certify(problem, result, path).verified.made_from is None
+    without = json.loads(path.read_text())
+    assert ro.certify(problem, result, path, source=scenario).verified.made_from == scenario.digest
+    document = json.loads(path.read_text())
+    assert document == without | {"made_from": scenario.digest}
+    path.write_text(json.dumps(document | {"made_from": "0" * 64}))
+    assert ro.verify_certificate(path).made_from == "0" * 64
+    for wrong in (None, 1, "", "0" * 63, "0" * 64 + "\n", "G" * 64, scenario.digest.upper() + "A", [scenario.digest]):
+        path.write_text(json.dumps(document | {"made_from": wrong}))
+        with pytest.raises(ro.FileFormatError, match="made_from must be a SHA-256"):
+            ro.verify_certificate(path)

@@ -55,6 +55,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
             certify(problem, solve_maxmin(problem), path)
             made[f"{name}, {links}"] = json.loads(path.read_text(encoding="utf-8"))
     made["enumerated"] = made["trace, path"] | {"lower": ENUMERATED}
+    made["with its source"] = made["trace, path"] | {"made_from": "0123456789abcdef" * 4}
     problem = Problem(OBJECTIVES["trace"], np.repeat(np.arange(3), 2), nx.path_graph(3), 1, 1, protected_robots={0})
     plan, lower = np.array(made["trace, path"]["plan"]), made["trace, path"]["claim"]["lower"]
     sets = PlanSets(problem, plan, lower * (1 - 1e-13))

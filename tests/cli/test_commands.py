@@ -11,6 +11,8 @@ import pytest
 from ratt_opt import (
     breaking_budgets,
     criticality_ranking,
+    links_to_add,
+    links_to_protect,
     load_scenario,
     network_scenario,
     random_scenario,
@@ -215,6 +217,30 @@ def test_attack_says_what_to_protect(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert run([*command[:-1], "0"]) == 0
     assert "no attack on what is" in capsys.readouterr().out
     refused([*command[:-1], "nan"], capsys, "--below must be a finite number; got nan")
+
+
+def test_attack_finds_the_best_links(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As the library finds them; new links no longer than the range that is asked for."""
+    path, plan, reach = tmp_path / "scenario.json", tmp_path / "plan.json", 12.0
+    scenario = network_scenario("disk-6", 9, 3, alpha_s=1, alpha_c=4, seed=1)
+    save_scenario(scenario, path)
+    problem = scenario.problem("trace")
+    elements = [choice[0] for choice in problem.choices]
+    plan.write_text(json.dumps({"elements": [int(e) for e in elements]}))
+    command = ["attack", str(path), "--plan", str(plan), "--protect", "2", "--add", "2", "--reach", str(reach)]
+    assert run([*command, "--json"]) == 0
+    document = _strict(capsys.readouterr().out)["best_links"]
+    near = set(scenario.pairs_within(reach)) - problem.communication.links
+    for name, found in (
+        ("protect", links_to_protect(problem, elements, 2)),
+        ("add", links_to_add(problem, elements, 2, candidates=near)),
+    ):
+        assert document[name]["links"] == [list(link) for link in found.links]
+        assert (document[name]["lower"], document[name]["upper"]) == (found.lower, found.upper)
+    assert {tuple(link) for link in document["add"]["links"]} <= near
+    assert run(command) == 0
+    assert "the best links" in capsys.readouterr().out
+    refused([*command[:-1], "nan"], capsys, "reach must be a finite number >= 0; got nan")
 
 
 def test_attack_evaluates_the_users_plan(

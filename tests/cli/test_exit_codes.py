@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
@@ -72,6 +73,34 @@ def test_an_output_that_takes_nothing_is_no_verdict(certificate: Path, full_outp
         assert done.stderr.startswith("error: standard output does not take the result")
         assert done.stderr.count("\n") == 1
     os.close(wrote)
+
+
+class _Full(io.StringIO):
+    def flush(self) -> None:
+        raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("words", [[], ["--help"], ["bound", "--help"], ["--version"], ["schema"]])
+def test_what_no_output_takes_was_not_said(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Help too, which the library that parses the words would print in its own way."""
+    assert run(words) == (0 if words else 2)
+    assert capsys.readouterr().out
+    for stream in (_Full(), None):
+        with monkeypatch.context() as patch:
+            patch.setattr(sys, "stdout", stream)
+            assert run(words) == 74
+        shown = capsys.readouterr().err
+        assert shown.startswith("error: standard output ")
+        assert shown.count("\n") == 1
+
+
+def test_no_command_is_help_and_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([]) == 2
+    shown = capsys.readouterr()
+    assert shown.out.startswith("Usage: ratt-opt")
+    assert shown.err == "error: command must be given; got none\n"
 
 
 def test_without_any_stream_the_exit_code_is_all_there_is(certificate: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -58,6 +58,29 @@ def test_bad_command_lines(
 
 
 @pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        ("demo", "plan.csv"),
+        ("bound FILE --no-certificate", "certificate.earlier.json"),
+        ("bound FILE", "incomplete.txt"),
+        ("track FILE --steps 2", "tracks.csv"),
+        ("audit --quick", "audit.md"),
+    ],
+)
+def test_what_must_not_be_replaced_is_refused_before_the_work(
+    words: str, name: str, scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nothing else is in the folder then: no scenario, journal or report."""
+    out = tmp_path / "o"
+    out.mkdir()
+    (out / name).symlink_to(scenario_file)
+    filled = words.replace("FILE", str(scenario_file)).split()
+    refused([*filled, "--out", str(out)], capsys, "out must be a new or a regular file, not a symbolic link")
+    assert os.listdir(out) == [name]
+    assert (out / name).is_symlink()
+
+
+@pytest.mark.parametrize(
     ("plan", "text"),
     [
         ("{}", 'must be an object with "elements" or "controls"'),

@@ -104,6 +104,15 @@ def test_closed_streams(closed: str, code: int, folder: Path, tmp_path: Path) ->
     assert json.loads(out.read_text())["format"] == "ratt-opt scenario"
 
 
+def test_settings_of_figures_for_other_programs_change_nothing(folder: Path, tmp_path: Path) -> None:
+    """A backend that is not there, and no place for fonts: no error, no word."""
+    settings = {"MPLBACKEND": "nonsense", "MPLCONFIGDIR": "/dev/null/x"}
+    command = [*PROGRAM, "bound", str(folder / "scenario.json"), "--out", str(tmp_path), "--no-certificate"]
+    done = subprocess.run(command, env={**os.environ, **settings}, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "plan.png").stat().st_size > 1000
+
+
 def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
     known = {_cache.VARIABLE, "XDG_CACHE_HOME"}
     environment = {name: value for name, value in os.environ.items() if name not in known} | {"HOME": "/dev/null"}

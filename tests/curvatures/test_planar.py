@@ -21,7 +21,7 @@ from ratt_opt.curvatures.planar.inequalities import (
     most_marginal,
 )
 from ratt_opt.curvatures.planar.level_program import LevelProgram, Sector, own_direction
-from ratt_opt.curvatures.planar.regions import Side
+from ratt_opt.curvatures.planar.regions import MarginalSide
 from ratt_opt.stopping import Stop
 from tests.strategies import information_data, range_bearing
 
@@ -237,7 +237,7 @@ def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
         totals = planar.prior + options.parts[every_context(options)].sum(axis=1)
         values = marginals(totals, added)
         exact = values.max() if largest else values.min()
-        search = PlanarSearch(Side(options, planar.prior, added, largest=largest, highest=highest))
+        search = PlanarSearch(MarginalSide(options, planar.prior, added, largest=largest, highest=highest))
         slack = 1e-9 * (1 + abs(exact))
         # Without leaves to enumerate the end is far away; the bounds must hold all the same.
         monkeypatch.setattr(context_search, "LARGEST_LEAF", (1, 2, 4, 8)[trial % 4])

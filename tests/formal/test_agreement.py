@@ -39,6 +39,14 @@ def test_certificates_are_accepted_by_both(tmp_path):
         assert decisions([path]) == [python_decision(path)]
 
 
+def test_what_a_certificate_was_made_from_is_read_alike(tmp_path):
+    digest, path = "0123456789abcdef" * 4, tmp_path / "c.json"
+    _, document = next(bases(tmp_path, range(3)))
+    for made_from, code in ((digest, 0), (None, 2), ("", 2), (digest[1:], 2), (digest[1:] + "G", 2), ([digest], 2)):
+        path.write_text(json.dumps(document | {"made_from": made_from}))
+        assert decisions([path]) == [python_decision(path)] == [code]
+
+
 def test_a_raised_claim_is_refused(tmp_path):
     path = tmp_path / "lie.json"
     for _, document in bases(tmp_path, range(9)):

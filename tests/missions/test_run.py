@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -262,8 +264,26 @@ def test_bad_models_and_journals(tmp_path) -> None:
     run_mission(scenario_of(), steps=1, journal=journal)
     with pytest.raises(InputError, match="journal must be of the same mission"):
         run_mission(scenario_of(), steps=1, journal=journal, seed=9)
-    for text in ('{"format": "else"}\n', "my notes"):
+    for text in ('{"format": "else"}\n', "my notes", "[" * 100_000 + "\n", "9" * 5000 + "\n"):
         journal.write_text(text)
-        with pytest.raises(InputError, match="must be a mission's journal"):
+        with pytest.raises(InputError, match=r"must be a mission's journal|line 1 must be a JSON object"):
             run_mission(scenario_of(), steps=1, journal=journal)
         assert journal.read_text() == text
+
+
+def test_a_damaged_journal_is_refused_by_its_line(tmp_path) -> None:
+    journal = tmp_path / "j"
+    run_mission(scenario_of(), steps=2, journal=journal)
+    lines = journal.read_text().splitlines()
+    step = json.loads(lines[1])
+    first = step["elements"][0]
+    changes = ({"elements": [first + 1, *step["elements"][1:]]}, {"sensing": []}, {"checksum": "0" * 16}, {"more": 1})
+    damaged = [json.dumps(step | change) for change in changes if step | change != step]
+    without = json.dumps({name: value for name, value in step.items() if name != "checksum"})
+    for line in (*damaged, without, lines[1].replace('"step": 0', '"step": true'), lines[1] + " ", "[" * 100_000, "7"):
+        journal.write_text("\n".join([lines[0], line, lines[2], ""]))
+        with pytest.raises(InputError, match=r"j line 2 must be (as it was written|a JSON object)") as refused:
+            run_mission(scenario_of(), steps=2, journal=journal)
+        assert str(refused.value).isprintable()
+        assert journal.read_text().splitlines()[1] == line
+    assert len(damaged) >= 3

@@ -23,18 +23,18 @@ from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, 
 from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
 from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
-from ratt_opt.attackers.by_prices.starts import Split
+from ratt_opt.attackers.by_prices.starts import Partition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-    from ratt_opt.attackers.by_prices.team import Links, Team
+    from ratt_opt.attackers.by_prices.team import Links, PricedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Answer", "Decision", "Verdict"]
+__all__ = ["Answer", "Threshold", "ThresholdDecision"]
 
 SHARES = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
 """Mixtures of the two bounds of the enumeration. Measured at 24 robots: five flows visit a half to a seventh of the
@@ -71,7 +71,7 @@ QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node (some 20 microseconds), and before it is listed."""
 
 
-class Verdict(Enum):
+class Threshold(Enum):
     """What became of a threshold."""
 
     REFUTED = "refuted"
@@ -81,13 +81,13 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """``split`` : an attack below the threshold, where it is reached.
+    """``partition`` : an attack below the threshold, where it is reached.
 
     ``prices`` : that no weak group pays and that claim more links than the budget, where these refuted it
     """
 
-    verdict: Verdict
-    split: Split | None = None
+    verdict: Threshold
+    partition: Partition | None = None
     prices: PriceVector | None = None
 
 
@@ -102,10 +102,10 @@ class _Listed:
     cost: FloatArray
 
 
-class Decision:
+class ThresholdDecision:
     """Decides thresholds for one plan; what is learned about groups serves the next threshold."""
 
-    def __init__(self, team: Team, links: Links, threat: Threat, sizes: WeakSizes) -> None:
+    def __init__(self, team: PricedTeam, links: Links, threat: Threat, sizes: WeakSizes) -> None:
         self.team, self.links, self.threat = team, links, threat
         self._sizes = sizes
         self.prices = GroupPrices(threat)
@@ -118,15 +118,15 @@ class Decision:
             if not links.seeing[i]:
                 self.prices.add([KnownGroup(robots=alone, need=1, value=0.0)])
 
-    def learn(self, split: Split) -> None:
+    def learn(self, partition: Partition) -> None:
         """Add the groups of an attack to the program."""
         from ratt_opt.attackers.by_prices.groups.compiled import gather
 
         sums = np.empty_like(self.team.prior)
-        for label in np.unique(split.group):
-            robots = split.group == label
-            value = float(gather(self.team, robots & ~split.blind, sums))
-            self.prices.add([KnownGroup(robots=robots, need=int((robots & split.blind).sum()), value=value)])
+        for label in np.unique(partition.group):
+            robots = partition.group == label
+            value = float(gather(self.team, robots & ~partition.blind, sums))
+            self.prices.add([KnownGroup(robots=robots, need=int((robots & partition.blind).sum()), value=value)])
 
     def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
         """Decide one threshold; ``OPEN`` after so many nodes of one enumeration.
@@ -145,13 +145,13 @@ class Decision:
                     return answer
                 continue
             verdict = self._answered(found, (threshold, size, -LOWERED), budget)
-            if verdict is Verdict.REFUTED:
+            if verdict is Threshold.REFUTED:
                 return self._cover(found.lowered(LOWERED), threshold, size, budget, nodes)
-            if verdict is Verdict.OPEN:
+            if verdict is Threshold.OPEN:
                 break
             if verdict is None:
                 self._attempt *= LONGER
-        return Answer(verdict=Verdict.OPEN)
+        return Answer(verdict=Threshold.OPEN)
 
     def refuting_prices(self, threshold: float, budget: Budget, nodes: int) -> PriceVector | None:
         """Prices that refute the threshold without covers; ``None`` where there are none, or not after so many nodes.
@@ -165,7 +165,7 @@ class Decision:
         while budget.nodes - spent < nodes and self._settled(threshold, budget).links > self.threat.alpha_c + MARGIN:
             answer = self._refute(threshold, size, budget)
             if answer is not None:
-                return answer.prices if answer.verdict is Verdict.REFUTED else None
+                return answer.prices if answer.verdict is Threshold.REFUTED else None
         return None
 
     def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
@@ -180,7 +180,7 @@ class Decision:
             answer = self._answered(slackest, asked, budget)
             if answer is None:
                 break
-            if answer is not Verdict.REACHED:
+            if answer is not Threshold.REACHED:
                 return Answer(verdict=answer, prices=slackest)
         found = self._settled(threshold, budget)
         if found.links <= links:
@@ -188,25 +188,25 @@ class Decision:
         for prices in (found.scaled(links), found.for_robots(links, self.threat.n_blinded)):
             answer = self._answered(prices, asked, budget)
             if answer is not None:
-                return None if answer is Verdict.REACHED else Answer(verdict=answer, prices=prices)
+                return None if answer is Threshold.REACHED else Answer(verdict=answer, prices=prices)
         self._attempt *= LONGER
         return None
 
-    def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Verdict | None:
+    def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Threshold | None:
         """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
         threshold, size, limit = asked
         if self.prices.add(self._cheap(prices, threshold, budget)):
-            return Verdict.REACHED
+            return Threshold.REACHED
         at, question = self._asked(prices, asked)
         found = find_paying_groups(self.team, self.links, at, question, budget, nodes=self._attempt, room=NEW_GROUPS)
         if found.groups:
-            return Verdict.REACHED if self.prices.add(found.groups) else Verdict.OPEN
+            return Threshold.REACHED if self.prices.add(found.groups) else Threshold.OPEN
         if found.is_complete:
-            return Verdict.REFUTED
+            return Threshold.REFUTED
         listed = self._list(prices, (threshold, size, limit), budget, (self._attempt // DEARER, NEW_GROUPS))
         if len(listed.cost):
-            return Verdict.REACHED if self._teach(listed, threshold) else Verdict.OPEN
-        return Verdict.REFUTED if listed.code == FINISHED else None
+            return Threshold.REACHED if self._teach(listed, threshold) else Threshold.OPEN
+        return Threshold.REFUTED if listed.code == FINISHED else None
 
     def _asked(self, prices: PriceVector, asked: tuple[float, int, float]) -> tuple[Prices, Question]:
         """The compiled searches' arguments for ``asked`` = (threshold, largest weak size, limit)."""
@@ -222,9 +222,8 @@ class Decision:
         while True:
             budget.check()
             found, links = self.prices.solve(threshold, budget.seconds_left), self.threat.alpha_c + MARGIN
-            if not self.prices.add(
-                self._cheap(found.scaled(links) if found.links > links else found, threshold, budget)
-            ):
+            asked = found.scaled(links) if found.links > links else found
+            if not self.prices.add(self._cheap(asked, threshold, budget)):
                 return found
 
     def _cheap(self, prices: PriceVector, threshold: float, budget: Budget) -> list[KnownGroup]:
@@ -273,16 +272,16 @@ class Decision:
         self._shuffled = False
         listed = self._list(prices, (threshold, size, gap), budget, (nodes // LISTING, ROOM))
         if listed.code != FINISHED:
-            return Answer(verdict=Verdict.OPEN)
+            return Answer(verdict=Threshold.OPEN)
         for members in self._partitions(listed, gap, budget):
             if (listed.need[members, 0] < listed.need[members, 1]).any():
-                return Answer(verdict=Verdict.OPEN)
+                return Answer(verdict=Threshold.OPEN)
             group = np.zeros(self._n_robots, dtype=np.int64)
             for label, k in enumerate(members):
                 group[listed.robots[k]] = label
             blind = np.asarray(listed.blinded[members].any(axis=0))
-            return Answer(verdict=Verdict.REACHED, split=Split(group=group, blind=blind, value=threshold))
-        return Answer(verdict=Verdict.REFUTED)
+            return Answer(verdict=Threshold.REACHED, partition=Partition(group=group, blind=blind, value=threshold))
+        return Answer(verdict=Threshold.REFUTED)
 
     def _partitions(self, listed: _Listed, gap: float, budget: Budget) -> Iterator[list[int]]:
         """Groups of each partition within both budgets."""

@@ -13,7 +13,7 @@ from ratt_opt.attackers.by_prices.prices import KnownGroup
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
-    from ratt_opt.attackers.by_prices.team import Links, Team
+    from ratt_opt.attackers.by_prices.team import Links, PricedTeam
     from ratt_opt.budget import Budget
 
 __all__ = ["PayingGroups", "find_paying_groups"]
@@ -35,7 +35,7 @@ class PayingGroups:
 
 
 def find_paying_groups(
-    team: Team, links: Links, prices: Prices, question: Question, budget: Budget, *, nodes: int, room: int
+    team: PricedTeam, links: Links, prices: Prices, question: Question, budget: Budget, *, nodes: int, room: int
 ) -> PayingGroups:
     """Search for so many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
 

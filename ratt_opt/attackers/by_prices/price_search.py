@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.by_prices.decision import Decision, Verdict
+from ratt_opt.attackers.by_prices.decision import Threshold, ThresholdDecision
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links
@@ -13,8 +13,8 @@ from ratt_opt.budget import OutOfBudget
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.by_prices.starts import Split
-    from ratt_opt.attackers.by_prices.team import Team
+    from ratt_opt.attackers.by_prices.starts import Partition
+    from ratt_opt.attackers.by_prices.team import PricedTeam
     from ratt_opt.attackers.task import AttackTask
 
 __all__ = ["PriceSearch"]
@@ -42,13 +42,13 @@ class PriceSearch:
     A node is a node of an enumeration.
     """
 
-    def __init__(self, task: AttackTask, team: Team) -> None:
+    def __init__(self, task: AttackTask, team: PricedTeam) -> None:
         self.task = task
         threat = task.problem.threat
         links = Links.of(threat)
         self._starts = Starts(team, links, threat)
         planar = PlanarTeam.of(task.problem.objective, task.values.plan)
-        self._decision = Decision(team, links, threat, WeakSizes(team, planar))
+        self._decision = ThresholdDecision(team, links, threat, WeakSizes(team, planar))
 
     def anneal(self, starts: int) -> None:
         """Offer the first annealed attacks."""
@@ -65,9 +65,9 @@ class PriceSearch:
                 self._anneal(FURTHER_STARTS, ANNEALING_SHARE)
                 continue
             answer = self._decision.decide(threshold, budget, budget.nodes_left(effort))
-            if answer.verdict is Verdict.REFUTED:
+            if answer.verdict is Threshold.REFUTED:
                 bracket.raise_lower(threshold)
-            elif answer.split is None or not self._offer(answer.split):
+            elif answer.partition is None or not self._offer(answer.partition):
                 unknown = threshold
             else:
                 unknown = None
@@ -89,15 +89,15 @@ class PriceSearch:
             if count and part.stop() is not None:
                 return
             try:
-                split = self._starts.next(self.task.budget)
+                partition = self._starts.next(self.task.budget)
             except OutOfBudget:
                 if self._starts.best is not None:
                     self._offer(self._starts.best)
                 raise
-            if split is not None:
-                self._offer(split)
+            if partition is not None:
+                self._offer(partition)
 
-    def _offer(self, split: Split) -> bool:
+    def _offer(self, partition: Partition) -> bool:
         """Offer an attack and teach its groups to the prices."""
-        self._decision.learn(split)
-        return self.task.offer(split.attack(self.task.problem.threat))
+        self._decision.learn(partition)
+        return self.task.offer(partition.attack(self.task.problem.threat))

@@ -12,11 +12,11 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.attackers.by_prices.team import Links, Team
+    from ratt_opt.attackers.by_prices.team import Links, PricedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Split", "Starts"]
+__all__ = ["Partition", "Starts"]
 
 MOVES = 4_000
 """Moves per robot of one start. Measured at 24 robots: a start of 100,000 moves takes 0.1 s and finds the best known
@@ -33,7 +33,7 @@ PRICE = 0.02
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Split:
+class Partition:
     """A partition with its blinded robots: ``group`` (N,), ``blind`` (N,); no group is worth more than ``value``."""
 
     group: IntArray
@@ -49,23 +49,23 @@ class Split:
 class Starts:
     """Annealed attacks, one start after the other; deterministic for a seed.
 
-    ``best`` : the best split so far, ``None`` before the first
+    ``best`` : the best partition so far, ``None`` before the first
     """
 
-    def __init__(self, team: Team, links: Links, threat: Threat, seed: int = 0) -> None:
+    def __init__(self, team: PricedTeam, links: Links, threat: Threat, seed: int = 0) -> None:
         self._team, self._links, self._threat = team, links, threat
         self._rng = np.random.default_rng(seed)
         self._count = 0
         whole = team.prior + team.information.sum(axis=0)
         self._scale = max(self._value(whole), 1e-300)
-        self.best: Split | None = None
+        self.best: Partition | None = None
 
     def _value(self, sums: np.ndarray) -> float:
         from ratt_opt.attackers.by_prices.groups.compiled import value_of
 
         return float(value_of(self._team, sums))
 
-    def next(self, budget: Budget) -> Split | None:
+    def next(self, budget: Budget) -> Partition | None:
         """The outcome of one more start; ``None`` where it left no attack within the budget.
 
         Raises
@@ -83,8 +83,8 @@ class Starts:
             group, blind = self.best.group.copy(), self.best.blind.copy()
         return self._anneal(group, blind, hot, budget)
 
-    def _anneal(self, group: IntArray, blind: BoolArray, hot: float, budget: Budget) -> Split | None:
-        scale, steps, least, split = self._scale, MOVES * len(group), np.inf, None
+    def _anneal(self, group: IntArray, blind: BoolArray, hot: float, budget: Budget) -> Partition | None:
+        scale, steps, least, partition = self._scale, MOVES * len(group), np.inf, None
         found, state = (group.copy(), blind.copy()), State.of(self._team, group, blind)
         part = max(PART // len(self._team.prior), 1)
         for first in range(0, steps, part):
@@ -95,10 +95,10 @@ class Starts:
             )
             value = float(anneal(self._team, self._links, state, cooling, found, least, self._rng))
             if value < least:
-                least, split = value, Split(group=found[0].copy(), blind=found[1].copy(), value=value)
+                least, partition = value, Partition(group=found[0].copy(), blind=found[1].copy(), value=value)
                 if self.best is None or value < self.best.value:
-                    self.best = split
-        return split
+                    self.best = partition
+        return partition
 
     def _blinded(self) -> BoolArray:
         blind = np.zeros(len(self._team.single), dtype=np.bool_)

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["Links", "Team"]
+__all__ = ["Links", "PricedTeam"]
 
 
-class Team(NamedTuple):
+class PricedTeam(NamedTuple):
     """What the robots see under one plan; symmetric matrices packed by rows of the lower triangle, T = d (d + 1) / 2.
 
     ``code`` : the criterion's ``compiled_code``; ``weights`` : (M,); ``prior`` : (M, T) prior information;
@@ -31,7 +31,7 @@ class Team(NamedTuple):
     single: FloatArray
 
     @classmethod
-    def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
+    def of(cls, objective: SetFunction, plan: IntArray) -> PricedTeam | None:
         """The compact form, or ``None`` where the objective has no compiled code."""
         if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
             return None

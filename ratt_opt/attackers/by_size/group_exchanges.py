@@ -14,6 +14,8 @@ from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
     from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
@@ -67,6 +69,13 @@ class GroupExchanges:
         home[others[: len(places)]] = places
         if not (self._must & (home == 0)).any():
             self._improve(home, budget)
+
+    def near(self, groups: Iterable[Collection[int]], budget: Budget) -> None:
+        """Start from a family of groups of these sizes."""
+        home = np.zeros_like(self._home)
+        for g, group in enumerate(sorted(groups, key=len, reverse=True), start=1):
+            home[list(group)] = g
+        self._improve(home, budget)
 
     def shake(self, rounds: int, budget: Budget) -> None:
         """Exchange a few random robots of the best family and improve it again, so often.

@@ -75,13 +75,16 @@ class Filter:
         return cls(threshold, np.zeros(n_robots))
 
 
-def list_low_sets(team: PlanarTeam, order: IntArray, size: int, wanted: Filter, budget: Budget) -> LowList | None:
+def list_low_sets(
+    team: PlanarTeam, order: IntArray, size: int, wanted: Filter, budget: Budget, *, looks: int = LONGEST
+) -> LowList | None:
     """Every set of ``size`` robots that is wanted, or ``None`` where they are too many or too long to find.
 
     Parameters
     ----------
     order : (F,) robots to choose from, F <= 63; bit ``k`` of a mask is ``order[k]``; strongest first is best, as
         the search goes from the last to the first
+    looks : at the clock before the list is given up
 
     Raises
     ------
@@ -96,7 +99,7 @@ def list_low_sets(team: PlanarTeam, order: IntArray, size: int, wanted: Filter, 
     data = (team.code, team.weights, team.baseline), information, np.ascontiguousarray(wanted.costs[::-1])
     limits = wanted.threshold, wanted.room, WORK
     masks, values = np.zeros(4096, dtype=np.uint64), np.zeros(4096)
-    for _ in range(LONGEST):
+    for _ in range(looks):
         spend_look(budget)
         if _collect(data, limits, state, (masks, values)):
             ranked = np.argsort(values[: counters[1]], kind="stable")

@@ -58,6 +58,17 @@ class LowLists:
         known = self._known[size]
         return None if known is None else known.below(threshold)
 
+    def at_once(self, size: int, threshold: float, budget: Budget) -> LowList | None:
+        """The same where one look at the clock is enough; what takes longer is not known afterwards."""
+        if size not in self._known:
+            found = list_low_sets(
+                self.team, self.order, size, Filter.below(threshold, len(self.order)), budget, looks=1
+            )
+            if found is None:
+                return None
+            self._known[size] = found
+        return self.of(size, threshold, budget)
+
     def is_cheap(self, size: int) -> bool:
         """Whether a list is known, or known to be short."""
         return size in self._known or comb(len(self.order), size) <= FEW_SETS

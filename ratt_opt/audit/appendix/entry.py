@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality, Linear
     from ratt_opt.audit.engine.decide import Verdict
 
-__all__ = ["Case", "Chain", "ClaimEntry", "Counted", "Detour", "Entry", "EntryKind", "EnumeratedEntry",
-           "Line", "Reference", "SizedClaim", "entries_of"]  # fmt: skip
+__all__ = ["Case", "Chain", "ClaimEntry", "Counted", "Detour", "Entry", "EntryKind", "EntryName", "EnumeratedEntry",
+           "Line", "SizedClaim", "entries_of"]  # fmt: skip
 
 
 class EntryKind(StrEnum):
@@ -39,7 +39,7 @@ class EntryKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class EntryName:
     """Another entry: one reading of it, or all of them (``None``)."""
 
     label: str
@@ -50,10 +50,10 @@ class Reference:
         return "/".join(part for part in (self.label, self.kind, self.reading) if part is not None)
 
     @staticmethod
-    def parse(text: str) -> Reference:
+    def parse(text: str) -> EntryName:
         """Read what ``str`` writes."""
         label, kind, *reading = text.split("/", 2)
-        return Reference(label, EntryKind(kind), *reading)
+        return EntryName(label, EntryKind(kind), *reading)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,13 +85,13 @@ class Entry:
     statement: str
     hypotheses: str
     reading: str = ""
-    survives_by: Reference | None = None
-    serves_by: Reference | None = None
+    survives_by: EntryName | None = None
+    serves_by: EntryName | None = None
 
     @property
-    def names(self) -> tuple[Reference, Reference]:
+    def names(self) -> tuple[EntryName, EntryName]:
         """The two references that mean this entry: with all its readings, and alone."""
-        return Reference(self.label, self.kind), Reference(self.label, self.kind, self.reading)
+        return EntryName(self.label, self.kind), EntryName(self.label, self.kind, self.reading)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,17 +212,17 @@ def _entry(chain: Chain, number: int, kind: EntryKind, reading: str) -> ClaimEnt
         hypotheses=hypotheses,
         claims=tuple(claim for case in chain.cases for claim in _claims(chain, case, number, kind, reading)),
         reading=reading,
-        survives_by=None if is_whole else Reference(chain.label(-1), CUMULATIVE),
+        survives_by=None if is_whole else EntryName(chain.label(-1), CUMULATIVE),
         serves_by=_serves_by(label, kind, reading),
         detours=partial(_detours, chain, number, reading) if kind is STEP and number > 1 else None,
     )
 
 
-def _serves_by(label: str, kind: EntryKind, reading: str) -> Reference | None:
+def _serves_by(label: str, kind: EntryKind, reading: str) -> EntryName | None:
     """A paper's "=" may serve as ">="; a reason with too few premises follows from all of RATT's choices."""
     if kind is AS_WRITTEN:
-        return Reference(label, STEP)
-    return Reference(label, STEP, reading) if kind is EntryKind.CLAIM else None
+        return EntryName(label, STEP)
+    return EntryName(label, STEP, reading) if kind is EntryKind.CLAIM else None
 
 
 def _detours(chain: Chain, number: int, reading: str) -> Iterator[Detour]:

@@ -18,7 +18,7 @@ from functools import partial
 from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
+from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EntryName, SizedClaim
 from ratt_opt.audit.appendix.patterns import GROUP, beside_v2
 from ratt_opt.audit.appendix.roles import ONE_PLUS_K, Side, Team, attacks_on, team_of, worst_for
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, THEOREM1
@@ -64,7 +64,7 @@ def readings_of_the_attack() -> Iterator[ClaimEntry]:
             (CUMULATIVE, "<=", below),
         ):
             text = f"the optimum's worst-case value {relation} its value under A*"
-            serves_by = Reference(label, STEP)
+            serves_by = EntryName(label, STEP)
             yield _reading(label=label, kind=kind, statement=text, claims=claims, reading=reading, serves_by=serves_by)
         text = "RATT's worst-case value, of which Theorem 1 is, >= its value under A*, which the appendix bounds"
         claims = tuple(_other_attacks(worst, Side.RATT))
@@ -124,8 +124,8 @@ def readings_of_sets() -> Iterator[ClaimEntry]:
             hypotheses="f normalised, non-decreasing, submodular, curvature <= k; RATT's choices",
             claims=tuple(_every_subset(from_start=kind is CUMULATIVE)),
             reading="for every set W of |Vg| robots of V1, as the line says",
-            survives_by=Reference("sub_p2d1v1_10", CUMULATIVE),
-            serves_by=Reference("sub_p2d1v1_9", kind, ""),
+            survives_by=EntryName("sub_p2d1v1_10", CUMULATIVE),
+            serves_by=EntryName("sub_p2d1v1_9", kind, ""),
         )
     for side, text in (
         (Side.RATT, "f(u on V1) >= f(u on V1 with a bait replaced by x1)"),
@@ -139,8 +139,8 @@ def readings_of_sets() -> Iterator[ClaimEntry]:
             hypotheses="total curvature <= c; all of RATT's choices",
             claims=tuple(_swaps(side)),
             reading=side.value,
-            survives_by=Reference("nd_p2d1v1", CUMULATIVE),
-            serves_by=Reference("nd_p2d1v1", CUMULATIVE),
+            survives_by=EntryName("nd_p2d1v1", CUMULATIVE),
+            serves_by=EntryName("nd_p2d1v1", CUMULATIVE),
         )
 
 
@@ -201,11 +201,11 @@ def _dominance(distribution: int, function_class: FunctionClass) -> Iterator[Cla
         kind=EntryKind.CLAIM,
         chain="dominance",
         statement="f(u on V1\\A*) >= f(u on V2\\A*) when only greedy robots of V2 survive",
-        survives_by=Reference(f"nd_p2d{distribution}v2", EntryKind.CUMULATIVE),
+        survives_by=EntryName(f"nd_p2d{distribution}v2", EntryKind.CUMULATIVE),
     )
     proved, reading = f"A* is the worst attack; {family}", f"stated reason only; {family}"
     text = f"more baits than greedy robots survive, each bait is individually better; {function_class.value}"
-    serves_by, claims = Reference(label, EntryKind.CLAIM, proved), (sized(team.bait_premises()),)
+    serves_by, claims = EntryName(label, EntryKind.CLAIM, proved), (sized(team.bait_premises()),)
     yield entry(hypotheses=text, claims=claims, reading=reading, serves_by=serves_by)
     text = f"RATT's choices, and A* is the worst attack on its plan; {function_class.value}"
     threat = Threat(CommunicationGraph.complete(n_robots), alpha_s, alpha_c)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
+from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EntryName, SizedClaim
 from ratt_opt.audit.appendix.roles import CUBED, KEPT_OVER_ONE_PLUS_K, SQUARED, T2, Factor, Team
 from ratt_opt.audit.engine.claim import FunctionClass, Inequality, Linear
 from ratt_opt.audit.engine.rationals import T, constant
@@ -98,7 +98,7 @@ def _distribution(label: str, bound: _Bound, grouping: _Grouping) -> Iterator[Cl
     text = f"RATT's value under A* >= {bound.text} of the optimum's worst case"
     given, alone = (tuple(_claims(bound.function_class, grouping, is_step=is_step)) for is_step in (True, False))
     step = _line(label, STEP, f"the bounds of its groups: {text}", given)
-    yield replace(step, survives_by=Reference(label, CUMULATIVE))
+    yield replace(step, survives_by=EntryName(label, CUMULATIVE))
     yield _line(label, CUMULATIVE, f"RATT's choices alone: {text}", alone)
 
 

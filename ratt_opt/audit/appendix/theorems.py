@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, Reference, SizedClaim
+from ratt_opt.audit.appendix.entry import ClaimEntry, EntryKind, EntryName, SizedClaim
 from ratt_opt.audit.appendix.roles import (
     CUBED,
     KEPT,
@@ -32,10 +32,10 @@ __all__ = ["PATTERN_FREE_ND", "PATTERN_FREE_SUB", "THEOREM1", "THEOREM1_SUB", "c
 
 ND, SUB = FunctionClass.TOTAL_CURVATURE, FunctionClass.CURVATURE
 STEP, CUMULATIVE, CLAIM = EntryKind.STEP, EntryKind.CUMULATIVE, EntryKind.CLAIM
-THEOREM1 = Reference("eqn:appro_non_descrease", EntryKind.THEOREM)
-THEOREM1_SUB = Reference("eqn:appro_submodular", EntryKind.THEOREM)
-PATTERN_FREE_ND = Reference("pattern_free_nd", EntryKind.THEOREM)
-PATTERN_FREE_SUB = Reference("pattern_free_sub", EntryKind.THEOREM)
+THEOREM1 = EntryName("eqn:appro_non_descrease", EntryKind.THEOREM)
+THEOREM1_SUB = EntryName("eqn:appro_submodular", EntryKind.THEOREM)
+PATTERN_FREE_ND = EntryName("pattern_free_nd", EntryKind.THEOREM)
+PATTERN_FREE_SUB = EntryName("pattern_free_sub", EntryKind.THEOREM)
 GROUPS = "the class and RATT's choices only; every set S of surviving robots, hence every graph, attack and budget"
 LARGEST_GROUP, LARGEST_TEAM = 4, 5
 """Baits in a group of baits only; robots in play in a group of any pattern: with six the sets of a claim are 4,096."""
@@ -115,8 +115,8 @@ def theorems() -> Iterator[ClaimEntry]:
 
 SIZES = (2, 3, 4)
 LARGEST_GREEDY = 4
-WEAK_SUBADDITIVITY = Reference("weak_subadditivity", EntryKind.LEMMA)
-LEMMA9_IN_USE = Reference("nd_p1d1v1_8", EntryKind.CUMULATIVE)
+WEAK_SUBADDITIVITY = EntryName("weak_subadditivity", EntryKind.LEMMA)
+LEMMA9_IN_USE = EntryName("nd_p1d1v1_8", EntryKind.CUMULATIVE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +173,7 @@ def _about_the_class() -> Iterator[ClaimEntry]:
         label="subadditivity_as_used",
         statement=f"{parts.format('')} and a non-decreasing f",
         claims=tuple(_sizes(ND, lambda f: f.first + f.others - f.whole)),
-        survives_by=Reference("nd_p1d2v1_9", EntryKind.CUMULATIVE),
+        survives_by=EntryName("nd_p1d2v1_9", EntryKind.CUMULATIVE),
         serves_by=WEAK_SUBADDITIVITY,
     )
 

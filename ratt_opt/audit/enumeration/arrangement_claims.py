@@ -10,7 +10,7 @@ from functools import partial
 from itertools import combinations_with_replacement, permutations, product
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.entry import Counted, EntryKind, EntryName, EnumeratedEntry
 from ratt_opt.audit.appendix.theorems import THEOREM1
 from ratt_opt.audit.engine.decide import Verdict
 from ratt_opt.audit.enumeration.setting import (
@@ -32,12 +32,12 @@ __all__ = ["Arrangement", "arrangement_entries", "arrangements", "first_occurren
            "is_pattern2", "smallest_team_entries"]  # fmt: skip
 
 CLAIM = EntryKind.CLAIM
-OTHERS = Reference("nd_other_patterns", CLAIM)
-ALL_PATTERNS = Reference("nd1", EntryKind.CUMULATIVE)
+OTHERS = EntryName("nd_other_patterns", CLAIM)
+ALL_PATTERNS = EntryName("nd1", EntryKind.CUMULATIVE)
 LARGEST_FOR_CAA = 12
 LARGEST_FOR_VALUES = 5
 """Robots whose values 1 to 3 are packed in groups in every way: 0.3 s; six take 4.6 s."""
-CAA_IS_EXACT = Reference("caa_largest_group", CLAIM)
+CAA_IS_EXACT = EntryName("caa_largest_group", CLAIM)
 Arrangement = tuple[tuple[int, int], ...]
 """Groups as (baits, greedy robots)."""
 
@@ -65,7 +65,7 @@ def arrangement_entries() -> Iterator[EnumeratedEntry]:
         label="pattern2_distributions_cover",
         statement="Distributions 1 to 3 of Pattern 2 cover every sensing attack (with at least one of alpha_s^1 in V1)",
         enumerate_cases=_distributions,
-        survives_by=Reference("nd_p2", EntryKind.CUMULATIVE),
+        survives_by=EntryName("nd_p2", EntryKind.CUMULATIVE),
         serves_by=OTHERS,
     )
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.entry import Counted, EntryKind, EntryName, EnumeratedEntry
 from ratt_opt.audit.engine.decide import Verdict
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.base import TableFunction
@@ -37,8 +37,8 @@ def clean_witness_entries() -> Iterator[EnumeratedEntry]:
         chain="sub_p2d1v1",
         statement=f"sub_p2d1v1_10 on additive f with values {values}, one control a robot, (alpha_s, alpha_c) = (1, 6)",
         hypotheses="RATT's bait and the worst attack as the library finds them; curvature 0",
-        survives_by=Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE),
-        serves_by=Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE),
+        survives_by=EntryName("sub_p2d1v1_10", EntryKind.CUMULATIVE),
+        serves_by=EntryName("sub_p2d1v1_10", EntryKind.CUMULATIVE),
         enumerate_cases=_decided,
     )
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.entry import EntryKind, EntryName, EnumeratedEntry
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND
 from ratt_opt.audit.enumeration.setting import LARGEST, counted, every_setting
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["size_entries"]
 
-PART_ATTACKED = Reference("nd_p1d3v1_7", EntryKind.CUMULATIVE)
-MANY_BAITS = Reference("sub_p2d1v1_10", EntryKind.CUMULATIVE)
+PART_ATTACKED = EntryName("nd_p1d3v1_7", EntryKind.CUMULATIVE)
+MANY_BAITS = EntryName("sub_p2d1v1_10", EntryKind.CUMULATIVE)
 LARGEST_FOR_BOUND = 5
 
 _claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="sizes", hypotheses="RATT's and CAA's definitions")
@@ -61,11 +61,11 @@ def size_entries() -> Iterator[EnumeratedEntry]:
 
 
 def _repaired(
-    survives_by: Reference, printed: tuple[str, str, Check], repair: tuple[str, Check]
+    survives_by: EntryName, printed: tuple[str, str, Check], repair: tuple[str, Check]
 ) -> Iterator[EnumeratedEntry]:
     """The claim as printed, with its label, and its repair, which serves in its place."""
     (label, statement, check), (repaired, check_repaired) = printed, repair
-    name = Reference(f"{label}_repaired", EntryKind.CLAIM)
+    name = EntryName(f"{label}_repaired", EntryKind.CLAIM)
     run = partial(_all_settings, check)
     yield _claim(label=label, statement=statement, enumerate_cases=run, survives_by=survives_by, serves_by=name)
     yield _claim(label=name.label, statement=repaired, enumerate_cases=partial(_all_settings, check_repaired))

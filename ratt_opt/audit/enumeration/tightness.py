@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import Counted, EntryKind, EnumeratedEntry, Reference
+from ratt_opt.audit.appendix.entry import Counted, EntryKind, EntryName, EnumeratedEntry
 from ratt_opt.audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_opt.audit.engine.claim import FunctionClass
 from ratt_opt.audit.engine.decide import Verdict, decide
@@ -37,7 +37,7 @@ ATTAINED = tuple((size, Fraction(*k)) for size, k in ((2, (1, 4)), (2, (1, 2)), 
 SHRINKING = (Fraction(1, 10), Fraction(1, 100))
 SENSING = tuple((g, p, Fraction(*c)) for g, p, c in ((2, 1, (1, 4)), (3, 1, (1, 4)), (4, 1, (1, 4)), (3, 2, (9, 10))))
 """Robots left, robots blinded, and total curvatures."""
-SUB_TIGHT, ND_TIGHT = (Reference(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
+SUB_TIGHT, ND_TIGHT = (EntryName(f"pattern_free_{name}_tight", EntryKind.CLAIM) for name in ("sub", "nd"))
 GIVEN = "all set functions of the class, complete graph"
 _claim = partial(EnumeratedEntry, kind=EntryKind.CLAIM, chain="tightness", hypotheses=GIVEN)
 

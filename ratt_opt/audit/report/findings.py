@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ratt_opt.audit.appendix.entry import EntryKind, Reference
+from ratt_opt.audit.appendix.entry import EntryKind, EntryName
 from ratt_opt.audit.appendix.misprints import MISPRINTS
 from ratt_opt.audit.appendix.readings import LEFT_SIDE
 from ratt_opt.audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
@@ -194,7 +194,7 @@ def _left(record: EntryRecord) -> str:
         parts.append(f"follows directly from {record['follows_from']} (proved)")
     serves = record.get("weaker_step_that_serves")
     if serves:
-        named = Reference.parse(serves["entry"])
+        named = EntryName.parse(serves["entry"])
         other = [named.reading] if named.reading and named.reading != record["reading"] else []
         parts.append(f"{', '.join([named.label, named.kind, *other])} ({serves['verdict']})")
     searched = "best_factors" in record or not record["claims"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from functools import cache
 from itertools import chain, pairwise
 from pathlib import Path
@@ -106,10 +107,17 @@ def load(path: str | Path) -> dict[str, Any]:
     return document
 
 
-def document_hash(problem: object) -> str:
-    """SHA-256 of the problem record in canonical JSON (sorted fields, shortest round-trip floats)."""
-    text = json.dumps(problem, sort_keys=True, separators=(",", ":"), allow_nan=False)
+def document_hash(document: object) -> str:
+    """SHA-256 of a document in canonical JSON (sorted fields, shortest round-trip floats)."""
+    text = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def stated_hash(where: str, value: Any) -> str:
+    """Return a SHA-256 as :func:`document_hash` writes it."""
+    if not isinstance(value, str) or re.fullmatch("[0-9a-f]{64}", value) is None:
+        raise _refusal(where, "must be a SHA-256 of 64 lower-case hexadecimal digits", value)
+    return value
 
 
 def fields(where: str, value: Any, names: str) -> list[Any]:

@@ -16,7 +16,8 @@ class Verified:
     No plan keeps more than ``upper`` under every attack (proved). The plan ``elements`` keeps
     at least ``lower`` under every attack: proved if ``lower_proved``, otherwise only claimed.
     ``largest_defect`` bounds how far below zero an eigenvalue of the stored information is (rounding);
-    the proofs account for it. ``problem_hash`` is the SHA-256 of the problem record.
+    the proofs account for it. ``problem_hash`` is the SHA-256 of the problem record; ``made_from`` that of the scenario
+    or information from which the record is said to be made, ``None`` where that is not said.
     """
 
     lower: float
@@ -27,6 +28,7 @@ class Verified:
     objective: str
     arithmetic: str
     problem_hash: str
+    made_from: str | None = None
     n_robots: int
     n_targets: int
     n_elements: int
@@ -49,6 +51,7 @@ class Verified:
         return [
             f"problem: {self.objective}, {self.n_robots} robots, {self.n_elements} elements, {self.n_targets} targets, "
             f"alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}; SHA-256 of its data {self.problem_hash}",
+            *([f"made, as the file says, from the input with SHA-256 {self.made_from}"] if self.made_from else []),
             f"plan: {', '.join(map(str, self.elements))}",
             f"{proved}: no plan keeps more than {self.upper!r} under every attack ({self.upper_leaves} leaves)",
             f"{proved}: {lower} ({self.lower_method}, {self.lower_leaves} leaves)"

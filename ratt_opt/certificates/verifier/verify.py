@@ -35,8 +35,9 @@ def verify_certificate(
     Parameters
     ----------
     time_limit : seconds; no limit when ``None``
-    expected_problem : the problem record it must be about (``problem_document(problem)``), or a test of the record
-        (``same_problem``); any when ``None``
+    expected_problem : the problem record it must be about (``problem_document(problem)``), or a function of the
+        record that says how it differs from the one expected, and nothing where it does not (``differences``); any
+        when ``None``
 
     Raises
     ------
@@ -53,10 +54,11 @@ def verify_certificate(
 
 
 def _decide(path: str | Path, expected_problem: object) -> Verified:
+    document = reading.load(path)
+    made_from = reading.stated_hash("made_from", document.pop("made_from")) if "made_from" in document else None
     names = "format version problem plan claim prior_eigenvalue upper lower"
-    _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", reading.load(path), names)
-    same = expected_problem(problem) if callable(expected_problem) else expected_problem in (None, problem)
-    need(same, "the certificate is about a different problem than the one given")
+    _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", document, names)
+    _need_same(problem, expected_problem, made_from)
     low, high = fields("claim", claim, "lower upper")
     lower, upper = exact("claim lower", low), exact("claim upper", high)
     need(lower <= upper, "claim: lower is above upper")
@@ -71,6 +73,7 @@ def _decide(path: str | Path, expected_problem: object) -> Verified:
         objective=about.objective,
         arithmetic="ball arithmetic" if about.objective == "logdet" else "exact rational arithmetic",
         problem_hash=reading.document_hash(problem),
+        made_from=made_from,
         n_robots=about.n,
         n_targets=len(about.prior),
         n_elements=len(about.owner),
@@ -80,3 +83,12 @@ def _decide(path: str | Path, expected_problem: object) -> Verified:
         upper_leaves=upper_leaves,
         lower_leaves=lower_leaves,
     )
+
+
+def _need_same(problem: object, expected: object, made_from: str | None) -> None:
+    """Raise where the record is not the one expected, with what the file says about where it came from."""
+    difference = (
+        expected(problem) if callable(expected) else "" if expected in (None, problem) else "its record differs"
+    )
+    source = f" (it says that it was made from the input with SHA-256 {made_from})" if made_from else ""
+    need(not difference, f"the certificate is about a different problem than the one given: {difference}{source}")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.curvatures.planar.level_program import Relaxed
-    from ratt_opt.curvatures.planar.regions import Side
+    from ratt_opt.curvatures.planar.regions import MarginalSide
 
 __all__ = ["PlanarSearch"]
 
@@ -45,7 +45,7 @@ class PlanarSearch:
     ``known`` : what the program found in searches for the same end of other elements; ``found`` : in this one.
     """
 
-    def __init__(self, side: Side, known: Sequence[Relaxed] = ()) -> None:
+    def __init__(self, side: MarginalSide, known: Sequence[Relaxed] = ()) -> None:
         self.side = side
         self.attained = PlanarDescent(side.options, side.prior, side.added, sign=side.sign)
         self.attained.offer(self.attained.picks)

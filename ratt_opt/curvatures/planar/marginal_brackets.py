@@ -16,7 +16,7 @@ from ratt_opt.curvatures.marginals import MarginalBrackets
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
-from ratt_opt.curvatures.planar.regions import MARGIN, Side
+from ratt_opt.curvatures.planar.regions import MARGIN, MarginalSide
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -97,7 +97,7 @@ class PlanarBrackets(MarginalBrackets):
             self._highest[owner] = self._highest_level(options)
         added, highest = self._data.parts[x], self._highest[owner]
         options, prior = self._options[owner], self._data.prior
-        low, high = (Side(options, prior, added, largest=largest, highest=highest) for largest in (False, True))
+        low, high = (MarginalSide(options, prior, added, largest=largest, highest=highest) for largest in (False, True))
         self._searches[x] = PlanarSearch(low, self._pools[0]), PlanarSearch(high, self._pools[1])
 
     def _continue(self, x: int, target: float) -> None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ratt_opt.curvatures.planar.contexts import Options
     from ratt_opt.curvatures.planar.level_program import Relaxed
 
-__all__ = ["Region", "Side"]
+__all__ = ["MarginalSide", "Region"]
 
 EDGES = (0.1, 0.3, 0.6, 1.1, 1.6, 2.3, np.pi)
 """Sectors first looked at, in double angle from the direction in which ``x`` adds the least (most)."""
@@ -58,7 +58,7 @@ class Region:
     relaxed: Relaxed | None = None
 
 
-class Side:
+class MarginalSide:
     """One element and which of its marginals is bounded: the smallest, or the largest.
 
     ``prior``, ``added`` : (3, M) parts; ``highest`` : proved upper bound on the smallest level of any context.

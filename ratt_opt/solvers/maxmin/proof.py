@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.task import Choices, Task
 
 __all__ = [
-    "Cut",
     "ElementBranch",
     "Leaf",
     "Node",
     "Split",
+    "TangentCut",
     "TreeNode",
     "UpperProof",
     "WinnerBranch",
@@ -36,7 +36,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Cut(ByValue):
+class TangentCut(ByValue):
     """A tangent bound on one group of one attack.
 
     ``point`` : (M, d, d) posterior information where it touches; ``target`` : for max-eigenvalue, which target's.
@@ -80,7 +80,7 @@ class UpperProof(ByValue):
     """Attacks and cuts that the ``tree`` refers to by index; its nodes are in preorder."""
 
     attacks: tuple[Attack, ...]
-    cuts: tuple[Cut, ...]
+    cuts: tuple[TangentCut, ...]
     tree: tuple[Node, ...]
 
     def __repr__(self) -> str:
@@ -144,7 +144,7 @@ def nodes_below(root: TreeNode) -> Iterator[TreeNode]:
             stack.extend(child for _, child in sorted(node.split.parts, key=lambda part: part[0], reverse=True))
 
 
-def upper_proof(root: TreeNode, attack_of: Callable[[int], Attack], cut_of: Callable[[int], Cut]) -> UpperProof:
+def upper_proof(root: TreeNode, attack_of: Callable[[int], Attack], cut_of: Callable[[int], TangentCut]) -> UpperProof:
     """The proof below ``root``, with the attacks and cuts that it uses, numbered anew."""
     tree = [_proof_node(node) for node in nodes_below(root)]
     used = sorted({k for node in tree if isinstance(node, Leaf) for k in node.cuts})

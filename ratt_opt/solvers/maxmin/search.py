@@ -18,6 +18,7 @@ from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
+from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, nodes_below, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
@@ -66,6 +67,7 @@ class BranchAndBound:
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(task, self.by_winner, incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
+        self.node_attacks = NodeAttacks.of(task.problem, self.pool, incumbent.budget)
         self.roots = [self._first_node()] if roots is None else roots
         for root in self.roots:
             self.frontier.push(root)
@@ -121,16 +123,10 @@ class BranchAndBound:
 
     def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
-        if self.pairs is not None and self.rule.level > 0:
-            narrowed = self.pairs.narrow(node, self.rule.better, self.by_winner)
-            if narrowed is None:
-                return None
-            self.frontier.current = node = narrowed
-        if self.rule.level > 0:
-            narrowed = self.small.narrow(node, self.rule.better)
-            if narrowed is None:
-                return None
-            self.frontier.current = node = narrowed
+        narrowed = self._narrow(node) if self.rule.level > 0 else node
+        if narrowed is None:
+            return None
+        self.frontier.current = node = narrowed
         nodes, stalls = turns.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
         self.rounds.begin(node)
@@ -156,6 +152,23 @@ class BranchAndBound:
                     self.incumbent.improve(plan)
                 self.division.divide(node, relaxed)
                 return None
+
+    def _narrow(self, node: TreeNode) -> TreeNode | None:
+        """What remains without any linear program; ``None`` where the node is divided, or closed.
+
+        The whole node is attacked where some outcome's winner is open: elsewhere relaxed plans find what hurts.
+        """
+        better = self.rule.better
+        if self.pairs is not None:
+            left = self.pairs.narrow(node, better, self.by_winner)
+            if left is None:
+                return None
+            self.frontier.current = node = left
+        left = self.small.narrow(node, better)
+        if left is None or self.node_attacks is None or not (self.winners.at(left) < 0).any():
+            return left
+        self.frontier.current = left
+        return self.small.narrow(left, better) if self.node_attacks.learn(left.choices, better) else left
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one where it is better.

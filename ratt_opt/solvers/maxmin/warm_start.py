@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-    from ratt_opt.solvers.maxmin.proof import Cut, UpperProof
+    from ratt_opt.solvers.maxmin.proof import TangentCut, UpperProof
     from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
 
 __all__ = ["WarmStart"]
@@ -93,6 +93,6 @@ def _is_allowed(problem: Problem, attack: Attack) -> bool:
     return True
 
 
-def _fits(cuts: CutStore, cut: Cut) -> bool:
+def _fits(cuts: CutStore, cut: TangentCut) -> bool:
     prior = cuts.task.objective.prior
     return cut.point.shape == prior.shape and (cut.target is None or cut.target < len(prior))

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from ratt_opt.audit.appendix.entry import Reference
+from ratt_opt.audit.appendix.entry import EntryName
 from ratt_opt.audit.ledger import all_entries, run_audit
 from ratt_opt.audit.report.findings import findings, line_outcomes
 from ratt_opt.audit.report.pages import html_report, markdown_report
@@ -98,7 +98,7 @@ def test_every_entry_named_as_survivor_or_stand_in_exists() -> None:
     for entry in entries:
         for name in (entry.survives_by, entry.serves_by):
             assert name is None or name in names, f"{entry.label} names {name}"
-            assert name is None or Reference.parse(str(name)) == name
+            assert name is None or EntryName.parse(str(name)) == name
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.by_prices.team import Team
+    from ratt_opt.attackers.by_prices.team import PricedTeam
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
 
@@ -28,7 +28,7 @@ SIZE_VALUES = 100_000
 class WeakSizes:
     """Largest sizes of weak sets of one team; ``planar`` : the same team for targets in the plane, if they are."""
 
-    def __init__(self, team: Team, planar: PlanarTeam | None) -> None:
+    def __init__(self, team: PricedTeam, planar: PlanarTeam | None) -> None:
         self._team, self._planar = team, planar
         self._floors: dict[int, float] = {}
 

@@ -64,10 +64,10 @@ class _Group:
         self._cost = task.objective.n_targets * (1 if task.objective.dimension == 2 else NOT_PLANAR)
         self._is_whole = self._is_small and self._cost * prod(len(task.choices[i]) for i in members) <= WHOLE
         self._whole: FloatArray | None = None
-        self._known: dict[tuple[int, ...], tuple[FloatArray, ...]] = {}
+        self._known: dict[tuple[int, ...], tuple[float, tuple[FloatArray, ...]]] = {}
 
-    def reach(self, domains: _Domains) -> tuple[FloatArray, ...] | None:
-        """Per robot, the largest value with each of its elements; ``None`` where that is not listed."""
+    def reach(self, domains: _Domains) -> tuple[float, tuple[FloatArray, ...]] | None:
+        """The largest value, and per robot that with each of its elements; ``None`` where that is not listed."""
         if not self._is_small:
             return None
         if not self._is_whole and self._cost * prod(domains.sizes[i] for i in self.members) > PART:
@@ -76,14 +76,14 @@ class _Group:
         known = self._known.get(key)
         if known is None:
             values, axes = self._part(domains.choices), range(len(self.members))
-            known = tuple(values.max(axis=tuple(other for other in axes if other != axis)) for axis in axes)
-            self._known[key] = known
+            by_robot = tuple(values.max(axis=tuple(other for other in axes if other != axis)) for axis in axes)
+            known = self._known[key] = float(by_robot[0].max()), by_robot
         return known
 
     def most(self, domains: _Domains) -> float:
         """The largest value; infinite where that is not listed."""
         reach = self.reach(domains)
-        return np.inf if reach is None else float(reach[0].max())
+        return np.inf if reach is None else reach[0]
 
     def _part(self, choices: Choices) -> FloatArray:
         if not self._is_whole:
@@ -109,6 +109,9 @@ class SmallGroups:
         self.task, self.pool, self.division, self.budget = task, division.pool, division, budget
         self._groups: list[_Group] = []
         self._numbers: dict[bytes, int] = {}
+        self._above: dict[int, list[int]] = {}
+        """The two groups of an outcome that could be above the level when it was last looked at, to be looked at first.
+        """
 
     def narrow(self, node: TreeNode, better: float) -> TreeNode | None:
         """What remains of a node for plans above the level ``better``; ``None`` where it is divided, or closed.
@@ -137,12 +140,9 @@ class SmallGroups:
     def _narrow_by(self, node: TreeNode, outcome: int, level: float, domains: _Domains) -> TreeNode | None:
         winner = self.division.winners.of(node, outcome)
         if winner is None:
-            above = []
-            for g in self.pool.of_outcome[outcome]:
-                if domains.shown[g] > level or self._groups[g].most(domains) > level:
-                    above.append(g)
-                if len(above) > 1:
-                    return node
+            above = self._two_above(outcome, level, domains)
+            if len(above) > 1:
+                return node
             children = self.division.divide_groups(node, outcome)
             if len(children) != 1 or not above or children[0].winners[outcome] != above[0]:
                 for child in children:  # of groups that were not proved to be below the level
@@ -151,11 +151,22 @@ class SmallGroups:
             node, winner = children[0], above[0]
         return self._filter(node, (outcome, winner), level, domains)
 
+    def _two_above(self, outcome: int, level: float, domains: _Domains) -> list[int]:
+        """Groups of an outcome that can be above the level, at most two."""
+        above: list[int] = []
+        for g in dict.fromkeys([*self._above.get(outcome, ()), *self.pool.of_outcome[outcome]]):
+            if domains.shown[g] > level or self._groups[g].most(domains) > level:
+                above.append(g)
+            if len(above) > 1:
+                self._above[outcome] = above
+                break
+        return above
+
     def _filter(self, node: TreeNode, won: tuple[int, int], level: float, domains: _Domains) -> TreeNode | None:
         """Split off the elements with which the winner of an outcome is below the level."""
         outcome, group = won[0], self._groups[won[1]]
         reach = group.reach(domains)
-        for robot, most in zip(group.members, reach or (), strict=reach is not None):
+        for robot, most in zip(group.members, reach[1], strict=True) if reach is not None else ():
             choice, left = node.choices[robot], most > level
             if left.all():
                 continue

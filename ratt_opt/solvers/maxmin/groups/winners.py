@@ -6,6 +6,7 @@ can, for every plan, the outcome's *winner* is decided for the whole search; els
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["WinnerDivision", "Winners"]
 
 UNKNOWN, UNDECIDED = -2, -1
+COMPARED = 8
+"""Outcomes of which the one that the fewest groups may win is divided on. With 1 the search for 20 robots at (0, 180),
+max-eigenvalue, leaves 5 % open after 12 s and 2 % after 30 s; with 8 it closes in 16 s; 32 are no better."""
 
 
 class Winners:
@@ -134,14 +138,21 @@ class WinnerDivision:
             self.frontier.close(leaf)
 
     def undecided(self, node: TreeNode, of_robot: FloatArray, level: float) -> int | None:
-        """The outcome of undecided winner with the smallest value below ``level``, if any has."""
-        teams = self.pool.outcome_values(self.pool.group_values(of_robot))
-        for outcome in np.argsort(teams, kind="stable").tolist():
-            if teams[outcome] >= level:
-                return None
-            if self.winners.of(node, outcome) is None:
-                return int(outcome)
-        return None
+        """Of the outcomes of undecided winner and smallest value below ``level`` one that the fewest groups may win."""
+        values = self.pool.group_values(of_robot)
+        teams = self.pool.outcome_values(values)
+        rising = np.argsort(teams, kind="stable")
+        low = (outcome for outcome in rising[teams[rising] < level].tolist() if self.winners.of(node, outcome) is None)
+        chosen, fewest = None, np.inf
+        for outcome in islice(low, COMPARED):
+            groups = sorted(self.pool.of_outcome[outcome], key=lambda g: -values[g])
+            may_win = (g for g in groups if self._proofs.find(g, node.choices) is None)
+            count = sum(1 for _ in islice(may_win, None if chosen is None else int(fewest)))
+            if count < fewest:
+                chosen, fewest = outcome, count
+            if fewest <= 1:
+                break
+        return chosen
 
     def divide(self, node: TreeNode, outcome: int) -> list[TreeNode]:
         """Children in which the winner of an outcome is decided, or soon will be; those that need a search.

@@ -100,6 +100,10 @@ SAME_VALUE = 1e-12
 """Relative difference of team values under two attacks that counts as none."""
 
 
+NEAR = 4
+"""Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew."""
+
+
 class Adversary:
     """Attacks one problem's plans, quickly or exactly; every outcome enters the pool.
 
@@ -118,8 +122,30 @@ class Adversary:
     def learn(self, plan: IntArray) -> bool:
         """Attack a plan quickly, unless all outcomes are known; whether that found a new outcome."""
         known = len(self.pool)
-        if not self.pool.complete:
+        if not self.pool.complete and not self._learn_near(plan):
             self._remember(self.problem, plan, self._quick_attack(self.problem, plan))
+        return len(self.pool) > known
+
+    def _learn_near(self, plan: IntArray) -> bool:
+        """Exchange robots of known outcomes for a worse one, which takes a twentieth of an attack; whether it did."""
+        team = PlanarTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
+        if team is None or len(plan) <= SEARCHED_BY_SIZE:
+            return False
+        from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges  # compiles
+
+        teams = self.pool.outcome_values(self.pool.group_values(self.problem.information_objective.information[plan]))
+        best: GroupExchanges | None = None
+        lowest = float(teams.min(initial=np.inf))
+        for outcome in np.argsort(teams, kind="stable")[:NEAR].tolist():
+            groups = [self.pool.groups[g] for g in self.pool.of_outcome[outcome] if self.pool.groups[g]]
+            family = GroupExchanges(team, tuple(sorted(map(len, groups), reverse=True)), np.zeros(len(plan), np.bool_))
+            family.near(groups, self.budget)
+            if groups and family.value < lowest - SAME_VALUE * abs(lowest) - self.problem.objective.rounding:
+                best, lowest = family, family.value
+        if best is None:
+            return False
+        known = len(self.pool)
+        self.pool.add_outcome(tuple(sorted(best.groups(), key=min)))
         return len(self.pool) > known
 
     def learn_relaxed(self, of_robot: FloatArray) -> bool:

@@ -176,7 +176,8 @@ class Incumbent:
         """Attack a plan that is better on the known outcomes; return whether it became the best."""
         if not self.candidates.is_better(plan) or not self.candidates.meet(plan):
             return False
-        self.adversary.learn(plan)
+        while self.adversary.learn(plan) and self.candidates.is_better(plan) and not self.budget.is_over:
+            pass  # what was learnt may be weaker than what there is to learn
         if self.candidates.is_better(plan) and self.adversary.is_exact_cheaply:
             self.proved.attack(plan, self.budget.part())
         return self.candidates.add(plan)

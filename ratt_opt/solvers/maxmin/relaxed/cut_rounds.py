@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import combined_bound, tangent_cut
-from ratt_opt.solvers.maxmin.proof import Cut
+from ratt_opt.solvers.maxmin.proof import TangentCut
 from ratt_opt.solvers.maxmin.relaxed.node_program import NodeProgram
 
 if TYPE_CHECKING:
@@ -100,10 +100,10 @@ class CutStore:
         cuts = list(leaf.cuts)
         return combined_bound(self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices)
 
-    def record(self, k: int) -> Cut:
+    def record(self, k: int) -> TangentCut:
         """One cut as part of a proof."""
         cut = self._cuts[k]
-        return Cut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
+        return TangentCut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
 
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.graph.outcomes import Outcome
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.maxmin.proof import Cut, UpperProof
+    from ratt_opt.solvers.maxmin.proof import TangentCut, UpperProof
     from ratt_opt.solvers.maxmin.task import Choices
     from ratt_opt.stopping import Stop
 
@@ -53,7 +53,7 @@ class Work:
     gap: float
     plan: IntArray
     outcomes: tuple[Attack | Outcome, ...]
-    cuts: tuple[Cut, ...]
+    cuts: tuple[TangentCut, ...]
     roots: tuple[LentNode, ...]
     nodes_before: int
     max_nodes: int | None

@@ -1,0 +1,90 @@
+"""What choosing links to protect, or links to add, changes for the adversary."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
+
+import networkx as nx
+
+from ratt_opt._validation import check_distinct, check_link
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from ratt_opt.graph.communication import Link
+    from ratt_opt.problem import Problem
+
+__all__ = ["Addition", "Protection", "Upgrade", "checked_links"]
+
+
+class Upgrade(Protocol):
+    """A kind of change: which links may be chosen, and which of them spoil an attack."""
+
+    problem: Problem
+    candidates: tuple[Link, ...]
+
+    def changed(self, links: Iterable[Link]) -> Problem:
+        """The problem of the team that has these candidates."""
+
+    def needed(self, groups: Sequence[frozenset[int]]) -> int:
+        """So many chosen links between the groups spoil the attack that separates them; fewer do not."""
+
+
+class Protection:
+    """Links that cannot be cut: one of them between two groups of an attack spoils it.
+
+    Raises ``InputError`` : a candidate is no link.
+    """
+
+    def __init__(self, problem: Problem, candidates: Iterable[Link] | None) -> None:
+        links = problem.communication.links
+        given = links if candidates is None else checked_links(candidates)
+        for link in sorted(given - links):
+            raise InputError("candidates", "must be links of the graph", link)
+        self.problem, self.candidates = problem, tuple(sorted(given - problem.protected_links))
+
+    def changed(self, links: Iterable[Link]) -> Problem:
+        """The problem in which these links cannot be cut."""
+        return replace(self.problem, protected_links=self.problem.protected_links | set(links))
+
+    def needed(self, groups: Sequence[frozenset[int]]) -> int:  # noqa: ARG002  (the same for every attack)
+        """One, whatever the groups."""
+        return 1
+
+
+class Addition:
+    """New links, which the adversary may cut like others: what its budget does not cover spoils the attack.
+
+    Raises ``InputError`` : a candidate is a link already, or its ends are not two robots.
+    """
+
+    def __init__(self, problem: Problem, candidates: Iterable[Link] | None) -> None:
+        n_robots, links = problem.n_robots, problem.communication.links
+        missing = frozenset((i, j) for j in range(n_robots) for i in range(j)) - links
+        given = missing if candidates is None else checked_links(candidates)
+        for link in sorted(given - missing):
+            raise InputError("candidates", "must be pairs of robots without a link", link)
+        self.problem, self.candidates = problem, tuple(sorted(given))
+
+    def changed(self, links: Iterable[Link]) -> Problem:
+        """The problem with these links."""
+        graph: nx.Graph = nx.Graph()
+        graph.add_nodes_from(range(self.problem.n_robots))
+        graph.add_edges_from(self.problem.communication.links)
+        graph.add_edges_from(links)
+        return replace(self.problem, graph=graph)
+
+    def needed(self, groups: Sequence[frozenset[int]]) -> int:
+        """One more than the adversary could cut beside those links of the graph that it has to cut anyway."""
+        return self.problem.alpha_c - len(self.problem.communication.links_between(groups)) + 1
+
+
+def checked_links(given: Iterable[Link]) -> frozenset[Link]:
+    """Pairs of robots as ``(i, j)``, ``i < j``.
+
+    Raises ``InputError`` : one is no pair, or given twice.
+    """
+    pairs = (check_link("candidates", link) for link in given)
+    return check_distinct("candidates", ((min(i, j), max(i, j)) for i, j in pairs))
