@@ -1,5 +1,7 @@
 """From ten robots to a thousand: ``python -m analysis.benchmarks.growth [--robots 10 100] [--seconds 60] [--out DIR]``.
 
+With ``--earlier FOLDER`` RATT of the edition in FOLDER beside it, to the first size at which it takes ``PATIENCE``.
+
 Complete graph, 12 controls, 0.3 targets a robot, a tenth of the robots blinded, a twentieth of the links cut. RATT
 (processor seconds) beside the ``O(N^2)`` evaluations of Theorem 2; then the bracket of its worst case, and of the
 optimum, after so many seconds, and the memory of the process. ``--out`` writes the growth as a figure.
@@ -8,7 +10,11 @@ optimum, after so many seconds, and the memory of the process. ``--out`` writes 
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import resource
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,13 +30,31 @@ SIZES = (10, 20, 50, 100, 200, 500, 1000)
 OBJECTIVES = ("trace", "logdet", "maxeig")
 WARM = 200
 """Robots of a problem that compiles what larger ones need, not counted."""
+PATIENCE = 3.0
+"""Processor seconds of an earlier edition's RATT after which larger teams are not asked for."""
+EARLIER = """
+import json, sys, time
+import ratt_opt
+robots, targets, alpha_s, alpha_c, objective = json.loads(sys.argv[1])
+scenario = ratt_opt.random_scenario(robots, targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=0)
+problem = scenario.problem(objective)
+ratt_opt.ratt(ratt_opt.random_scenario(4, 2, alpha_s=1, alpha_c=0, seed=0).problem(objective))
+began = time.process_time()
+ratt_opt.ratt(problem)
+print(time.process_time() - began)
+"""
+"""What another edition runs, in names of the public contract."""
+
+
+def sizes_of(robots: int) -> tuple[int, int, int, int]:
+    """Robots, targets, blinded, cut."""
+    return robots, max(3, 3 * robots // 10), robots // 10, robots * (robots - 1) // 40
 
 
 def problem_of(robots: int, objective: str) -> Problem:
     """The problem of one size."""
-    links = robots * (robots - 1) // 2
-    targets = max(3, 3 * robots // 10)
-    return random_scenario(robots, targets, alpha_s=robots // 10, alpha_c=links // 20, seed=0).problem(objective)
+    _, targets, alpha_s, alpha_c = sizes_of(robots)
+    return random_scenario(robots, targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=0).problem(objective)
 
 
 def measure(robots: int, objective: str, seconds: float) -> dict[str, Any]:
@@ -50,6 +74,19 @@ def measure(robots: int, objective: str, seconds: float) -> dict[str, Any]:
     return row | {"memory_GiB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20}
 
 
+def earlier_seconds(edition: Path, robots: list[int], objective: str) -> dict[int, float]:
+    """Processor seconds of RATT of the edition in a folder, by size, as far as patience goes."""
+    found: dict[int, float] = {}
+    environment = {**os.environ, "PYTHONPATH": str(edition)}
+    for size in sorted(robots):
+        asked = [sys.executable, "-c", EARLIER, json.dumps([*sizes_of(size), objective])]
+        done = subprocess.run(asked, env=environment, cwd=edition, capture_output=True, check=True, text=True)
+        found[size] = float(done.stdout)
+        if found[size] > PATIENCE:
+            break
+    return found
+
+
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """RATT's seconds over the number of robots, and its evaluations scaled to the first criterion's last point."""
     from matplotlib.figure import Figure
@@ -58,7 +95,13 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     axes = figure.subplots()
     for objective, marker in zip(OBJECTIVES, "os^", strict=True):
         own = [row for row in rows if row["objective"] == objective]
-        axes.loglog([row["robots"] for row in own], [row["ratt_s"] for row in own], marker=marker, label=objective)
+        (line,) = axes.loglog(
+            [row["robots"] for row in own], [row["ratt_s"] for row in own], marker=marker, label=objective
+        )
+        earlier = [(row["robots"], row["earlier_ratt_s"]) for row in own if row.get("earlier_ratt_s") is not None]
+        if earlier:
+            axes.loglog(*zip(*earlier, strict=True), marker=marker, color=line.get_color(), linestyle="-.",
+                        markerfacecolor="none", label=f"{objective}, first edition")  # fmt: skip
     own = [row for row in rows if row["objective"] == rows[0]["objective"]]
     sizes, last = [row["robots"] for row in own], own[-1]
     square = [last["ratt_s"] * (n / last["robots"]) ** 2 for n in sizes]
@@ -78,10 +121,16 @@ def main() -> None:
     parser.add_argument("--objectives", nargs="*", default=list(OBJECTIVES), choices=OBJECTIVES)
     parser.add_argument("--seconds", type=float, default=0.0, help="limit of each search; 0 plans only")
     parser.add_argument("--out", type=Path, help="folder for growth.png")
+    parser.add_argument("--earlier", type=Path, help="folder of an earlier edition")
     options = parser.parse_args()
     for objective in options.objectives:
         ratt(random_scenario(WARM, WARM, alpha_s=1, alpha_c=0, seed=0).problem(objective))
     rows = [measure(n, objective, options.seconds) for objective in options.objectives for n in options.robots]
+    if options.earlier is not None:
+        for objective in options.objectives:
+            found = earlier_seconds(options.earlier, options.robots, objective)
+            for row in (row for row in rows if row["objective"] == objective):
+                row["earlier_ratt_s"] = found.get(row["robots"])
     print_table("Growth", rows)
     if options.out is not None:
         draw(rows, options.out / "growth.png")

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.certificates.plan_sets import NotClosedError
-from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
+from ratt_opt.certificates.verifier.work import tell, tick
 
 if TYPE_CHECKING:
     from ratt_opt.certificates.plan_sets import PlanSets
@@ -47,6 +47,7 @@ class AttackTree:
         stack = [_Case()]
         while stack:
             tick()
+            tell(COVERING, len(tree))
             case = stack.pop()
             if self._infeasible(case):
                 tree.append(-1)

@@ -15,9 +15,9 @@ from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_bounds import BLINDED, ELSE, OPEN, OUTSIDE, SEEING, GroupBounds
-from ratt_opt.certificates.plan_sets import NotClosedError
-from ratt_opt.certificates.size_tree import SizeTree
-from ratt_opt.certificates.verifier.work import seconds_left, tick
+from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
+from ratt_opt.certificates.size_tree import size_tree
+from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -57,7 +57,7 @@ def group_price_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     """
     prices, size = _prices(sets)
     bounds = GroupBounds(sets.problem.threat, prices)
-    sizes = SizeTree(sets, size + 1, max_nodes).run()
+    sizes = size_tree(sets, size + 1, max_nodes)
     tree = _SeeingTree(sets, bounds, max_nodes).run(size)
     return {
         "kind": "group_prices",
@@ -109,6 +109,7 @@ class _SeeingTree:
         stack = [_Node.of(np.full(n_robots, OPEN), self.sets.start(), size)]
         while stack:
             tick()
+            tell(COVERING, len(self.tree))
             if len(self.tree) > self.max_nodes or len(self.tree) + self.bounds.length > LARGEST_PROOF:
                 raise NotClosedError
             self._expand(stack.pop(), stack)

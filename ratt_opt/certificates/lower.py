@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.attack_tree import AttackTree
-from ratt_opt.certificates.forced_size import forced_size_proof
+from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
-from ratt_opt.certificates.size_tree import SizeTree
+from ratt_opt.certificates.size_tree import size_tree
 from ratt_opt.certificates.verifier.work import limited, seconds_left
 from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
@@ -55,7 +55,7 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 
     def by_size() -> dict[str, Any]:
         size = forced_group_size(problem.n_robots, problem.alpha_s, problem.alpha_c)
-        return {"kind": "forced_size", "size": size, "tree": SizeTree(sets(), size, max_nodes).run()}
+        return {"kind": "forced_size", "size": size, "tree": size_tree(sets(), size, max_nodes)}
 
     def by_trees() -> dict[str, Any]:
         return forced_size_proof(sets(), max_nodes)

@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["MOST_CRITERIA", "NotClosedError", "PlanSets"]
+__all__ = ["COVERING", "MOST_CRITERIA", "NotClosedError", "PlanSets"]
 
 MOST_CRITERIA = 60_000_000
 """Most criteria of single targets looked at; the verifier looks at half of them, a microsecond or two each."""
+COVERING = "covering all attacks"
+"""What is told while a cover is built."""
 
 
 class NotClosedError(Exception):

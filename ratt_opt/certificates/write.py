@@ -17,7 +17,7 @@ from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
-from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick
+from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick, watched
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
@@ -189,7 +189,6 @@ def certify(
         )
 
 
-@Step("certificate, written and checked")
 def write_certificate(
     problem: Problem,
     elements: IntArray,
@@ -214,29 +213,30 @@ def write_certificate(
     InputError : the objective cannot be certified, or the file cannot be written.
     ProofError : the upper proof has a fault.
     """
-    record, plan = problem_document(problem), problem.check_plan(elements).tolist()
-    prior_range = _prior_range(problem, record, plan)
-    check = UpperCheck(Statement(record, plan, prior_range))
-    high = max(float(upper), _proved_upper(check, upper_part), 0.0)
-    origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
-    for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
-        document = {
-            "format": FORMAT,
-            "version": VERSION,
-            **origin,
-            "problem": record,
-            "plan": plan,
-            "claim": {"lower": low, "upper": high},
-            "prior_eigenvalue": prior_range,
-            "upper": upper_part,
-            "lower": lower_part,
-        }
-        try:
-            return _write_verified(document, path, lower - low, high - upper)
-        except ProofError as error:
-            if lower_part is ENUMERATED or isinstance(error, UndecidedError):
-                raise
-    raise AssertionError  # the last claim is an enumeration
+    with Step("certificate, written and checked") as step, watched(step.say):
+        record, plan = problem_document(problem), problem.check_plan(elements).tolist()
+        prior_range = _prior_range(problem, record, plan)
+        check = UpperCheck(Statement(record, plan, prior_range))
+        high = max(float(upper), _proved_upper(check, upper_part), 0.0)
+        origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
+        for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
+            document = {
+                "format": FORMAT,
+                "version": VERSION,
+                **origin,
+                "problem": record,
+                "plan": plan,
+                "claim": {"lower": low, "upper": high},
+                "prior_eigenvalue": prior_range,
+                "upper": upper_part,
+                "lower": lower_part,
+            }
+            try:
+                return _write_verified(document, path, lower - low, high - upper)
+            except ProofError as error:
+                if lower_part is ENUMERATED or isinstance(error, UndecidedError):
+                    raise
+        raise AssertionError  # the last claim is an enumeration
 
 
 def _write_verified(document: dict[str, Any], path: str | Path, shaved: float, raised: float) -> Certificate:

@@ -40,6 +40,7 @@ def verify(
     proved; 4: neither proved nor refuted within the limits. None of these where the output cannot be written (74).
     """
     from ratt_opt.certificates.verifier.verify import verify_certificate
+    from ratt_opt.certificates.verifier.work import watched
 
     checker = None
     if verified:
@@ -53,7 +54,7 @@ def verify(
 
         given = load_input(problem)
         expected = differences(given, objective)
-    with Step("checking the certificate"):
+    with Step("checking the certificate") as step, watched(step.say):
         found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
         second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     if as_json:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search
+from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search, weak_families
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
@@ -48,6 +48,7 @@ def run_large(problem, elements, max_nodes=None):
 
 def only_branch(monkeypatch):
     """No lists and hardly any enumeration, so that bounds and branches decide."""
+    monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", -1)
     monkeypatch.setattr(size_vector_search, "LISTED_WHOLE", 0)
     monkeypatch.setattr(size_vector_search, "LONGEST_LIST", -1)
     monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
@@ -57,16 +58,19 @@ def only_branch(monkeypatch):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("way", ["lists", "divided", "branches"])
+@pytest.mark.parametrize("way", ["at once", "lists", "divided", "branches"])
 def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
-    """By lists and a search for disjoint sets, by divided nodes and bounds alone, by branches with hardly any list."""
+    """By one list; by lists and a search for disjoint sets; by divided nodes and bounds alone; by branches with hardly
+    any list."""
+    if way == "lists":
+        monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", -1)
     if way == "branches":
         only_branch(monkeypatch)
     if way == "divided":
         monkeypatch.setattr(vector_search, "LOOKS", 0)
         monkeypatch.setattr(vector_search, "FEW_CHOICES", seed % 3)
         monkeypatch.setattr(vector_search, "FEW_SETS", 10)
-        monkeypatch.setattr(size_vector_search, "SHAKEN", 0)
+        monkeypatch.setattr(weak_families, "SHAKEN", 0)
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
     expected = ro.worst_case_attack(problem, elements).upper
     bracket, _, stop = run_large(problem, elements)

@@ -7,10 +7,15 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.bounds.group_size import achievable_group_size, group_size_bound
+from ratt_opt.bounds import group_size
+from ratt_opt.bounds.group_size import achievable_group_size, group_size_bound, strongest_robots
 from ratt_opt.bounds.survivors import largest_survivor_group, survivor_bound
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
+from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
+from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.graph.threat import Threat
 from ratt_opt.report.page.page import report_page
 from ratt_opt.report.tables import report_tables
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
@@ -84,6 +89,50 @@ def test_the_group_size_of_a_large_graph_is_achieved():
     problem = ro.Problem(objective, np.repeat(np.arange(16), objective.n // 16), graph, 3, 4)
     exact = smallest_largest_group(problem.communication, 4).n_max
     assert exact - 3 <= achievable_group_size(problem) <= 13
+
+
+def separated(graph, cut, blinded):
+    """Seeing robots of the largest group that a cut leaves."""
+    left = nx.Graph(graph)
+    left.remove_edges_from(cut)
+    return max(len(group - blinded) for group in nx.connected_components(left))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_annealed_groups_are_achieved_and_never_larger_than_by_cheapest_cuts(seed, monkeypatch):
+    """The cut itself is looked at: within the links, no protected one, groups of that many seeing robots."""
+    objective = ro.random_scenario(24, 2, alpha_s=0, alpha_c=0, seed=seed).problem().objective
+    graph = nx.random_geometric_graph(24, 0.32, seed=seed)
+    links = sorted((min(e), max(e)) for e in graph.edges)
+    protected = frozenset(links[:: 7 + seed])
+    problem = ro.Problem(objective, np.repeat(np.arange(24), 12), graph, 5, len(links) // 6, protected_links=protected)
+    blinded = strongest_robots(problem)
+    cuts_only = Threat(problem.communication, 0, problem.alpha_c, protected_links=protected)
+    quick = heuristic_cut(cuts_only, ignoring=blinded)
+    cut = annealed_cut(cuts_only, quick, 1, Budget(), ignoring=blinded)
+    assert len(cut) <= problem.alpha_c
+    assert not cut & protected
+    assert separated(graph, cut, blinded) <= separated(graph, quick, blinded)
+    found = achievable_group_size(problem)
+    assert found <= separated(graph, cut, blinded)
+    monkeypatch.setattr(group_size, "MOST_ANNEALED", 0)
+    assert found <= achievable_group_size(problem)
+
+
+def test_annealing_finds_smaller_groups_than_cheapest_cuts(monkeypatch):
+    objective = ro.random_scenario(30, 2, alpha_s=0, alpha_c=0, seed=0).problem().objective
+    graph = nx.random_geometric_graph(30, 0.252, seed=0)
+    problem = ro.Problem(objective, np.repeat(np.arange(30), 12), graph, 9, 21)
+    annealed = achievable_group_size(problem)
+    monkeypatch.setattr(group_size, "MOST_ANNEALED", 0)
+    assert 2 * annealed < achievable_group_size(problem)
+
+
+def test_a_spent_budget_weakens_the_group_size_at_most():
+    objective = ro.random_scenario(30, 2, alpha_s=0, alpha_c=0, seed=0).problem().objective
+    graph = nx.random_geometric_graph(30, 0.252, seed=0)
+    problem = ro.Problem(objective, np.repeat(np.arange(30), 12), graph, 9, 21)
+    assert achievable_group_size(problem) <= achievable_group_size(problem, Budget(0.0)) <= 30 - 9
 
 
 def test_no_outcome_leaves_more_survivors_together():

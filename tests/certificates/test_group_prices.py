@@ -12,7 +12,7 @@ from flint import fmpq
 
 from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, ratt, worst_case_attack
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.forced_size import forced_size_proof
+from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets

@@ -22,7 +22,7 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates.forced_size import forced_size_proof
+from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.certificates.plan_sets import PlanSets
@@ -40,6 +40,7 @@ OBJECTIVES = {
     "trace of an output": TraceObjective(PRIOR, INFORMATION, WEIGHTS, output=[[1.0, 0.5]]),
     "logdet": LogDetObjective(PRIOR, INFORMATION, WEIGHTS),
     "maxeig": MaxEigenvalueObjective(PRIOR, INFORMATION),
+    "maxeig of an output": MaxEigenvalueObjective(PRIOR, INFORMATION, WEIGHTS, output=[[1.0, 0.5]]),
 }
 MUTANTS = 60
 

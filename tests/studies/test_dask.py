@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import os
 import subprocess
 import sys
-import time
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -18,80 +14,13 @@ from analysis.studies.engine import run
 from analysis.studies.executors import open_executor
 from analysis.studies.progress import Progress
 from ratt_opt import InputError
+from tests.cluster import SLOW, scheduler, wait_for, workers
+from tests.documents import ROOT
 from tests.studies.toy import STUDY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
-
-ROOT = Path(__file__).resolve().parents[2]
-SLOW = 120
-"""Seconds that a loaded machine may take for what an idle one does in two."""
-
-
-@contextmanager
-def _process(*arguments: str, path: str, folder: Path, seconds: float = 0.0) -> Iterator[subprocess.Popen[str]]:
-    environment = os.environ | {"PYTHONPATH": path, "TOY_SECONDS": str(seconds), "OMP_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]]
-    process = subprocess.Popen(
-        command, env=environment, cwd=folder, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.wait()
-
-
-@contextmanager
-def _scheduler(folder: Path) -> Iterator[str]:
-    """A scheduler on a free port; its address."""
-    address = folder / "scheduler.json"
-    arguments = (
-        "dask_scheduler",
-        "--host",
-        "127.0.0.1",
-        "--port",
-        "0",
-        "--no-dashboard",
-        "--scheduler-file",
-        str(address),
-    )
-    with _process(*arguments, path=str(ROOT), folder=folder):
-        _wait_for(lambda: _address(address) is not None)
-        yield str(_address(address))
-
-
-def _address(file: Path) -> str | None:
-    """The scheduler's address, or nothing while its file is missing or half written."""
-    try:
-        return str(json.loads(file.read_text())["address"])
-    except (OSError, ValueError):
-        return None
-
-
-def _wait_for(condition: Callable[[], bool]) -> None:
-    """Wait as long as a loaded machine may need; fail rather than go on without it."""
-    until = time.monotonic() + SLOW
-    while not condition():
-        assert time.monotonic() < until
-        time.sleep(0.05)
-
-
-@contextmanager
-def _workers(
-    n: int, address: str, folder: Path, *, path: str = str(ROOT), seconds: float = 0.0, before: int = 0
-) -> Iterator[list[subprocess.Popen[str]]]:
-    """``n`` workers that have all reported to the scheduler, where ``before`` others had."""
-    arguments = ("dask_worker", address, "--no-nanny", "--nthreads", "1", "--no-dashboard")
-    with ExitStack() as stack:
-        processes = [
-            stack.enter_context(_process(*arguments, path=path, folder=folder, seconds=seconds)) for _ in range(n)
-        ]
-        with distributed.Client(address, timeout=SLOW, set_as_default=False) as client:
-            client.wait_for_workers(before + n, timeout=SLOW)
-        yield processes
+    from collections.abc import Iterator
+    from pathlib import Path
 
 
 @pytest.fixture(autouse=True)
@@ -104,8 +33,8 @@ def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
     with open_executor(None, 1) as executor:
         expected = run(STUDY, tmp_path / "local", executor, trials=10, progress=Progress()).read_bytes()
     with ExitStack() as stack:
-        address = stack.enter_context(_scheduler(tmp_path))
-        first, _ = stack.enter_context(_workers(2, address, tmp_path, seconds=0.1))
+        address = stack.enter_context(scheduler(tmp_path))
+        first, _ = stack.enter_context(workers(2, address, tmp_path, seconds=0.1))
         rows = 0
 
         class Killing(Progress):
@@ -132,8 +61,8 @@ def test_the_papers_rows_are_the_same_bytes_on_a_cluster(tmp_path: Path) -> None
     with open_executor(None, 1) as executor:
         expected = run(SMALL, tmp_path / "local", executor, trials=1, progress=Progress()).read_bytes()
     with ExitStack() as stack:
-        address = stack.enter_context(_scheduler(tmp_path))
-        stack.enter_context(_workers(2, address, tmp_path))
+        address = stack.enter_context(scheduler(tmp_path))
+        stack.enter_context(workers(2, address, tmp_path))
         with open_executor(address, None) as executor:
             table = run(SMALL, tmp_path / "dask", executor, trials=1, progress=Progress())
     assert table.read_bytes() == expected
@@ -141,16 +70,16 @@ def test_the_papers_rows_are_the_same_bytes_on_a_cluster(tmp_path: Path) -> None
 
 def test_a_lost_scheduler_is_one_line_and_the_sweep_resumes(tmp_path: Path) -> None:
     with ExitStack() as stack:
-        scheduler = stack.enter_context(ExitStack())
-        address = scheduler.enter_context(_scheduler(tmp_path))
-        stack.enter_context(_workers(1, address, tmp_path, seconds=0.1))
+        service = stack.enter_context(ExitStack())
+        address = service.enter_context(scheduler(tmp_path))
+        stack.enter_context(workers(1, address, tmp_path, seconds=0.1))
         command = [sys.executable, "-m", "tests.studies.run_toy", "--out", str(tmp_path / "out"), "--trials", "100"]
         process = stack.enter_context(
             subprocess.Popen([*command, "--cluster", address], cwd=ROOT, text=True, stderr=subprocess.PIPE)
         )
         journal = tmp_path / "out" / "toy" / "journal.csv"
-        _wait_for(lambda: journal.exists() and journal.stat().st_size > 0)
-        scheduler.close()
+        wait_for(lambda: journal.exists() and journal.stat().st_size > 0)
+        service.close()
         errors = process.communicate(timeout=SLOW)[1]
     assert process.returncode == 1
     again = "finished rows are kept, run the same command to resume"
@@ -177,8 +106,8 @@ def _without_the_package(folder: Path) -> str:
 
 def test_a_worker_without_the_package_is_one_line(tmp_path: Path) -> None:
     with ExitStack() as stack:
-        address = stack.enter_context(_scheduler(tmp_path))
-        stack.enter_context(_workers(1, address, tmp_path, path=_without_the_package(tmp_path)))
+        address = stack.enter_context(scheduler(tmp_path))
+        stack.enter_context(workers(1, address, tmp_path, path=_without_the_package(tmp_path)))
         with pytest.raises(InputError, match=r"worker tcp\S+ must import the same package .*; got ModuleNotFoundError"):
             stack.enter_context(open_executor(address, None))
 
@@ -186,10 +115,10 @@ def test_a_worker_without_the_package_is_one_line(tmp_path: Path) -> None:
 def test_a_worker_without_the_package_that_joins_later_changes_nothing(tmp_path: Path) -> None:
     # It cannot even read a trial: Dask drops it and runs the trial elsewhere.
     with ExitStack() as stack:
-        address = stack.enter_context(_scheduler(tmp_path))
-        stack.enter_context(_workers(1, address, tmp_path, seconds=0.05))
+        address = stack.enter_context(scheduler(tmp_path))
+        stack.enter_context(workers(1, address, tmp_path, seconds=0.05))
         executor = stack.enter_context(open_executor(address, None))
-        stack.enter_context(_workers(1, address, tmp_path, path=_without_the_package(tmp_path), before=1))
+        stack.enter_context(workers(1, address, tmp_path, path=_without_the_package(tmp_path), before=1))
         table = run(STUDY, tmp_path / "dask", executor, trials=5, progress=Progress()).read_bytes()
     with open_executor(None, 1) as executor:
         assert run(STUDY, tmp_path / "local", executor, trials=5, progress=Progress()).read_bytes() == table

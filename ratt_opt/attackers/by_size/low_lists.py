@@ -35,6 +35,8 @@ MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
 WORK = 10_000_000
 """Criteria of single targets between two looks at the clock: a tenth of a second or less."""
+QUICK = 4_000_000
+"""The same for a list that is wanted only if it is short."""
 NODES_OF_A_LOOK = 10_000
 """Nodes that the work between two looks counts as: about as many partial sets are looked at."""
 LONGEST = 200
@@ -76,7 +78,7 @@ class Filter:
 
 
 def list_low_sets(
-    team: PlanarTeam, order: IntArray, size: int, wanted: Filter, budget: Budget, *, looks: int = LONGEST
+    team: PlanarTeam, order: IntArray, size: int, wanted: Filter, budget: Budget, *, quick: bool = False
 ) -> LowList | None:
     """Every set of ``size`` robots that is wanted, or ``None`` where they are too many or too long to find.
 
@@ -84,7 +86,7 @@ def list_low_sets(
     ----------
     order : (F,) robots to choose from, F <= 63; bit ``k`` of a mask is ``order[k]``; strongest first is best, as
         the search goes from the last to the first
-    looks : at the clock before the list is given up
+    quick : give up before the first look at the clock, after a few milliseconds
 
     Raises
     ------
@@ -97,9 +99,9 @@ def list_low_sets(
     counters = np.zeros(2, dtype=np.int64)
     state = np.zeros(size + 1, dtype=np.int64), sums, np.zeros((2, size + 1, n_robots + 1)), counters
     data = (team.code, team.weights, team.baseline), information, np.ascontiguousarray(wanted.costs[::-1])
-    limits = wanted.threshold, wanted.room, WORK
+    limits = wanted.threshold, wanted.room, QUICK if quick else WORK
     masks, values = np.zeros(4096, dtype=np.uint64), np.zeros(4096)
-    for _ in range(looks):
+    for _ in range(1 if quick else LONGEST):
         spend_look(budget)
         if _collect(data, limits, state, (masks, values)):
             ranked = np.argsort(values[: counters[1]], kind="stable")

@@ -59,11 +59,10 @@ class LowLists:
         return None if known is None else known.below(threshold)
 
     def at_once(self, size: int, threshold: float, budget: Budget) -> LowList | None:
-        """The same where one look at the clock is enough; what takes longer is not known afterwards."""
+        """The same where that takes a few milliseconds; what takes longer is not known afterwards."""
         if size not in self._known:
-            found = list_low_sets(
-                self.team, self.order, size, Filter.below(threshold, len(self.order)), budget, looks=1
-            )
+            wanted = Filter.below(threshold, len(self.order))
+            found = list_low_sets(self.team, self.order, size, wanted, budget, quick=True)
             if found is None:
                 return None
             self._known[size] = found

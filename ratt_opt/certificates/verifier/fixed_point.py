@@ -9,7 +9,7 @@ rounded down once more. What these bounds do not decide is left to exact arithme
 
 from __future__ import annotations
 
-from math import isqrt
+from math import isqrt, prod
 from typing import TYPE_CHECKING
 
 from flint import arb, ctx, fmpq, fmpz
@@ -28,8 +28,8 @@ __all__ = ["FixedPoint", "Sums"]
 
 BITS, OF_VALUES, OF_WEIGHTS = 96, 64, 64
 """Binary places of matrices, values and weights: sums of usual size lose less than a claim's last digit says."""
-OF_PRODUCTS = 128
-"""Leading bits that are kept of products of determinants."""
+OF_PRODUCTS, AT_ONCE = 128, 5
+"""Leading bits that are kept of products of determinants, and how many are multiplied before it is shortened."""
 
 Sums = list[tuple[int, int, int]]
 """One symmetric matrix per target."""
@@ -50,6 +50,8 @@ class FixedPoint:
         self._weights = [int(fmpq(w * (1 << OF_WEIGHTS)).ceil()) for w in about.weights]
         whole = about.prior_low if about.objective == "maxeig" else about.prior_trace
         self._whole = int(fmpq(whole * (1 << OF_VALUES + OF_WEIGHTS)).floor())
+        with ctx.workprec(OF_PRODUCTS):
+            self._log_2 = arb(2).log()
         self._of_weight: dict[fmpq, tuple[list[int], arb]] = {}
         if about.objective == "logdet":
             self._group_by_weight()
@@ -79,38 +81,38 @@ class FixedPoint:
 
     def are_worth(self, sums: Sums, more: list[Sums], count: int, lower: fmpq) -> bool:
         """Whether any ``count`` of ``sums`` with one of ``more`` each are shown to be worth ``lower`` on average."""
-        cases = ([(a + x, b + y, c + z) for (a, b, c), (x, y, z) in zip(sums, own, strict=True)] for own in more)
         kinds: dict[str, Callable[[Sums, list[int]], int | arb | None]]
         kinds = {"trace": self._trace, "logdet": self._log, "maxeig": self._largest}
         value = kinds[self.about.objective]
         values: list[int | arb] = []
-        for case in cases:
-            tick()
-            determinants = [a * c - b * b for a, b, c in case]
-            if min(determinants) <= 0 or min(case)[0] <= 0 or (shown := value(case, determinants)) is None:
-                return False
-            values.append(shown)
-        least = total(sorted(values)[:count])
+        with ctx.workprec(OF_PRODUCTS):
+            for own in more:
+                tick()
+                case = [(a + x, b + y, c + z) for (a, b, c), (x, y, z) in zip(sums, own, strict=True)]
+                determinants = [a * c - b * b for a, b, c in case]
+                if min(determinants) <= 0 or min(case)[0] <= 0 or (shown := value(case, determinants)) is None:
+                    return False
+                values.append(shown)
+            least = total(sorted(values)[:count])
         return bool(least >= lower * count * (1 if self.about.objective == "logdet" else 1 << OF_VALUES + OF_WEIGHTS))
 
     def _trace(self, sums: Sums, determinants: list[int]) -> int:
         """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``."""
-        pairs = zip(sums, determinants, strict=True)
-        terms = [((a + c) << BITS + OF_VALUES) // det + 1 for (a, _, c), det in pairs]
+        terms = [((a + c) << BITS + OF_VALUES) // det + 1 for (a, _, c), det in zip(sums, determinants, strict=True)]
         return self._whole - sum(w * x for w, x in zip(self._weights, terms, strict=True))
 
     def _log(self, _: Sums, determinants: list[int]) -> arb:
         """A lower bound on ``sum_j w_j log det(L_j P_j)``: one logarithm for all targets of a weight."""
-        with ctx.workprec(OF_PRODUCTS):
-            value = arb(0)
-            for weight, (targets, priors) in self._of_weight.items():
-                product, exponent = 1, -2 * BITS * len(targets)
-                for j in targets:
-                    product *= determinants[j]
-                    spare = max(product.bit_length() - OF_PRODUCTS, 0)
-                    product, exponent = product >> spare, exponent + spare
-                value += weight * (arb(product).log() + exponent * arb(2).log() + priors)
-            return value.lower()
+        value = arb(0)
+        for weight, (targets, priors) in self._of_weight.items():
+            own = determinants if len(self._of_weight) == 1 else [determinants[j] for j in targets]
+            product, exponent = 1, -2 * BITS * len(own)
+            for k in range(0, len(own), AT_ONCE):
+                product *= prod(own[k : k + AT_ONCE])
+                spare = max(product.bit_length() - OF_PRODUCTS, 0)
+                product, exponent = product >> spare, exponent + spare
+            value += weight * (arb(product).log() + exponent * self._log_2 + priors)
+        return value.lower()
 
     def _largest(self, sums: Sums, _: list[int]) -> int | None:
         """A lower bound on the value, in units of ``2^-(OF_VALUES + OF_WEIGHTS)``; ``None`` where none is shown.

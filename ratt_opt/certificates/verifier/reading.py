@@ -16,7 +16,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
-from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 FORMAT = "ratt-opt certificate"
@@ -61,10 +61,11 @@ def walk(name: str, tree: object, root: Any, expand: Any) -> int:
 
     A leaf yields none. Cases are made as they are needed, so that one path is in memory.
     """
-    paths, leaves = [iter([root])], 0
-    for node in array(f"{name} tree", tree):
+    paths, leaves, nodes = [iter([root])], 0, array(f"{name} tree", tree)
+    for done, node in enumerate(nodes):
         check_size(f"{name} tree (depth)", len(paths), DEEPEST_TREE)
         tick()
+        tell(f"{name} proof", done, len(nodes))
         case = _next_case(paths)
         need(case is not None, f"{name} proof: a node is repeated or follows the last leaf")
         below = expand(node, case)

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from flint import fmpq, fmpq_mat
 
-__all__ = ["SECONDS", "hold", "limited", "refuse_wide", "seconds_left", "tick"]
+__all__ = ["SECONDS", "hold", "limited", "refuse_wide", "seconds_left", "tell", "tick", "watched"]
 
 SECONDS = 600.0
 """For one file, unless the caller says otherwise; what the library writes for 30 robots takes seconds."""
@@ -40,6 +40,27 @@ class _Work:
 
 
 _CURRENT: ContextVar[_Work | None] = ContextVar("ratt_opt_verifier_work", default=None)
+
+
+_WATCHER: ContextVar[Callable[[str], None] | None] = ContextVar("ratt_opt_verifier_watcher", default=None)
+TELLING = 100
+"""Cases of a proof between two words about it: a tenth of a second or so where each is long."""
+
+
+@contextmanager
+def watched(say: Callable[[str], None]) -> Iterator[None]:
+    """Have whoever waits for what is checked or covered inside the block told how far it is."""
+    token = _WATCHER.set(say)
+    try:
+        yield
+    finally:
+        _WATCHER.reset(token)
+
+
+def tell(doing: str, done: int, whole: int | None = None) -> None:
+    """Say how many cases are done, of how many where that is known; cheap enough for every case."""
+    if done % TELLING == 0 and (say := _WATCHER.get()) is not None:
+        say(f"{doing}, {done:,} cases" if whole is None else f"{doing}, {done:,} of {whole:,} cases")
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import caa, links_within
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
@@ -62,9 +62,9 @@ class LargestGroup:
         return self.lower == self.upper
 
 
-def largest_left(graph: CommunicationGraph, cut: Iterable[Link]) -> int:
-    """Size of the largest connected component once ``cut`` is gone."""
-    return max(len(group) for group in graph.groups(cut))
+def largest_left(graph: CommunicationGraph, cut: Iterable[Link], ignoring: Collection[int] = ()) -> int:
+    """Robots of the largest connected component once ``cut`` is gone, not counting those to ignore."""
+    return max(len(group.difference(ignoring)) for group in graph.groups(cut))
 
 
 def split_result(

@@ -1,0 +1,102 @@
+"""Weak families of groups of each vector of sizes, by exchanges from several starts: attacks, no claim."""
+
+from __future__ import annotations
+
+from itertools import islice
+from operator import attrgetter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ratt_opt.attackers.task import AttackTask
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.graph.survivor_sizes import Sizes
+
+__all__ = ["WeakFamilies", "weakest_of"]
+
+EXCHANGES_SHARE = 0.3
+"""Of the time, at most spent on exchanges before the bounds: large teams get fewer vectors."""
+
+SHAKEN, SHAKES = 6, 40
+"""Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
+
+WEAK_SETS = 3
+"""Weak sets of its size that a largest group is started from where it is clearly the best one."""
+
+LIKELY, CLEARLY = 0.7, 0.5
+"""Size of the second group, over the largest, up to which that one is likely, or clearly, the best. Measured at 30
+robots: beyond 0.7 a list of the weakest largest groups closes attacks at the paper's budgets but seldom at others,
+where it costs more than it saves."""
+
+
+class WeakFamilies:
+    """Finds families that no exchange makes weaker."""
+
+    def __init__(self, task: AttackTask, team: PlanarTeam) -> None:
+        self._team, self._budget = team, task.budget
+        self._must = np.isin(np.arange(len(team.single)), list(task.problem.threat.protected_robots))
+        self._weak: dict[int, list[frozenset[int]]] = {}
+
+    def exchanged(self, vectors: list[Sizes]) -> list[GroupExchanges]:
+        """A family of each vector, weakest first, as far as the time goes.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        families: list[GroupExchanges] = []
+        part = self._budget.part(EXCHANGES_SHARE)
+        for sizes in vectors:
+            self._budget.check()
+            if families and part.stop() is not None:
+                break
+            family = self._settled(sizes)
+            for largest in () if self._budget.is_over else self._weak_largest(sizes):
+                if self._budget.is_over:
+                    break
+                family.around(largest, self._budget)
+            families.append(family)
+        families.sort(key=attrgetter("value"))
+        for family in families[:SHAKEN]:
+            self._budget.check()
+            family.shake(SHAKES, self._budget)
+        return sorted(families, key=attrgetter("value"))
+
+    def deciding(self, vectors: list[Sizes], largest: int) -> list[GroupExchanges]:
+        """A family of the first vectors whose largest group has that size and is likely to be the best one."""
+        alone = (sizes for sizes in vectors if sizes[0] == largest and _second(sizes) <= LIKELY * largest)
+        return [self._settled(sizes) for sizes in islice(alone, SHAKEN)]
+
+    def start_from(self, families: list[GroupExchanges], sets: Iterable[frozenset[int]]) -> None:
+        """Start the families anew from a few largest groups."""
+        for largest, _ in zip(sets, range(WEAK_SETS), strict=False):
+            for family in families:
+                family.around(largest, self._budget)
+
+    def _settled(self, sizes: Sizes) -> GroupExchanges:
+        family = GroupExchanges(self._team, sizes, self._must)
+        family.weakest(self._budget)
+        return family
+
+    def _weak_largest(self, sizes: Sizes) -> list[frozenset[int]]:
+        """Weak sets of the size of a largest group that alone decides what a family is worth."""
+        if _second(sizes) > CLEARLY * (largest := sizes[0]):
+            return []
+        if largest not in self._weak:
+            self._weak[largest] = weak_sets_of_size(self._team, largest, self._budget)[:WEAK_SETS]
+        return self._weak[largest]
+
+
+def weakest_of(families: list[GroupExchanges]) -> tuple[frozenset[int], ...]:
+    """The groups of the weakest family."""
+    return min(families, key=attrgetter("value")).groups()
+
+
+def _second(sizes: Sizes) -> int:
+    return sizes[1] if len(sizes) > 1 else 0
