@@ -24,8 +24,9 @@ __all__ = ["WinnerDivision", "Winners"]
 
 UNKNOWN, UNDECIDED = -2, -1
 COMPARED = 8
-"""Outcomes of which the one that the fewest groups may win is divided on. With 1 the search for 20 robots at (0, 180),
-max-eigenvalue, leaves 5 % open after 12 s and 2 % after 30 s; with 8 it closes in 16 s; 32 are no better."""
+"""Outcomes of which the one that the fewest groups may win is divided on. Of 20 robots at (0, 180), max-eigenvalue,
+before nodes were attacked whole, 1 left 5 % open after 12 s and 2 % after 30 s; 8 left 1 and 5 % after 12 s and closed
+in 16 s; 32 left 5 % after 12 s."""
 
 
 class Winners:

@@ -101,7 +101,8 @@ SAME_VALUE = 1e-12
 
 
 NEAR = 4
-"""Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew."""
+"""Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew. Not
+tuned."""
 
 
 class Adversary:
@@ -127,7 +128,7 @@ class Adversary:
         return len(self.pool) > known
 
     def _learn_near(self, plan: IntArray) -> bool:
-        """Exchange robots of known outcomes for a worse one, which takes a twentieth of an attack; whether it did."""
+        """Exchange robots of known outcomes for a worse one: few descents where an attack takes hundreds."""
         team = PlanarTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
         if team is None or len(plan) <= SEARCHED_BY_SIZE:
             return False
