@@ -38,6 +38,10 @@ def track(
     beam: Annotated[
         int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all where absent.")
     ] = None,
+    objective: Annotated[
+        Literal["trace", "logdet", "maxeig"],
+        typer.Option("--objective", help="Criterion of plans; no logdet several steps ahead."),
+    ] = "trace",
     motion: Annotated[
         Literal["known velocity", "constant velocity", "coordinated turn"],
         typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
@@ -65,7 +69,7 @@ def track(
         raise InputError("--time-limit", "must come with --planner maxmin", planner)
     scenario = load_scenario(file)
     folder = output_directory(out, *FILES)
-    model = MissionModel(motion=motion, linearisation=linearisation, beam=beam)
+    model = MissionModel(motion=motion, linearisation=linearisation, objective=objective, beam=beam)
     chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
     missions = []
     with Step("flying") as shown:

@@ -147,10 +147,7 @@ def bound(
         k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
         guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, budget, k=k, c=c))
     with steps("certificate"):
-        interrupted = budget.stop() is Stop.INTERRUPTED
-        proof, failure = (
-            (INTERRUPTED, None) if interrupted else _certified(problem, optimum, certificate, whole, source)
-        )
+        proof, failure = _certified(problem, optimum, certificate, whole, source)
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -168,7 +165,7 @@ def bound(
         source=source,
         views=views,
         seeds={"random": RANDOM_SEED},
-        interrupted=interrupted,
+        interrupted=whole.stop() is Stop.INTERRUPTED,
     )
     return _delivered(report, failure)
 
@@ -200,10 +197,15 @@ def _certified(
     problem: Problem, optimum: MaxMinResult, path: str | Path | None, budget: Budget, source: object
 ) -> tuple[Certification, ProofError | None]:
     """The certificate or why there is none, and the fault that the verifier found in our own proof."""
+    if budget.stop() is Stop.INTERRUPTED:
+        return INTERRUPTED, None
     try:
         return certify_if_possible(problem, optimum, path, budget, source=source), None
     except ProofError as failure:
         return Certification(why_not=f"the proof has a fault: {failure}", final=False), failure
+    except KeyboardInterrupt:
+        budget.interrupt()
+        return INTERRUPTED, None
 
 
 def _kept(budget: Budget, step: Callable[[], T]) -> T:

@@ -76,8 +76,8 @@ class Journal:
                 "journal", "must be of the same mission (scenario, seed, all settings), or removed to begin anew", file
             )
         journal.lines = [_decision(file, number, line) for number, line in enumerate(rest)]
-        # Anything after the last whole line goes: the next step is written there.
-        file.write_text("".join(line + "\n" for line in whole), encoding="utf-8")
+        if torn:
+            _drop(file, torn)
         return journal
 
     def recorded(self, step: int) -> tuple[IntArray, Attack] | None:
@@ -95,9 +95,21 @@ class Journal:
 def _lines(file: Path) -> list[str]:
     """Whole lines, and what follows the last of them."""
     try:
-        return file.read_text(encoding="utf-8").split("\n") if file.exists() else [""]
+        return file.read_bytes().decode("utf-8").split("\n") if file.exists() else [""]
     except (OSError, UnicodeDecodeError) as error:
         raise FileFormatError(str(file), "must be a mission's journal", type(error).__name__) from None
+
+
+def _drop(file: Path, torn: str) -> None:
+    """Cut off what follows the last whole line, where the next step is written; whole lines are never written again."""
+    try:
+        os.truncate(file, file.stat().st_size - len(torn.encode()))
+    except OSError as error:
+        raise _unwritable(file, error) from None
+
+
+def _unwritable(file: Path, error: OSError) -> InputError:
+    return InputError("journal", "must be a file that can be written", f"{file} ({error.strerror})")
 
 
 def _write(file: Path, records: Sequence[Mapping[str, Any]]) -> None:
@@ -108,7 +120,7 @@ def _write(file: Path, records: Sequence[Mapping[str, Any]]) -> None:
             stream.flush()
             os.fsync(stream.fileno())
     except OSError as error:
-        raise InputError("journal", "must be a file that can be written", f"{file} ({error.strerror})") from None
+        raise _unwritable(file, error) from None
 
 
 def _sealed(record: Mapping[str, Any]) -> str:

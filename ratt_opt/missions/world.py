@@ -23,8 +23,7 @@ from ratt_opt.missions.models.robots import robot_motion
 from ratt_opt.missions.models.sensors import SensorModel, robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, target_motion
 from ratt_opt.problem import Attack, Problem
-from ratt_opt.setfunctions.criteria.registry import criterion_called
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,8 +50,9 @@ class MissionModel:
     robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
     linearisation : ``"first order"`` is the textbook EKF; ``"second order"`` adds the second-order term to the noise of
         plans and filter, which the EKF is overconfident without; ``"iterated"`` also linearises again at the estimate
-    objective : criterion of a plan; another than the trace only where a single position is planned for
-    output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``
+    objective : criterion of a plan; the log-det only where a single position is planned for
+    output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``. The max-eigenvalue's mean is the
+        worst axis of the errors of all steps together, over their number
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
         a robot that has no other keeps the one that ends nearest to it.
     beam : so many control sequences of each robot are planned with, those worth most alone; all where ``None``
@@ -113,8 +113,9 @@ class World:
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
         object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
-        if self.model.objective != "trace" and self.horizon > 1:
-            raise InputError("objective", "must be trace where a plan looks several steps ahead", self.model.objective)
+        if self.model.objective not in WITH_OUTPUT and self.horizon > 1:
+            rule = f"must be {' or '.join(WITH_OUTPUT)} where a plan looks several steps ahead"
+            raise InputError("objective", rule, self.model.objective)
 
     @property
     def period(self) -> float:
@@ -155,7 +156,7 @@ class World:
         output = output_matrix(self.model.output, self.horizon)
         if output is None:
             return criterion_called(self.model.objective)(prior, information, weights)
-        return TraceObjective(prior, information, weights, output=output)
+        return WITH_OUTPUT[self.model.objective](prior, information, weights, output=output)
 
     def communication(self, poses: FloatArray, standing: Attack) -> CommunicationGraph:
         """The links of robots at poses (N, 3) that have not failed."""

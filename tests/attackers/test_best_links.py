@@ -73,8 +73,9 @@ def test_against_every_choice_of_links(seed):
 def test_against_every_choice_of_links_of_more_teams(seed):
     rng = np.random.default_rng(seed)
     problem = random_problem(rng, int(rng.integers(3, 7)), complete=False)
-    problem = replace(problem, alpha_c=min(problem.alpha_c, 4))
-    check(problem, random_elements(rng, problem), int(rng.integers(1, 4)))
+    few = len(problem.communication.links) <= 8  # more take the definition minutes
+    problem = replace(problem, alpha_c=min(problem.alpha_c, 4 if few else 2))
+    check(problem, random_elements(rng, problem), int(rng.integers(1, 4 if few else 3)))
 
 
 def two_teams():

@@ -37,6 +37,7 @@ OBJECTIVES = {
     "trace of an output": TraceObjective(PRIOR, INFORMATION, WEIGHTS, output=[[1.0, 0.5]]),
     "logdet": LogDetObjective(PRIOR, INFORMATION, WEIGHTS),
     "maxeig": MaxEigenvalueObjective(PRIOR, INFORMATION),
+    "maxeig of an output": MaxEigenvalueObjective(PRIOR, INFORMATION, WEIGHTS, output=[[1.0, 0.5]]),
 }
 MUTANTS = 60
 

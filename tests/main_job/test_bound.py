@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -88,6 +89,16 @@ def test_an_interrupt_ends_every_step_and_keeps_the_bracket():
     assert lines[-2:] == ["curvature and guarantees", "certificate"]
     assert report.optimum.lower <= ro.solve_maxmin(report.problem, gap=1e-6).upper
     assert ro.solve_maxmin(report.problem, gap=1e-6).lower <= report.upper * (1 + 1e-9)
+
+
+def test_an_interrupt_while_the_certificate_is_written_keeps_the_report(monkeypatch, tmp_path):
+    monkeypatch.setattr("ratt_opt.certificates.write.upper_record", lambda *_: signal.raise_signal(signal.SIGINT))
+    file = tmp_path / "certificate.json"
+    report = ro.bound(ro.random_scenario(4, 4, alpha_s=1, alpha_c=2, seed=0), certificate=file)
+    assert report.interrupted
+    assert report.certificate.why_not.startswith("interrupted")
+    assert report.optimum.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_proof_with_a_fault_raises_and_keeps_the_report(tmp_path, monkeypatch):

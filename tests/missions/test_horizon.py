@@ -19,10 +19,16 @@ from tests.oracles import brute_force_worst_case
 
 
 def world_of(  # noqa: PLR0917
-    horizon, output="mean", motion="known velocity", n_robots=3, seed=1, controls=((1.0, 0.0), (3.0, 1.0), (-3.0, 3.0))
+    horizon,
+    output="mean",
+    motion="known velocity",
+    n_robots=3,
+    seed=1,
+    controls=((1.0, 0.0), (3.0, 1.0), (-3.0, 3.0)),
+    objective="trace",
 ):
     scenario = random_scenario(n_robots, 3, alpha_s=1, alpha_c=min(2, n_robots - 1), seed=seed, controls=controls)
-    return World(scenario, MissionModel(motion=motion, output=output), horizon)
+    return World(scenario, MissionModel(motion=motion, output=output, objective=objective), horizon)
 
 
 def problem_of(world):
@@ -34,10 +40,15 @@ def problem_of(world):
     ), kept
 
 
+def largest(covariances) -> float:
+    return float(np.linalg.eigvalsh(covariances)[..., -1].max())
+
+
+@pytest.mark.parametrize("objective", ["trace", "maxeig"])
 @pytest.mark.parametrize("motion", ["known velocity", "constant velocity", "coordinated turn"])
 @pytest.mark.parametrize("horizon", [1, 2, 3])
-def test_the_last_step_is_the_kalman_filters(motion: str, horizon: int) -> None:
-    world = world_of(horizon, "last", motion)
+def test_the_last_step_is_the_kalman_filters(motion: str, horizon: int, objective: str) -> None:
+    world = world_of(horizon, "last", motion, objective=objective)
     problem, kept = problem_of(world)
     plan = np.array([choice[len(choice) // 2] for choice in problem.choices])
     belief = first = world.motion.initial(world.scenario)
@@ -56,9 +67,23 @@ def test_the_last_step_is_the_kalman_filters(motion: str, horizon: int) -> None:
             whole = np.zeros_like(covariance)
             whole[:, :2, :2] = about
             covariance = np.linalg.inv(np.linalg.inv(covariance) + whole)
-    left = covariance[:, :2, :2].trace(axis1=1, axis2=2).sum()
-    prior = ahead[-1].covariance[:, :2, :2].trace(axis1=1, axis2=2).sum()
-    assert problem.objective(plan) == pytest.approx(prior - left, rel=1e-8)
+    before, after = ahead[-1].covariance[:, :2, :2], covariance[:, :2, :2]
+    if objective == "trace":
+        expected = before.trace(axis1=1, axis2=2).sum() - after.trace(axis1=1, axis2=2).sum()
+    else:
+        expected = largest(before) - largest(after)
+    assert problem.objective(plan) == pytest.approx(expected, rel=1e-8)
+
+
+def test_the_worst_axis_of_all_steps() -> None:
+    """Of the errors of all steps together, over their number: between that of the worst step and as much of it."""
+    problem, _ = problem_of(world_of(2, "mean", objective="maxeig"))
+    f = problem.objective
+    plan = [choice[1] for choice in problem.choices]
+    covariance = np.linalg.inv(np.linalg.inv(f.prior) + f.information[plan].sum(axis=0))
+    assert f(plan) == pytest.approx((largest(f.prior) - largest(covariance)) / 2)
+    steps = [largest(covariance[:, 2 * h : 2 * h + 2, 2 * h : 2 * h + 2]) for h in range(2)]
+    assert max(steps) / 2 <= f.prior_criterion - f(plan) <= max(steps) * (1 + 1e-9)
 
 
 def test_the_mean_is_that_of_the_steps() -> None:
@@ -81,15 +106,17 @@ def test_one_step_is_todays_problem() -> None:
     assert np.array_equal(problem.objective.information, today.objective.information)
 
 
+@pytest.mark.parametrize("objective", ["trace", "maxeig"])
 @pytest.mark.parametrize("seed", range(3))
-def test_worst_attacks_over_two_steps(seed: int) -> None:
-    problem, _ = problem_of(world_of(2, "mean", "constant velocity", seed=seed))
+def test_worst_attacks_over_two_steps(seed: int, objective: str) -> None:
+    problem, _ = problem_of(world_of(2, "mean", "constant velocity", seed=seed, objective=objective))
     plan = ratt(problem).elements
     assert worst_case_attack(problem, plan).upper == pytest.approx(brute_force_worst_case(problem, plan), rel=1e-9)
 
 
-def test_the_optimum_over_two_steps_is_that_of_all_plans() -> None:
-    world = world_of(2, n_robots=2, controls=((1.0, 0.0), (3.0, 1.0)))
+@pytest.mark.parametrize("objective", ["trace", "maxeig"])
+def test_the_optimum_over_two_steps_is_that_of_all_plans(objective: str) -> None:
+    world = world_of(2, n_robots=2, controls=((1.0, 0.0), (3.0, 1.0)), objective=objective)
     problem, _ = problem_of(world)
     best = max(brute_force_worst_case(problem, plan) for plan in product(*(c.tolist() for c in problem.choices)))
     found = solve_maxmin(problem)
@@ -115,6 +142,15 @@ def test_dropped_sequences_are_dominated_exactly() -> None:
             assert a >= 0
             assert a * c >= b * b
     assert undominated(information, np.arange(6))[1] == {}
+
+
+@pytest.mark.parametrize("output", ["mean", "last"])
+def test_missions_look_ahead_for_the_worst_axis(output: str) -> None:
+    world = world_of(2, output, objective="maxeig")
+    mission = run_mission(world.scenario, steps=3, horizon=2, model=world.model)
+    assert len(mission.steps) == 3
+    with pytest.raises(InputError, match="objective must be trace or maxeig where a plan looks several steps ahead"):
+        world_of(2, objective="logdet")
 
 
 @pytest.mark.parametrize("objective", ["logdet", "maxeig"])

@@ -271,6 +271,23 @@ def test_bad_models_and_journals(tmp_path) -> None:
         assert journal.read_text() == text
 
 
+def test_going_on_never_writes_whole_lines_again(tmp_path, monkeypatch) -> None:
+    """On a full disk, or killed just then, they would be lost."""
+    journal = tmp_path / "j"
+    run_mission(scenario_of(), steps=2, journal=journal)
+    before = journal.read_bytes()
+    journal.write_bytes(before + b'{"step"')
+    with monkeypatch.context() as full:
+        full.setattr(type(journal), "write_text", lambda *_, **__: pytest.fail("written again"))
+        full.setattr(type(journal), "open", lambda *_, **__: pytest.fail("written again"))
+        full.setattr(type(journal), "read_bytes", lambda _: before + b'{"step"')
+        run_mission(scenario_of(), steps=2, journal=journal)
+    assert journal.read_bytes() == before
+    journal.write_bytes(before[:-20])
+    run_mission(scenario_of(), steps=2, journal=journal)
+    assert journal.read_bytes() == before
+
+
 def test_a_damaged_journal_is_refused_by_its_line(tmp_path) -> None:
     journal = tmp_path / "j"
     run_mission(scenario_of(), steps=2, journal=journal)

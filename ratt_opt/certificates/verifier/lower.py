@@ -157,15 +157,16 @@ class LowerCheck:
     def _are_worth(self, cases: list[list[fmpq_mat]], count: int, lower: fmpq) -> bool:
         if lower <= 0 and all(definite(m - i) >= 0 for x in cases for m, i in zip(x, self.about.inverse, strict=True)):
             return True  # at least the prior's information is worth at least phi(empty set) = 0
-        if self.about.objective != "maxeig" or self.about.d == 2:
+        if self.about.objective != "maxeig" or (self.about.d == 2 and self.about.output is None):
             return bool(total(sorted(map(self._value, cases))[:count]) >= lower * count)
-        # Each case is worth it if lambda_max(L^{-1}) <= room / w for its targets, decided as L - (w / room) I >= 0.
+        # Each case is worth it if lambda_max(C L^{-1} C') <= room / w for its targets. With L > 0 that is
+        # L - (w / room) C'C >= 0: both say that [[L, C'], [C, (room / w) I]] >= 0 (Schur).
         room = self.about.prior_low - lower
-        pairs = (pair for x in cases for pair in zip(self.about.weights, x, strict=True))
-        return bool(room > 0) and all(definite(m - self.about.identity * (w / room)) >= 0 for w, m in pairs)
+        parts = (part for x in cases for part in zip(self.about.weights, self.about.square, x, strict=True))
+        return bool(room > 0) and all(definite(m - square * (w / room)) >= 0 for w, square, m in parts)
 
     def _value(self, posterior: list[fmpq_mat]) -> Any:
-        """Return a lower bound on the criterion (max-eigenvalue: d = 2), sharper at a higher precision."""
+        """Return a lower bound on the criterion (max-eigenvalue: of two coordinates), sharper at a higher precision."""
         tick()
         pairs = list(zip(self.about.weights, posterior, strict=True))
         if self.about.objective == "maxeig":

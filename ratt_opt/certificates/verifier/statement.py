@@ -22,9 +22,10 @@ LARGEST_TEAM = 1000
 class Statement:
     """One problem and plan, in exact numbers.
 
-    ``output`` : the part C (q, d) of each target's state whose trace counts, or ``None`` for the whole state.
+    ``output`` : the part C (q, d) of each target's state that counts, or ``None`` for all of it. ``square`` : C'C.
     ``defect[e][j]`` : what has to be added to the eigenvalues of element ``e``'s information of target ``j`` to make it
-    positive semidefinite. ``prior_low``, ``prior_high`` : bounds on ``max_j w_j lambda_max(prior_j)`` (max-eigenvalue).
+    positive semidefinite. ``prior_low``, ``prior_high`` : bounds on ``max_j w_j lambda_max(C prior_j C')``
+    (max-eigenvalue).
 
     Raises
     ------
@@ -38,7 +39,7 @@ class Statement:
         output = given.pop() if has_output else None
         kind, d, prior, information, weights, owners, pairs, blinded, cut, *safe = given
         need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
-        need(not has_output or kind == "trace", "problem: only the trace has an output")
+        need(not has_output or kind != "logdet", "problem: the log-det has no output")
         self.objective, self.d = kind, index("dimension", d, 101)
         self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(array("prior", prior))]
         m = len(self.prior)
@@ -78,8 +79,8 @@ class Statement:
         """What the checks need; information must be semidefinite but for rounding."""
         self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
         self.inverse = [self._inverse(p) for p in self.prior]
-        squares = [c.transpose() * c for c in self.output] if self.output else [self.identity] * len(self.prior)
-        parts = zip(self.weights, squares, self.prior, strict=True)
+        self.square = [c.transpose() * c for c in self.output] if self.output else [self.identity] * len(self.prior)
+        parts = zip(self.weights, self.square, self.prior, strict=True)
         self.prior_trace = total(w * trace(square * p) for w, square, p in parts)
         self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
         self.prior_low, self.prior_high = self._check_prior_range(prior_range)
@@ -97,12 +98,19 @@ class Statement:
         return inverse
 
     def _check_prior_range(self, given: object) -> tuple[fmpq, fmpq]:
-        """Check ``low <= max_j w_j lambda_max(prior_j) <= high`` (max-eigenvalue only; empty otherwise)."""
+        """Check ``low <= max_j w_j lambda_max(C prior_j C') <= high`` (max-eigenvalue only; empty otherwise)."""
         if self.objective != "maxeig":
             array("prior_eigenvalue", given, 0)
             return fmpq(0), fmpq(0)
         low, high = (exact("prior_eigenvalue", x) for x in array("prior_eigenvalue", given, 2))
-        pairs = list(zip(self.weights, self.prior, strict=True))
-        need(all(definite(self.identity * (high / w) - p) >= 0 for w, p in pairs), "prior_eigenvalue: upper too small")
-        need(any(definite(self.identity * (low / w) - p) <= 0 for w, p in pairs), "prior_eigenvalue: lower too large")
+        outputs = self.output or [self.identity] * len(self.prior)
+        pairs = [(w, c * p * c.transpose()) for w, c, p in zip(self.weights, outputs, self.prior, strict=True)]
+        need(all(definite(_scaled(high / w, p) - p) >= 0 for w, p in pairs), "prior_eigenvalue: upper too small")
+        need(any(definite(_scaled(low / w, p) - p) <= 0 for w, p in pairs), "prior_eigenvalue: lower too large")
         return low, high
+
+
+def _scaled(value: fmpq, like: fmpq_mat) -> fmpq_mat:
+    """``value`` times the identity of the size of another matrix."""
+    q = like.nrows()
+    return fmpq_mat(q, q, [value if i == j else 0 for i in range(q) for j in range(q)])

@@ -169,7 +169,8 @@ class UpperCheck:
 
         trace:  tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y), from (L^{-1} - Y) L (L^{-1} - Y) >= 0; W = w Y^2.
         logdet: logdet L <= tr(Y L) - logdet Y - d, from log x <= x - 1 for the eigenvalues of Y L; W = w Y.
-        maxeig: lambda_max(L^{-1}) >= 1/q >= 2t - t^2 q with q = v'Lv / v'v; W = w t^2 vv' / v'v for one target.
+        maxeig: lambda_max(C L^{-1} C') >= 1/q >= 2t - t^2 q with q = v'Lv / |Cv|^2; W = w t^2 vv' / |Cv|^2 for one
+        target. With u = Cv / |Cv| and z = C'u, (z'v)^2 <= (z' L^{-1} z) (v'Lv) (Cauchy), and z'v = |Cv|.
         """
         tick()
         d, m = self.about.d, len(self.about.prior)
@@ -177,8 +178,9 @@ class UpperCheck:
             target, size, vector = array("point", point, 3)
             j, t = index("point target", target, m), exact("point t", size)
             v = fmpq_mat(d, 1, [exact("point v", x) for x in array("point v", vector, d)])
-            need(any(v.entries()), "upper proof: a direction v is zero")
-            weight = v * v.transpose() * (self.about.weights[j] * t * t / trace(v.transpose() * v))
+            seen = (v.transpose() * self.about.square[j] * v)[0, 0]
+            need(seen > 0, "upper proof: a direction v is zero, or so is its output")
+            weight = v * v.transpose() * (self.about.weights[j] * t * t / seen)
             blank = [fmpq(0)] * (d * d)
             constant = self.about.prior_high - 2 * self.about.weights[j] * t + trace(weight * self.about.inverse[j])
             return blank * j + weight.entries() + blank * (m - j - 1), constant

@@ -6,21 +6,31 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective, OutputMaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.names import CLASSES
-from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective
+from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective, TraceObjective
 
 if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["CERTIFIED", "CRITERIA", "criterion_called"]
+__all__ = ["CERTIFIED", "CRITERIA", "WITH_OUTPUT", "criterion_called"]
 
 CRITERIA: dict[str, type[InformationObjective]] = {
     name: getattr(import_module(f"ratt_opt.setfunctions.criteria.{name}"), kind) for name, kind in CLASSES.items()
 }
 """By their names, in the order of ``names.py``."""
 
-CERTIFIED: tuple[type[InformationObjective], ...] = (*CRITERIA.values(), OutputTraceObjective)
+CERTIFIED: tuple[type[InformationObjective], ...] = (
+    *CRITERIA.values(),
+    OutputTraceObjective,
+    OutputMaxEigenvalueObjective,
+)
 """Criteria whose tangents the verifier knows; subclasses of them may have another formula."""
+
+WITH_OUTPUT: dict[str, type[TraceObjective | MaxEigenvalueObjective]] = {
+    kind.name: kind for kind in (TraceObjective, MaxEigenvalueObjective)
+}
+"""Those that can be of a part of the state, ``output=C``."""
 
 
 def criterion_called(name: str) -> type[InformationObjective]:

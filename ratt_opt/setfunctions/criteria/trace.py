@@ -29,8 +29,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from ratt_opt._validation import check_finite, readonly
-from ratt_opt.errors import InputError
+from ratt_opt._validation import readonly
+from ratt_opt.setfunctions.criteria.outputs import check_output
 from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
@@ -210,7 +210,7 @@ class OutputTraceObjective(TraceObjective):
         *,
         output: ArrayLike | None = None,
     ) -> None:
-        self.output: FloatArray = readonly(_check_output(output, prior))
+        self.output: FloatArray = check_output(output, prior)
         self._square: FloatArray = readonly(np.swapaxes(self.output, -1, -2) @ self.output)
         super().__init__(prior, information, weights)
 
@@ -267,19 +267,6 @@ class OutputTraceObjective(TraceObjective):
     def _fenchel(self, point: FloatArray) -> FloatArray:
         """(M, d, q) ``L^{-1} C'``."""
         return np.asarray(symmetric_inverse(point) @ np.swapaxes(self.output, -1, -2))
-
-
-def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
-    """(M, q, d) matrices of full row rank."""
-    targets, d = check_finite("prior", prior, ndim=3).shape[:2]
-    matrices = given = check_finite("output", output)
-    if matrices.ndim == 2:
-        matrices = np.broadcast_to(matrices, (targets, *matrices.shape))
-    if matrices.ndim != 3 or matrices.shape[0] != targets or matrices.shape[2] != d or not 1 <= matrices.shape[1] <= d:
-        raise InputError("output", f"must have shape (q, {d}) or ({targets}, q, {d}), 1 <= q <= {d}", given.shape)
-    if (np.linalg.matrix_rank(matrices) < matrices.shape[1]).any():
-        raise InputError("output", "must have independent rows", given.shape)
-    return matrices
 
 
 def _upper_eigenvalues(root: FloatArray, matrices: FloatArray) -> FloatArray:

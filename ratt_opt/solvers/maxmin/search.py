@@ -203,17 +203,27 @@ class BranchAndBound:
         return node
 
     def _first_node(self) -> TreeNode:
-        """The root, bounded by one tangent cut of the best plan's worst attack where its winner is decided."""
+        """The root, bounded by tangent cuts of known outcomes whose winner is decided.
+
+        They touch at the best plan; one touches where each robot has all its elements: no plan has more information, so
+        there the tangent is at most what all elements are worth together.
+        """
         node = TreeNode(choices=self.task.choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
-        points = self.pool.group_points(self.task.objective.information[self.incumbent.candidates.best])
+        objective = self.task.objective
+        points = self.pool.group_points(objective.information[self.incumbent.candidates.best])
         for outcome in range(len(self.pool)):
             winner = self.winners.of(node, outcome)
             if winner is None:
                 continue
-            k = self.cuts.tangent(outcome, winner, points[winner])
-            self.rounds.use(k)
-            leaf = Leaf(cuts=(k,), weights=(1.0,))
-            node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])
+            touched = [points[winner]]
+            if not len(self.cuts):
+                own = np.isin(self.task.problem.robot, self.pool.groups[winner])
+                touched.append(objective.posterior_information(np.flatnonzero(own)))
+            for point in touched:
+                k = self.cuts.tangent(outcome, winner, point)
+                self.rounds.use(k)
+                leaf = Leaf(cuts=(k,), weights=(1.0,))
+                node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])
             if len(self.cuts) >= 4 * CUTS_A_ROUND:
                 break
         return node

@@ -11,7 +11,6 @@ import pytest
 
 from ratt_opt import (
     InputError,
-    MaxEigenvalueObjective,
     Problem,
     ProofError,
     TraceObjective,
@@ -115,19 +114,6 @@ def test_certificates_are_written_and_have_teeth(tmp_path) -> None:
         path.write_text(json.dumps(bad))
         with pytest.raises(ProofError):
             verify_certificate(path)
-
-
-def test_an_output_is_of_the_trace_only(tmp_path) -> None:
-    problem = part_problem(np.random.default_rng(7), n_robots=2)
-    path = tmp_path / "certificate.json"
-    certify(problem, solve_maxmin(problem), path)
-    document = json.loads(path.read_text())
-    document["problem"]["objective"] = "logdet"
-    path.write_text(json.dumps(document))
-    with pytest.raises(ProofError, match="only the trace has an output"):
-        verify_certificate(path)
-    with pytest.raises(TypeError):
-        MaxEigenvalueObjective(np.eye(2)[None], np.eye(2)[None, None], output=np.eye(2))  # type: ignore[call-arg]
 
 
 def test_copies_and_refusals() -> None:
