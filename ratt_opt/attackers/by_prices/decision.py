@@ -12,12 +12,12 @@ Source: for the second step, Baldacci, Christofides and Mingozzi, Mathematical P
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, cheap_group
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Answer", "Threshold", "ThresholdDecision"]
+__all__ = ["ThresholdDecision"]
 
 SHARES = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
 """Mixtures of the two bounds of the enumeration. Measured at 24 robots: five flows visit a half to a seventh of the
@@ -69,26 +69,6 @@ GLANCE, COVERS = 0.05, 100_000
 
 QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node (some 20 microseconds), and before it is listed."""
-
-
-class Threshold(Enum):
-    """What became of a threshold."""
-
-    REFUTED = "refuted"
-    REACHED = "reached"
-    OPEN = "open"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
-    """``partition`` : an attack below the threshold, where it is reached.
-
-    ``prices`` : that no weak group pays and that claim more links than the budget, where these refuted it
-    """
-
-    verdict: Threshold
-    partition: Partition | None = None
-    prices: PriceVector | None = None
 
 
 @dataclass(frozen=True, slots=True)
