@@ -197,9 +197,11 @@ let lower_proof value =
       match fields "lower proof" [ "kind"; "tree" ] value with
       | [ _; tree ] -> AttackTree (consume "lower" (array "lower tree" tree) (fun next -> attack_node next 0 0))
       | _ -> assert false)
+  | Some (String "group_prices") ->
+      format "lower proof" "of kind group_prices is decided by ratt-opt verify alone"
   | _ ->
       if fields "lower proof" [ "kind" ] value <> [ String "enumerated" ] then
-        raise (Fault "lower proof: the kind must be attack_tree, forced_size or enumerated");
+        raise (Fault "lower proof: the kind must be attack_tree, forced_size, group_prices or enumerated");
       NoLower
 
 let attack value =

@@ -92,8 +92,8 @@ def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int
     The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
     on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
     largest group small and one that makes the most seeing robots few, and the better one is annealed, up to
-    ``MOST_ANNEALED`` links: the number returned is achievable, and a larger one only weakens the
-    guarantee, as a spent ``budget`` does.
+    ``MOST_ANNEALED`` links: the number returned is achievable, and a larger one only weakens the guarantee, as a spent
+    ``budget`` does.
     """
     threat = problem.threat
     if threat.links_alike:
@@ -107,10 +107,11 @@ def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int
         return next(g for g in range(problem.n_robots + 1) if test.split(float(g)) is not None)
     tried = (heuristic_cut(cuts_only, budget), heuristic_cut(cuts_only, budget, ignoring=blinded))
     cut = min(tried, key=lambda one: largest_left(graph, one, blinded))
-    if len(graph.links) <= MOST_ANNEALED and largest_left(graph, cut, blinded) > 1:
+    part = (budget or Budget()).part(ANNEALING_SHARE)
+    if len(graph.links) <= MOST_ANNEALED and largest_left(graph, cut, blinded) > 1 and part.stop() is None:
         from ratt_opt.graph.largest_group.annealed_cut import annealed_cut  # compiles
 
-        cut = annealed_cut(cuts_only, cut, 1, (budget or Budget()).part(ANNEALING_SHARE), ignoring=blinded)
+        cut = annealed_cut(cuts_only, cut, 1, part, ignoring=blinded)
     return largest_left(graph, cut, blinded)
 
 

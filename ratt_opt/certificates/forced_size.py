@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.certificates.lower import COVERING
+from ratt_opt.certificates.plan_sets import COVERING
 from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion

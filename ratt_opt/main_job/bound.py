@@ -129,8 +129,7 @@ def bound(
     """
     check_limits(gap, time_limit)
     began = datetime.now(UTC)
-    problem = _problem_of(scenario_or_problem, objective)
-    source = None if isinstance(scenario_or_problem, Problem) else scenario_or_problem
+    problem, source = _problem_of(scenario_or_problem, objective)
     check_workers(problem, workers)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
@@ -217,14 +216,15 @@ def _kept(budget: Budget, step: Callable[[], T]) -> T:
         return step()
 
 
-def _problem_of(given: HasProblem | Problem, objective: str | None) -> Problem:
+def _problem_of(given: HasProblem | Problem, objective: str | None) -> tuple[Problem, HasProblem | None]:
+    """The problem, and what it was made from where that is known."""
     if isinstance(given, Problem):
         if objective is not None:
             raise InputError("objective", "must be absent where a problem is given (it has its own)", objective)
-        return given
+        return given, None
     if not isinstance(given, HasProblem):
         raise InputError("scenario_or_problem", "must be a scenario or a Problem", type(given).__name__)
-    return given.problem() if objective is None else given.problem(objective)
+    return (given.problem() if objective is None else given.problem(objective)), given
 
 
 def _baselines(problem: Problem, budget: Budget) -> Iterator[PlanAssessment]:

@@ -8,9 +8,10 @@ from flint import fmpq
 
 from ratt_opt import random_scenario, ratt, worst_case_attack
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-from ratt_opt.certificates import forced_size, lower
+from ratt_opt.certificates import forced_size, lower, size_tree
 from ratt_opt.certificates.forced_size import forced_size_tree
-from ratt_opt.certificates.lower import _Cases, _ForcedSize
+from ratt_opt.certificates.plan_sets import PlanSets
+from ratt_opt.certificates.size_tree import _SizeTree
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.work import limited, watched
@@ -61,7 +62,7 @@ def test_covers_are_smaller_than_those_that_decide_the_weakest_robot_first(kind)
         problem, elements, team, size, weakest = case(kind, seed)
         level = weakest * (1 - 1e-12)
         ours.append(len(forced_size_tree(team, size, level, 100_000)))
-        plain.append(len(_ForcedSize(_Cases(problem, elements, level), size, 100_000).run()))
+        plain.append(len(_SizeTree(PlanSets(problem, elements, level), size, 100_000).run()))
     assert sum(ours) < 0.9 * sum(plain)
 
 
@@ -89,5 +90,5 @@ def test_larger_teams_have_compiled_covers_and_small_ones_plain_ones(monkeypatch
     level = weakest * (1 - 1e-12)
     expected = forced_size_tree(team, size, level, 100_000)
     assert lower.lower_proof(problem, elements, level)["tree"] == expected
-    monkeypatch.setattr(lower, "LARGEST_PLAIN", 14)
+    monkeypatch.setattr(size_tree, "LARGEST_PLAIN", 14)
     assert lower.lower_proof(problem, elements, level)["tree"] != expected

@@ -22,7 +22,10 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
+from ratt_opt.certificates.forced_by_trees import forced_size_proof
+from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.lower import ENUMERATED
+from ratt_opt.certificates.plan_sets import PlanSets
 from tests.strategies import information_data
 
 if TYPE_CHECKING:
@@ -54,12 +57,19 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
             made[f"{name}, {links}"] = json.loads(path.read_text(encoding="utf-8"))
     made["enumerated"] = made["trace, path"] | {"lower": ENUMERATED}
     made["with its source"] = made["trace, path"] | {"made_from": "0123456789abcdef" * 4}
+    problem = Problem(OBJECTIVES["trace"], np.repeat(np.arange(3), 2), nx.path_graph(3), 1, 1, protected_robots={0})
+    plan, lower = np.array(made["trace, path"]["plan"]), made["trace, path"]["claim"]["lower"]
+    sets = PlanSets(problem, plan, lower * (1 - 1e-13))
+    made["group_prices"] = made["trace, path"] | {"lower": group_price_proof(sets, 1000)}
+    low = made["trace, path"]["claim"] | {"lower": 0.0}
+    sized = forced_size_proof(PlanSets(problem, plan, 0.0), 1000)
+    made["trees"] = made["trace, path"] | {"claim": low, "lower": sized}
     return made
 
 
 def test_every_kind_is_covered(documents: dict[str, Any], schema: jsonschema.Draft202012Validator) -> None:
     assert {document["lower"]["kind"] for document in documents.values()} == {
-        "forced_size", "attack_tree", "enumerated",
+        "forced_size", "attack_tree", "group_prices", "enumerated",
     }  # fmt: skip
     assert any("attack" in node for document in documents.values() for node in document["upper"]["tree"])
     for document in documents.values():

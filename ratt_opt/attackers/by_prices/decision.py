@@ -12,12 +12,12 @@ Source: for the second step, Baldacci, Christofides and Mingozzi, Mathematical P
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, cheap_group
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Answer", "Threshold", "ThresholdDecision"]
+__all__ = ["ThresholdDecision"]
 
 SHARES = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
 """Mixtures of the two bounds of the enumeration. Measured at 24 robots: five flows visit a half to a seventh of the
@@ -69,22 +69,6 @@ GLANCE, COVERS = 0.05, 100_000
 
 QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node (some 20 microseconds), and before it is listed."""
-
-
-class Threshold(Enum):
-    """What became of a threshold."""
-
-    REFUTED = "refuted"
-    REACHED = "reached"
-    OPEN = "open"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
-    """``partition`` : an attack below the threshold, where it is reached."""
-
-    verdict: Threshold
-    partition: Partition | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,9 +120,9 @@ class ThresholdDecision:
         while budget.nodes - spent < nodes:
             found = self._settled(threshold, budget)
             if found.links > self.threat.alpha_c + MARGIN:
-                verdict = self._refute(threshold, size, budget)
-                if verdict is not None:
-                    return Answer(verdict=verdict)
+                answer = self._refute(threshold, size, budget)
+                if answer is not None:
+                    return answer
                 continue
             verdict = self._answered(found, (threshold, size, -LOWERED), budget)
             if verdict is Threshold.REFUTED:
@@ -149,7 +133,22 @@ class ThresholdDecision:
                 self._attempt *= LONGER
         return Answer(verdict=Threshold.OPEN)
 
-    def _refute(self, threshold: float, size: int, budget: Budget) -> Threshold | None:
+    def refuting_prices(self, threshold: float, budget: Budget, nodes: int) -> PriceVector | None:
+        """Prices that refute the threshold without covers; ``None`` where there are none, or not after so many nodes.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        size, spent = self._sizes.largest(threshold, budget), budget.nodes
+        self._attempt = FIRST_ATTEMPT
+        while budget.nodes - spent < nodes and self._settled(threshold, budget).links > self.threat.alpha_c + MARGIN:
+            answer = self._refute(threshold, size, budget)
+            if answer is not None:
+                return answer.prices if answer.verdict is Threshold.REFUTED else None
+        return None
+
+    def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
         """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
 
         The prices furthest below what known groups cost prune best, once the groups that pay them are known: they soon
@@ -162,14 +161,14 @@ class ThresholdDecision:
             if answer is None:
                 break
             if answer is not Threshold.REACHED:
-                return answer
+                return Answer(verdict=answer, prices=slackest)
         found = self._settled(threshold, budget)
         if found.links <= links:
             return None
         for prices in (found.scaled(links), found.for_robots(links, self.threat.n_blinded)):
             answer = self._answered(prices, asked, budget)
             if answer is not None:
-                return answer if answer is not Threshold.REACHED else None
+                return None if answer is Threshold.REACHED else Answer(verdict=answer, prices=prices)
         self._attempt *= LONGER
         return None
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.by_prices.decision import Threshold, ThresholdDecision
+from ratt_opt.attackers.by_prices.answer import Threshold
+from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links

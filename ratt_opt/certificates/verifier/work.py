@@ -40,8 +40,6 @@ class _Work:
 
 
 _CURRENT: ContextVar[_Work | None] = ContextVar("ratt_opt_verifier_work", default=None)
-
-
 _WATCHER: ContextVar[Callable[[str], None] | None] = ContextVar("ratt_opt_verifier_watcher", default=None)
 TELLING = 100
 """Cases of a proof between two words about it: a tenth of a second or so where each is long."""

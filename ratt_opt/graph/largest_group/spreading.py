@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["TREES", "TreeProgram", "forced_size", "forced_weight"]
+__all__ = ["TREES", "Tree", "TreeProgram", "forced_size", "forced_size_trees", "forced_weight"]
 
 TREES = "tree inequalities of a linear program, recomputed from their multipliers"
 
@@ -60,6 +60,12 @@ def _size_program(threat: Threat) -> TreeProgram:
     return TreeProgram(threat, np.ones(threat.graph.n_robots, dtype=np.int64))
 
 
+def forced_size_trees(threat: Threat, budget: Budget) -> tuple[int, list[tuple[int, Tree]]]:
+    """The best :func:`forced_size`, and the trees and multipliers that prove it."""
+    program = _size_program(threat)
+    return program.run(budget, threat.graph.n_robots), program.combination
+
+
 def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int) -> int:
     """A weight that every attack leaves to the seeing robots of some group; looks no further than ``enough``.
 
@@ -69,12 +75,17 @@ def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int
 
 
 @dataclass(frozen=True, slots=True)
-class _Tree:
-    """An inequality: ``values`` of its links and robots (``columns``) off ``weight``, that of its robots."""
+class Tree:
+    """An inequality: ``values`` of its links and robots (``columns``) off ``weight``, that of its robots.
+
+    ``steps`` : links (from, to), each from the root or a robot that an earlier one leads to
+    """
 
     columns: IntArray
     values: IntArray
     weight: int
+    root: int
+    steps: tuple[tuple[int, int], ...]
 
 
 class TreeProgram:
@@ -101,19 +112,22 @@ class TreeProgram:
         rows = rows_of([(list(c), [-1.0] * len(c)) for c in columns], [-float(b) for b in self.budgets])
         cost = np.append(0.0 * one, 1.0)
         self.program = LinearProgram(cost, 0.0, np.append(one * self.free, weights.sum() / self.unit), rows=rows)
-        self.trees: list[_Tree] = []
+        self.trees: list[Tree] = []
         self.point, self.size = 0.0 * one, 0.0
         self.inside = self._evenly()
         self.needed = float(self._needed(self.inside)[0].sum(axis=1).max())
         self.multipliers: FloatArray = np.zeros(0)
         self.best, self.is_done = 0, False
+        self.combination: list[tuple[int, Tree]] = []
 
     def run(self, budget: Budget, enough: int) -> int:
         """Add trees until ``enough`` is proved or nothing more can be; the weight proved so far."""
         while not (self.is_done or self.best >= min(enough, self.reachable) or budget.stop() is not None):
             refined = self.refine(budget)
             self.is_done = not budget.is_over and (not refined or len(self.trees) > MOST_TREES)
-            self.best = max(self.best, self.proved)
+            proved = self.proved
+            if proved > self.best:
+                self.best, self.combination = proved, self._combined()
         return self.best
 
     def _evenly(self) -> FloatArray:
@@ -135,7 +149,7 @@ class TreeProgram:
     def refine(self, budget: Budget) -> bool:
         """Add trees and solve again; whether anything was learnt."""
         step = TOWARDS_PROGRAM
-        fresh: list[_Tree] = []
+        fresh: list[Tree] = []
         while not fresh and step <= 1.0 and not budget.is_over:
             at = step * self.point + (1 - step) * self.inside
             kept, distance, before = self._needed(at)
@@ -157,20 +171,22 @@ class TreeProgram:
         self.multipliers = claim.duals[2:]
         return True
 
-    def _tree(self, root: int, kept: FloatArray, distance: FloatArray, before: IntArray) -> _Tree:
+    def _tree(self, root: int, kept: FloatArray, distance: FloatArray, before: IntArray) -> Tree:
         """The shortest paths from ``root`` to the robots that its group keeps."""
         within = np.where(kept > 0, self.weights, 0)
         behind, near = within.tolist(), np.flatnonzero(np.isfinite(distance))
         links: list[tuple[int, int]] = []
+        steps: list[tuple[int, int]] = []
         for robot in near[np.argsort(-distance[near], kind="stable")].tolist():
             if robot != root and behind[robot]:
                 last = before[robot]
                 links.append((self.place[robot, last], behind[robot]))
+                steps.append((int(last), robot))
                 behind[last] += behind[robot]
         columns, values = np.array(links, dtype=np.int64).reshape(-1, 2).T
         (robots,) = np.nonzero(within)
         everything = np.concatenate([columns, self.n_links + robots]), np.concatenate([values, within[robots]])
-        return _Tree(*everything, int(within.sum()))
+        return Tree(*everything, int(within.sum()), root, tuple(reversed(steps)))
 
     @property
     def reachable(self) -> int:
@@ -180,14 +196,18 @@ class TreeProgram:
     @property
     def proved(self) -> int:
         """From the last multipliers, in integers: every attack leaves some group seeing robots of this weight."""
-        weights = np.rint(np.maximum(self.multipliers, 0.0) * SCALE).astype(np.int64)
-        used = np.flatnonzero(weights)
-        if not len(used):
+        used = self._combined()
+        if not used:
             return 0
         total = np.zeros(self.n_links + self.n_robots, dtype=np.int64)
-        for k in used.tolist():
-            total[self.trees[k].columns] += weights[k] * self.trees[k].values
+        for weight, tree in used:
+            total[tree.columns] += weight * tree.values
         hit = [np.sort(part)[::-1] for part in np.split(np.where(self.free, total, 0), [self.n_links])]
-        least = sum(int(weights[k]) * self.trees[k].weight for k in used.tolist())
+        least = sum(weight * tree.weight for weight, tree in used)
         least -= sum(int(part[:b].sum()) for part, b in zip(hit, self.budgets, strict=True))
-        return -(-least // int(weights[used].sum()))
+        return -(-least // sum(weight for weight, _ in used))
+
+    def _combined(self) -> list[tuple[int, Tree]]:
+        """The trees with their multipliers in integers, those of none left out."""
+        weights = np.rint(np.maximum(self.multipliers, 0.0) * SCALE).astype(np.int64)
+        return [(int(weights[k]), self.trees[k]) for k in np.flatnonzero(weights).tolist()]

@@ -10,6 +10,7 @@ from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.errors import InputError
 from ratt_opt.graph.threshold import LARGEST_COMPILED
+from ratt_opt.missions.players.named import player_called
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -49,13 +50,9 @@ def attacker_called(attacker: str | OwnAttacker) -> Attacker:
 
     InputError : there is none of that name, or it cannot be called.
     """
-    if isinstance(attacker, str):
-        if attacker not in ATTACKERS:
-            raise InputError("attacker", f"must be {', '.join(ATTACKERS)} or a callable", attacker)
-        return ATTACKERS[attacker]
-    if not callable(attacker):
-        raise InputError("attacker", f"must be {', '.join(ATTACKERS)} or a callable", attacker)
-    return lambda problem, plan, _seed: attacker(problem, plan)
+    if callable(attacker):
+        return lambda problem, plan, _seed: attacker(problem, plan)
+    return player_called("attacker", attacker, ATTACKERS)
 
 
 def attack_of(found: Attack | AttackResult, problem: Problem) -> Attack:

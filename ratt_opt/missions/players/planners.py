@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_integer
 from ratt_opt.errors import InputError
+from ratt_opt.missions.players.named import player_called
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 
@@ -61,13 +62,7 @@ PLANNERS: dict[str, Planner] = {
 
 def planner_called(planner: str | Planner) -> Planner:
     """The planner of that name, or the given one. InputError : there is none, or it cannot be called."""
-    if isinstance(planner, str):
-        if planner not in PLANNERS:
-            raise InputError("planner", f"must be {', '.join(PLANNERS)} or a callable", planner)
-        return PLANNERS[planner]
-    if not callable(planner):
-        raise InputError("planner", f"must be {', '.join(PLANNERS)} or a callable", planner)
-    return planner
+    return player_called("planner", planner, PLANNERS)
 
 
 def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:

@@ -1,0 +1,79 @@
+"""Whether sets of a plan's robots are worth a threshold, in floating point: what the builders of lower proofs ask."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.certificates.verifier.work import tick
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["COVERING", "MOST_CRITERIA", "NotClosedError", "PlanSets"]
+
+MOST_CRITERIA = 60_000_000
+"""Most criteria of single targets looked at; the verifier looks at half of them, a microsecond or two each."""
+COVERING = "covering all attacks"
+"""What is told while a cover is built."""
+
+
+class NotClosedError(Exception):
+    """The proof is too large, or one of its cases is worth less than the threshold."""
+
+
+@dataclass(slots=True)
+class PlanSets:
+    """The plan's robots, strongest first, and whether a set of them is worth the threshold.
+
+    ``looked_at`` : criteria of single targets so far
+    """
+
+    problem: Problem
+    elements: IntArray
+    threshold: float
+    looked_at: int = 0
+
+    @property
+    def objective(self) -> InformationObjective:
+        """The criterion."""
+        return self.problem.information_objective
+
+    def order(self) -> list[int]:
+        """Robots, strongest first."""
+        return [int(i) for i in np.argsort(-self.objective.singletons()[self.elements], kind="stable")]
+
+    def start(self) -> FloatArray:
+        """The posterior information of nobody, (M, d, d)."""
+        return self.objective.prior_information
+
+    def extend(self, posterior: FloatArray, robot: int) -> FloatArray:
+        """That of a set with one robot more."""
+        return np.asarray(posterior + self.objective.information[self.elements[robot]])
+
+    def enough(self, posterior: FloatArray) -> bool:
+        """Whether a set with this posterior is worth the threshold."""
+        self._count(1)
+        return float(self.objective.value(posterior)) >= self.threshold
+
+    def values(self, posteriors: FloatArray) -> FloatArray:
+        """(K,) values of sets with these posteriors."""
+        self._count(len(posteriors))
+        return np.asarray(self.objective.value(posteriors))
+
+    def completions_enough(self, posteriors: FloatArray, missing: int) -> bool:
+        """Whether the ``missing`` smallest values are worth it on average (see the verifier's leaf -3)."""
+        self._count(len(posteriors))
+        values = np.sort(self.objective.value(posteriors))
+        worth = values[:missing].mean() if self.objective.verifier_averages else values[0]
+        return bool(worth >= self.threshold)
+
+    def _count(self, sets: int) -> None:
+        tick()
+        self.looked_at += sets * self.objective.n_targets
+        if self.looked_at > MOST_CRITERIA:
+            raise NotClosedError

@@ -1,0 +1,64 @@
+"""Proofs that every set of so many robots of a plan is worth a threshold: a tree over its robots."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
+from ratt_opt.certificates.verifier.work import tell
+
+if TYPE_CHECKING:
+    from ratt_opt.certificates.plan_sets import PlanSets
+
+__all__ = ["size_tree"]
+
+LARGEST_PLAIN = 12
+"""Robots up to which a cover is found sooner than compiled code is loaded."""
+
+
+def size_tree(sets: PlanSets, size: int, max_nodes: int) -> list[int]:
+    """Return the tree; compiled for larger teams, where the criterion and its targets have compiled loops.
+
+    Raises
+    ------
+    NotClosedError : a set is worth less, or the tree is too large.
+    """
+    team = PlanarTeam.of(sets.objective, sets.elements)
+    if team is None or sets.problem.n_robots <= LARGEST_PLAIN or size > sets.problem.n_robots:
+        return _SizeTree(sets, size, max_nodes).run()
+    from ratt_opt.certificates.forced_size import forced_size_tree  # compiles
+
+    tree = forced_size_tree(team, size, sets.threshold, max_nodes)
+    if tree is None:
+        raise NotClosedError
+    return tree
+
+
+class _SizeTree:
+    """Include or exclude robots until the included are worth the threshold or too many are out."""
+
+    def __init__(self, sets: PlanSets, size: int, max_nodes: int) -> None:
+        self.sets, self.size, self.max_nodes = sets, size, max_nodes
+
+    def run(self) -> list[int]:
+        order = self.sets.order()[::-1]
+        own = self.sets.objective.information[self.sets.elements[order]]
+        tree: list[int] = []
+        stack = [(self.sets.start(), 0, 0)]
+        while stack:
+            tell(COVERING, len(tree))
+            posterior, depth, out = stack.pop()
+            if out > len(order) - self.size:
+                tree.append(-2)
+            elif self.sets.enough(posterior):
+                tree.append(-1)
+            elif (missing := self.size - depth + out) == 0 or len(tree) > self.max_nodes:
+                raise NotClosedError
+            elif self.sets.completions_enough(posterior + missing * own[depth:], missing):
+                tree.append(-3)
+            else:
+                tree.append(order[depth])
+                stack.append((posterior, depth + 1, out + 1))
+                stack.append((self.sets.extend(posterior, order[depth]), depth + 1, out))
+        return tree
