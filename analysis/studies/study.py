@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from dataclasses import asdict, dataclass, fields
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
@@ -151,7 +152,7 @@ def name_of(member: str | Callable[..., Any]) -> str:
 
 
 def path_of(function: Callable[..., Any]) -> str:
-    """Return the ``module:function`` by which other processes find a function.
+    """Return the ``module:function`` by which other processes find a function; also of the module that was run.
 
     Raises
     ------
@@ -160,7 +161,8 @@ def path_of(function: Callable[..., Any]) -> str:
     module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", "<")
     if module is None or "<" in name:
         raise InputError("study", "must be given functions that stand at the top of a module", repr(function))
-    return f"{module}:{name}"
+    run = sys.modules["__main__"].__spec__ if module == "__main__" else None
+    return f"{module if run is None else run.name}:{name}"
 
 
 def run_trial(study: Study, case: int, trial: int) -> dict[str, Cell]:

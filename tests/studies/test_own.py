@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,7 +12,7 @@ from analysis.studies.engine import run
 from analysis.studies.executors import local_processes
 from analysis.studies.progress import Progress
 from analysis.studies.store import read_table
-from analysis.studies.study import Case, Study, run_trial
+from analysis.studies.study import Case, Study, path_of, run_trial
 from ratt_opt import InputError
 from tests.studies import toy
 from tests.studies.own import STUDY, boldest
@@ -40,6 +42,18 @@ def test_the_definition_names_every_function():
     assert set(STUDY.modules()) == {"analysis.studies.comparison", "tests.studies.own"}
     assert STUDY.fingerprint() != replace(STUDY, planners=("ratt",)).fingerprint()
     assert "problem" not in toy.STUDY.definition()  # older results stay those of their study
+
+
+@pytest.mark.parametrize(("spec", "found"), [(SimpleNamespace(name="tests.own"), "tests.own"), (None, "__main__")])
+def test_a_module_that_is_run_goes_by_its_own_name(monkeypatch, spec, found):
+    """Its journal is then the same whoever runs it."""
+
+    def measure():
+        pass
+
+    measure.__module__, measure.__qualname__ = "__main__", "measure"
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", spec)
+    assert path_of(measure) == f"{found}:measure"
 
 
 @pytest.mark.parametrize(
