@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+from time import sleep
 from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class Interrupts:
         self.happened = False
         self._before: Any = None
         self._hook: Any = None
-        self._met = threading.Event()
+        self._met = False  # no event: its lock would be waited for by the handler that interrupts whoever holds it
 
     def __enter__(self) -> Self:
         main_thread = threading.current_thread() is threading.main_thread()
@@ -38,21 +39,28 @@ class Interrupts:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._met.set()
-        sys.unraisablehook = self._hook
+        try:
+            self._leave()
+        except KeyboardInterrupt:
+            self._leave()
+            raise
+
+    def _leave(self) -> None:
+        self._met = True
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
+        sys.unraisablehook = self._hook
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:
         self.happened = True
-        self._met.set()
+        self._met = True
         signal.default_int_handler(number, frame)
 
     def _dropped(self, what: Any) -> None:
         if issubclass(what.exc_type, KeyboardInterrupt):
             self.happened = True
             # Raised from here it would be dropped again.
-            self._met.clear()
+            self._met = False
             threading.Thread(target=self._again, daemon=True).start()
         elif not self.happened:
             self._hook(what)
@@ -60,8 +68,10 @@ class Interrupts:
     def _again(self) -> None:
         """Interrupt the main thread until it has met that, unless the process would end by it."""
         send = getattr(signal, "pthread_kill", lambda _, number: signal.raise_signal(number))
-        while not self._met.wait(AGAIN_AFTER) and signal.getsignal(signal.SIGINT) == self._interrupt:
+        sleep(AGAIN_AFTER)
+        while not self._met and signal.getsignal(signal.SIGINT) == self._interrupt:
             send(threading.main_thread().ident, signal.SIGINT)
+            sleep(AGAIN_AFTER)
 
 
 def ignore_interrupts() -> None:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from typing import Any
 
 import pytest
 
@@ -70,6 +71,37 @@ def test_one_that_python_drops_comes_again(capsys: pytest.CaptureFixture[str]) -
         gc.collect()
     assert interrupts.happened
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("moment", range(3, 15))
+def test_while_it_stops_looking_for_one(moment: int) -> None:
+    """From its first line on. A lock that the handler takes, and that leaving holds, would never be free again."""
+    before, hook, seen = signal.getsignal(signal.SIGINT), sys.unraisablehook, 0
+
+    def interrupting(*_: object) -> Any:
+        nonlocal seen
+        seen += 1
+        if seen == moment:
+            signal.raise_signal(signal.SIGINT)
+        return interrupting
+
+    def too_long(*_: object) -> None:
+        raise TimeoutError
+
+    alarm = signal.signal(signal.SIGALRM, too_long)
+    signal.alarm(5)
+    interrupts = Interrupts().__enter__()
+    try:
+        sys.settrace(interrupting)
+        interrupts.__exit__()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        sys.settrace(None)
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, alarm)
+    assert signal.getsignal(signal.SIGINT) is before
+    assert sys.unraisablehook is hook
 
 
 def test_without_an_interrupt_errors_of_destructors_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:
