@@ -134,12 +134,15 @@ class _SeeingTree:
         return k is not None
 
     def _closed_by_less(self, node: _Node, filled: _Node) -> bool:
-        """Whether a known bound closes the filled node; as little of the filling as suffices is written down."""
+        """Whether a known bound closes the filled node; as little of the filling as suffices is written down.
+
+        Of the room only with the robots that cannot see: averages over all of the open ones may be too low.
+        """
         if self.bounds.closing(filled.part, filled.room) is None:
             return False
-        for part, room in ((node.part, node.room), (node.part, filled.room), (filled.part, node.room)):
-            if self.bounds.closing(part, room) is not None:
-                filled = _Node(part, filled.posterior, room)
+        for part in (node.part, filled.part):
+            if self.bounds.closing(part, node.room) is not None:
+                filled = _Node(part, filled.posterior, node.room)
                 break
         self._emit(node, filled)
         return self._is_closed(filled.part, filled.room)

@@ -126,8 +126,11 @@ def check_small(seeds, least):
 
 
 def test_small_teams_by_brute_force():
-    """A proof of the worst case is accepted, of more there is none; not every worst case is in reach of prices."""
-    check_small(range(24), 8)
+    """A proof of the worst case is accepted, of more there is none; not every worst case is in reach of prices.
+
+    The last four: fewer robots may see because of an average that robots that cannot see spoil.
+    """
+    check_small([*range(24), 332, 401, 660, 731], 8)
 
 
 @pytest.mark.slow
