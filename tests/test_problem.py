@@ -66,6 +66,9 @@ def test_interleaved_and_ragged_owners() -> None:
         ({"robot": [0, 0, 2, 2]}, "none for robot 1"),
         ({"robot": [0, 0, 1]}, r"robot must have shape \(4,\)"),
         ({"robot": [0.0, 0, 1, 1]}, "robot must hold integers"),
+        ({"robot": [0, False, 1, 1]}, "robot must hold integers"),
+        ({"robot": [0, 0, True, 1]}, "robot must hold integers"),
+        ({"robot": [[0], [0, 1], 1, 1]}, "robot must hold integers"),
         ({"robot": [-1, 0, 1, 1]}, "robot must hold robots >= 0"),
         ({"objective": 3}, "objective must be a SetFunction; got int"),
         ({"graph": nx.path_graph(3)}, r"graph must have the nodes 0..1; got \[0, 1, 2\]"),
@@ -98,6 +101,9 @@ def test_bad_problems_are_refused(change: dict[str, object], text: str) -> None:
         ([0, 4], r"elements\[1\] must be an integer in \[0, 3\]"),
         ([0.0, 2.0], r"elements\[0\] must be an integer"),
         ([[0, 2]], "one element per robot"),
+        ([True, 2], r"elements\[0\] must be an integer in \[0, 3\]; got True"),
+        ([0, 2**70], r"elements\[1\] must be an integer in \[0, 3\]"),
+        ([np.zeros((2, 2)), np.zeros((2, 3))], "one element per robot"),
     ],
 )
 def test_bad_plans_are_refused(elements: object, text: str) -> None:
