@@ -23,6 +23,7 @@ __all__ = ["mission_figure"]
 def mission_figure(missions: Sequence[Mission]) -> Figure:
     """RMSE above NEES, step by step; of several seeds the mean with its 95 % interval (Student's t)."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
     first = missions[0]
     figure = Figure(figsize=(8, 6.5), layout="constrained")
@@ -39,6 +40,7 @@ def mission_figure(missions: Sequence[Mission]) -> Figure:
     below.axhline(first.dimension, color=INK, linewidth=0.8, linestyle="--", label="expected")
     below.set_ylabel("NEES, mean over targets")
     below.set_xlabel("step")
+    below.xaxis.set_major_locator(MaxNLocator(integer=True))
     below.set_ylim(bottom=0)
     for axes in (above, below):
         axes.legend(frameon=False, fontsize=8.5)
