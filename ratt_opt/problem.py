@@ -221,6 +221,13 @@ class Problem:
         return [group - attack.sensing for group in self.communication.groups(attack.links)]
 
 
+def check_problem(problem: Problem) -> Problem:
+    """Return ``problem``. ``InputError`` : it is something else, as a scenario in its place."""
+    if not isinstance(problem, Problem):
+        raise InputError("problem", "must be a Problem, as scenario.problem() returns", type(problem).__name__)
+    return problem
+
+
 def _check_owners(robot: ArrayLike, n_elements: int) -> IntArray:
     owners = integer_array(robot)
     if owners.shape != (n_elements,):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import Shown, counted, plain
-from ratt_opt.problem import Attack
+from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class PlanValues(SetFunction):
     __slots__ = ("evaluations", "objective", "plan")
 
     def __init__(self, problem: Problem, elements: ArrayLike) -> None:
-        self.plan: IntArray = problem.check_plan(elements)
+        self.plan: IntArray = check_problem(problem).check_plan(elements)
         self.objective: SetFunction = problem.objective
         self.evaluations = 0
 
