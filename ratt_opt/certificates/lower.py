@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.attack_tree import AttackTree
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
+from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.size_tree import size_tree
@@ -47,7 +48,7 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     Returns
     -------
     A ``forced_size`` proof where the complete graph allows one, else an ``attack_tree``, a ``forced_size`` proof by
-    trees of links, or ``group_prices``, else ``ENUMERATED``.
+    trees of links, ``group_prices`` or ``group_covers``, else ``ENUMERATED``.
     """
 
     def sets() -> PlanSets:
@@ -67,10 +68,13 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     def by_prices() -> dict[str, Any]:
         return group_price_proof(sets(), max_nodes)
 
-    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices]
+    def by_covers() -> dict[str, Any]:
+        return group_cover_proof(sets(), max_nodes)
+
+    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices, by_covers]
     for way in [by_size, *ways] if problem.communication.is_complete else ways:
         try:
-            with limited(seconds_left() * (1.0 if way is by_prices else SHARE_OF_OTHERS)):
+            with limited(seconds_left() * (1.0 if way is by_covers else SHARE_OF_OTHERS)):
                 return way()
         except (NotClosedError, UndecidedError):
             continue
