@@ -11,7 +11,7 @@ import pytest
 from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, worst_case_attack
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
-from ratt_opt.certificates.verifier.group_covers import Group, first_cover
+from ratt_opt.certificates.verifier.group_covers import Covers, Group
 from tests.certificates.cases import certified
 from tests.certificates.test_group_prices import KINDS, checker, drawn, exact, network
 from tests.certificates.test_group_prices import proof as price_proof
@@ -180,7 +180,7 @@ def test_covers_by_definition():
         def last(mask, every=every, allowed=allowed):
             return every[mask - 1] if mask in allowed else None
 
-        cover = first_cover(groups, n, budgets, last)
+        cover = Covers(groups, n, last, lambda _: 0).first(budgets)
         assert (cover is not None) == by_definition(groups, n, budgets, last)
         found += cover is not None
     assert 30 <= found <= 120

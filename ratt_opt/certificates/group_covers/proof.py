@@ -15,7 +15,7 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
-from ratt_opt.certificates.verifier.group_covers import Group, first_cover
+from ratt_opt.certificates.verifier.group_covers import Covers, Group
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
 
 if TYPE_CHECKING:
@@ -27,6 +27,10 @@ __all__ = ["LARGEST_TEAM", "group_cover_proof"]
 
 LARGEST_TEAM = 60
 """Robots: a group is a mask of 64 bits."""
+
+CASES, STEPS = 600_000, 300_000
+"""Most cases of all trees (a tenth of a millisecond each, twice that on dense graphs), and steps of a search of
+partitions."""
 
 LISTED, PAYING = 50_000, 300
 """Most groups that are listed, and that are added to the program at a time."""
@@ -63,7 +67,7 @@ class _CoverProof:
         from ratt_opt.certificates.group_covers.group_tree import Network
         from ratt_opt.certificates.group_covers.weak_sets import WeakSets
 
-        self.sets, self.team, self.max_nodes = sets, team, max_nodes
+        self.sets, self.team, self.max_nodes, self.cases = sets, team, max_nodes, 0
         self.threat = threat = sets.problem.threat
         self.links = Links.of(threat)
         self.network = Network.of(threat, self.links)
@@ -142,6 +146,9 @@ class _CoverProof:
         code = PAUSED
         while code == PAUSED:
             tick()
+            self.cases += AT_ONCE
+            if self.cases > CASES:
+                raise NotClosedError
             tell(COVERING, int(found.count[0]))
             code = grow_tree(self.network, weak, tariff, found, AT_ONCE)
         if code != FINISHED and not (slack < 0 and found.count[1]):
@@ -160,7 +167,8 @@ class _CoverProof:
         cover: list[Group] | None = []
         while cover is not None:
             groups = [self._group(prices, mask) for mask in masks]
-            cover = first_cover(groups, threat.graph.n_robots, budgets, lambda mask: self._last(prices, mask))
+            covers = Covers(groups, threat.graph.n_robots, lambda mask: self._last(prices, mask), self.weak.need)
+            cover = covers.first(budgets, STEPS)
             raised = [self.weak.raise_need(group.robots) for group in cover or ()]
             if cover is not None and not any(raised):
                 raise NotClosedError

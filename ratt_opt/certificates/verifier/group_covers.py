@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need, walk
 from ratt_opt.certificates.verifier.size_tree import check_size_tree
 from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -37,10 +38,13 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.statement import Statement
     from ratt_opt.certificates.verifier.worth import Worth
 
-__all__ = ["Group", "check_group_covers", "first_cover"]
+__all__ = ["Covers", "Group", "check_group_covers"]
 
 LARGEST = 2**53
 """Of prices, penalties and flows, in size."""
+
+MOST_COVERS = 1_000_000
+"""Steps of the search of partitions: up to a minute."""
 
 Case = tuple[int, int]
 """Who is inside a group and who is outside, as bit masks; the others are open."""
@@ -97,7 +101,8 @@ def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
             yield inside, outside | 1 << i
 
     leaves += walk("lower", tree, (0, 0), expand)
-    cover = first_cover(listed, about.n, (groups.slack, groups.most, 2 * about.alpha_c), groups.group_of)
+    covers = Covers(listed, about.n, groups.group_of, groups.need)
+    cover = covers.first((groups.slack, groups.most, 2 * about.alpha_c))
     need(cover is None, "lower proof: groups within the budgets cover the team")
     return leaves
 
@@ -164,7 +169,7 @@ class _Groups:
 
     def impossible(self, inside: int, outside: int) -> bool:
         """Whether no group with these robots, and without those, is left by an attack within the budgets."""
-        if inside & outside or self._need(inside) > self.most:
+        if inside & outside or self.need(inside) > self.most:
             return True
         if any((inside & robots & self.safe).bit_count() > room for robots, room in self.sets):
             return True
@@ -178,12 +183,13 @@ class _Groups:
         if self.impossible(inside, self.everyone & ~inside):
             return None
         links = sum((self.near[i] & ~inside).bit_count() for i in _robots(inside))
-        blinded = self._need(inside)
+        blinded = self.need(inside)
         cost = self.half * links + self.blinded * blinded - self.group - sum(self.robot[i] for i in _robots(inside))
         cost += sum(penalty for triple, penalty in self.triples if (triple & inside).bit_count() >= 2)
         return Group(inside, cost, blinded, links)
 
-    def _need(self, inside: int) -> int:
+    def need(self, inside: int) -> int:
+        """Robots blinded at least in a group with these."""
         return max((max((inside & robots).bit_count() - room, 0) for robots, room in self.sets), default=0)
 
     def least(self, inside: int, outside: int, flow: int, chosen: int) -> int:
@@ -220,38 +226,58 @@ class _Groups:
         return paid, extra
 
 
-def first_cover(
-    groups: list[Group], n: int, budgets: tuple[int, int, int], last: Callable[[int], Group | None]
-) -> list[Group] | None:
-    """A partition of ``n`` robots into groups, and one more, within the budgets of costs, needs and links.
+class Covers:
+    """Partitions of n robots into groups, and one more or none, within budgets of costs, needs and links.
 
-    ``None`` without one. ``last`` : the group of these robots, if they can be one. Groups are bits of masks: of those
-    that hold a robot, and of those within what is left of each budget.
+    ``last`` : the group of these robots, if they can be one; ``need`` : what any group with them needs. Groups are bits
+    of masks: of those that hold a robot, and of those within what is left of each budget.
     """
-    groups = sorted(groups, key=lambda group: group.cost)
-    costs = [group.cost for group in groups]
-    holds = [_mask(k for k, group in enumerate(groups) if group.robots >> i & 1) for i in range(n)]
-    needs = [_mask(k for k, group in enumerate(groups) if group.need <= most) for most in range(budgets[1] + 1)]
-    links = [_mask(k for k, group in enumerate(groups) if group.links <= most) for most in range(budgets[2] + 1)]
 
-    def search(usable: int, left: int, cost: int, blinded: int, cut: int) -> list[Group] | None:
+    def __init__(
+        self, groups: list[Group], n: int, last: Callable[[int], Group | None], need: Callable[[int], int]
+    ) -> None:
+        self.groups, self.n, self.last, self.need = sorted(groups, key=lambda group: group.cost), n, last, need
+        self.costs, self.nodes = [group.cost for group in self.groups], 0
+        self.holds = [_mask(k for k, group in enumerate(self.groups) if group.robots >> i & 1) for i in range(n)]
+
+    def first(self, budgets: tuple[int, int, int], most: int = MOST_COVERS) -> list[Group] | None:
+        """The first partition found; ``None`` without one.
+
+        Raises
+        ------
+        UndecidedError : neither after so many steps.
+        """
+        blinded, cut = (range(budget + 1) for budget in budgets[1:])
+        self._needs = [_mask(k for k, group in enumerate(self.groups) if group.need <= x) for x in blinded]
+        self._links = [_mask(k for k, group in enumerate(self.groups) if group.links <= x) for x in cut]
+        self.nodes, self._most = 0, most
+        return None if budgets[0] < 0 else self._search((1 << len(self.groups)) - 1, (1 << self.n) - 1, 0, budgets)
+
+    def _search(self, usable: int, left: int, together: int, budgets: tuple[int, int, int]) -> list[Group] | None:
+        """Cover ``left`` by usable groups and one with all robots ``together``, if there are any."""
         tick()
-        rest = last(left) if left else None
-        if not left or (rest and rest.cost <= cost and rest.need <= blinded and rest.links <= cut):
-            return [rest] if rest else []
-        usable &= needs[blinded] & links[cut] & (1 << bisect_right(costs, cost)) - 1
-        for k in _robots(usable):
-            group, usable = groups[k], usable & ~(1 << k)
-            disjoint = usable
-            for i in _robots(group.robots):
-                disjoint &= ~holds[i]
+        self.nodes += 1
+        if self.nodes > self._most:
+            raise UndecidedError(f"not decided within {self._most} partitions into groups")
+        cost, blinded, cut = budgets
+        usable &= self._needs[blinded] & self._links[cut] & (1 << bisect_right(self.costs, cost)) - 1
+        together |= _mask(i for i in _robots(left) if not usable & self.holds[i])
+        if self.need(together) > blinded:
+            return None
+        if left == together:
+            rest = self.last(left) if left else None
+            fits = rest is not None and rest.cost <= cost and rest.need <= blinded and rest.links <= cut
+            return [rest] if rest is not None and fits else None if left else []
+        i = min(_robots(left & ~together), key=lambda i: (usable & self.holds[i]).bit_count())
+        for k in _robots(usable & self.holds[i]):
+            group, disjoint = self.groups[k], usable
+            for j in _robots(group.robots):
+                disjoint &= ~self.holds[j]
             spent = cost - group.cost, blinded - group.need, cut - group.links
-            cover = search(disjoint, left & ~group.robots, *spent)
+            cover = self._search(disjoint, left & ~group.robots, together, spent)
             if cover is not None:
                 return [group, *cover]
-        return None
-
-    return None if budgets[0] < 0 else search((1 << len(groups)) - 1, (1 << n) - 1, *budgets)
+        return self._search(usable & ~self.holds[i], left, together | 1 << i, budgets)
 
 
 def _robots(mask: int) -> Iterator[int]:
