@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from types import SimpleNamespace
 
 import networkx as nx
 import numpy as np
@@ -11,7 +12,8 @@ import pytest
 from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, worst_case_attack
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
-from ratt_opt.certificates.verifier.group_covers import Covers, Group
+from ratt_opt.certificates.verifier.group_costs import Group
+from ratt_opt.certificates.verifier.partitions import Partitions
 from tests.certificates.cases import certified
 from tests.certificates.test_group_prices import KINDS, checker, drawn, exact, network
 from tests.certificates.test_group_prices import proof as price_proof
@@ -173,14 +175,17 @@ def test_covers_by_definition():
         n = 5
         costs = rng.integers(0, 4, (1 << n, 3))
         every = [Group(mask, *map(int, costs[mask])) for mask in range(1, 1 << n)]
-        budgets = (int(rng.integers(0, 7)), int(rng.integers(0, 5)), int(rng.integers(0, 7)))
+        budgets = (int(rng.integers(0, 7)), int(rng.integers(0, 5)), 2 * int(rng.integers(0, 4)))
         groups = [every[k] for k in rng.permutation(len(every))[:10]]
         allowed = {mask for mask in range(1, 1 << n) if rng.random() < 0.3}
 
         def last(mask, every=every, allowed=allowed):
             return every[mask - 1] if mask in allowed else None
 
-        cover = Covers(groups, n, last, lambda _: 0).first(budgets)
+        about = SimpleNamespace(slack=budgets[0], most=budgets[1], about=SimpleNamespace(alpha_c=budgets[2] // 2))
+        about.robot, about.everyone, about.flows, about.group_of = [0] * n, (1 << n) - 1, [], last
+        about.need = about.impossible = lambda *_: 0
+        cover = Partitions(groups, about).first()
         assert (cover is not None) == by_definition(groups, n, budgets, last)
         found += cover is not None
     assert 30 <= found <= 120
