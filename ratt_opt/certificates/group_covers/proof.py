@@ -44,7 +44,8 @@ AT_ONCE = 500
 """Cases between two looks at the clock: up to a tenth of a second."""
 
 EASY = 0.1
-"""Share of the budget of links that prices may lack for the groups to be listed without more triples."""
+"""Share of the budget of links that prices may lack for the groups to be listed without more triples, which are added
+as long as they make up for half a link at a time."""
 
 MOVES, WARM, COLD = 1_500, 2.0, 0.05
 """Moves around each robot to find groups that pay the first prices; temperatures [links]."""
@@ -86,8 +87,9 @@ class _CoverProof:
         """Prices, the tree of groups, and sets until no partition is left."""
         self._anneal()
         prices = self._priced()
-        while prices.slack > EASY * 2 * HALF_LINK * self.threat.alpha_c and self.program.add_triples():
-            prices = self._priced()
+        easy, before = EASY * 2 * HALF_LINK * self.threat.alpha_c, np.inf
+        while easy < prices.slack < before - HALF_LINK and self.program.add_triples():
+            before, prices = prices.slack, self._priced()
         from ratt_opt.certificates.group_covers.group_tree import FLOW
 
         n_sets = len(self.weak.robots)
