@@ -238,6 +238,6 @@ def test_agrees_with_the_attacker():
 @pytest.mark.parametrize("family", ["dense", "disk-12", "disk-6", "small-world", "hubs"])
 @pytest.mark.parametrize("n_robots", [20, 24])
 def test_agrees_with_the_attacker_on_every_family(family, n_robots):
-    """No proof contradicts it; on disks of mean degree 6 the first worst case is proved, on others where limits allow."""
+    """No proof contradicts it; on disks of mean degree 6 the first worst case is proved, on others within limits."""
     proved = [agreement(family, n_robots, (0.2, 0.15), seed, kind) for seed, kind in enumerate(KINDS)]
     assert proved[0] or family != "disk-6"
