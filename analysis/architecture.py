@@ -7,6 +7,8 @@ import statements. Nothing in the picture is typed by hand but the flow along it
 from __future__ import annotations
 
 import ast
+import re
+import textwrap
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +27,8 @@ __all__ = ["Room", "rooms"]
 ROOT = Path(__file__).parents[1]
 FLOW = ("scenario", "problem", "plan", "attack", "bracket,\ncertificate", "report")
 """What becomes of a user's input, in order."""
+WIDTH = 82
+"""Characters of a line beside a room's name."""
 HOUSE, ROOM, ARROW, FLOWS = "#1f2937", "#eef2f7", "#64748b", "#0f5f8f"
 
 
@@ -57,11 +61,10 @@ def _room(package: Path, name: str) -> Room:
     files = sorted(folder.rglob("*.py")) if folder.is_dir() else [first]
     trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in files}
     says = (ast.get_docstring(trees[first]) or "").split("\n\n")[0].replace("\n", " ").split(". ")[0]
+    says = re.sub(r":\w+:|`", "", says).rstrip(".")  # without markup
     uses = {imported for tree in trees.values() for imported in _imported(tree)}
     lines = sum(path.read_text(encoding="utf-8").count("\n") for path in files)
-    return Room(
-        name=name, says=says.replace("`", "").rstrip("."), files=len(files), lines=lines, uses=frozenset(uses - {name})
-    )
+    return Room(name=name, says=says, files=len(files), lines=lines, uses=frozenset(uses - {name}))
 
 
 def _imported(tree: ast.AST) -> Iterator[str]:
@@ -84,7 +87,7 @@ def _draw(axes: Axes, layers: Sequence[Room]) -> None:
         y = level[room.name]
         axes.add_patch(_box(0.0, y - 0.36, 7.4, 0.72))
         axes.text(0.12, y, room.name, va="center", weight="bold", size=9, color=HOUSE)
-        axes.text(1.75, y, _cut(room.says, 78), va="center", size=8, color=HOUSE)
+        axes.text(1.75, y, _lines(room.says), va="center", size=8, linespacing=1.1, color=HOUSE)
         axes.text(
             7.32, y, f"{room.files} files" if room.files > 1 else "", va="center", ha="right", size=7, color=ARROW
         )
@@ -124,8 +127,9 @@ def _box(x: float, y: float, width: float, height: float) -> FancyBboxPatch:
     return FancyBboxPatch((x, y), width, height, boxstyle="round,pad=0,rounding_size=0.08", fc=ROOM, ec=ARROW, lw=0.6)
 
 
-def _cut(text: str, width: int) -> str:
-    return text if len(text) <= width else text[: text.rfind(" ", 0, width - 1)] + " ..."
+def _lines(text: str) -> str:
+    """The text in two lines at most."""
+    return "\n".join(textwrap.wrap(text, WIDTH, max_lines=2, placeholder=" ...", break_on_hyphens=False))
 
 
 def draw(out: Path) -> Path:

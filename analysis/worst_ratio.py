@@ -10,7 +10,7 @@ import csv
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ratt_opt import caa, worst_case_ratio
 from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
@@ -125,7 +125,8 @@ def _panel(axis: Axes, points: Sequence[Point]) -> None:
         line = [p for p in points if (p.n_robots, p.alpha_s, p.alpha_c, p.planner) == case]
         x, colour = [p.curvature for p in line], COLOURS[index % 5]
         label = rf"{case[3]}, N={case[0]}, $\alpha_s$={case[1]}, $\alpha_c$={case[2]}"
-        axis.plot(x, [p.upper for p in line], lw=widths[index % 5], color=colour, label=label, zorder=2 + index)
+        look: dict[str, Any] = {"lw": widths[index % 5], "solid_capstyle": "butt", "color": colour, "zorder": 2 + index}
+        axis.plot(x, [p.upper for p in line], label=label, **look)
         axis.fill_between(x, [p.lower for p in line], [p.upper for p in line], color=colour, alpha=0.3)
     grid = sorted({p.curvature for p in points})
     one = {p.curvature: p for p in points}

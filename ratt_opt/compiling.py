@@ -1,8 +1,9 @@
-"""Numba, with interrupts (Ctrl-C) that are answered while it compiles: modules of compiled loops take it from here.
+"""Numba for modules of compiled loops, which take it from here: interrupts are answered, and no outdated code is run.
 
 Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
 those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
-fails with an error of its own. So it is raised again as soon as the callback has ended.
+fails with an error of its own. So it is raised again as soon as the callback has ended. What is kept of compiled code:
+``_kept_code``.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numba
 from numba.core import event
+from numba.core.caching import CompileResultCacheImpl
+
+from ratt_opt._kept_code import SourcesLocator
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -68,3 +72,4 @@ def _is_dropped_in(frame: FrameType | None) -> bool:
 
 
 event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]
+CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

@@ -1,16 +1,20 @@
-"""An interrupt while loops are compiled is answered at once, and is never lost or turned into another error."""
+"""An interrupt while loops are compiled is never lost or turned into another error; upgrades run no outdated code."""
 
 from __future__ import annotations
 
 import gc
 import re
+import shutil
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from numba.core.registry import cpu_target
 
 import ratt_opt
+from ratt_opt import _kept_code
 from ratt_opt.compiling import numba
 
 SOURCES = sorted(Path(ratt_opt.__file__).parent.rglob("*.py"))
@@ -53,4 +57,80 @@ def test_one_in_a_callback_of_the_compiler_comes_after_it(callback, cached, monk
 
 def test_every_module_of_compiled_loops_takes_numba_from_there():
     direct = [path for path in SOURCES if re.search(r"^\s*(import numba|from numba)\b", path.read_text(), re.M)]
-    assert [path.name for path in direct] == ["compiling.py"]
+    assert [path.name for path in direct] == ["_kept_code.py", "compiling.py"]
+
+
+INNER = "from ratt_opt.compiling import numba\n\n@numba.njit\ndef inner(x):\n    return x + 1\n"
+OUTER = """
+from ratt_opt.compiling import numba
+from ratt_opt.constants import FACTOR
+from ratt_opt.inner import inner
+if False:
+    from ratt_opt.records import Record
+
+@numba.njit(cache=True)
+def outer(record):
+    return FACTOR * inner(record.x)
+"""
+CALL = """
+from ratt_opt import outer, records
+print(outer.outer(records.{}(x=1, y=2)), outer.outer.stats.cache_hits.total())
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package of our name with our rules and loops of its own."""
+    folder = tmp_path / "ratt_opt"
+    folder.mkdir()
+    for name in ("_kept_code.py", "compiling.py"):
+        shutil.copy(Path(ratt_opt.__file__).parent / name, folder)
+    (folder / "__init__.py").touch()
+    (folder / "inner.py").write_text(INNER)
+    (folder / "outer.py").write_text(OUTER)
+    (folder / "constants.py").write_text("FACTOR = 1\n")
+    (folder / "records.py").write_text(records("Record", "x: int\n    y: int"))
+    return folder
+
+
+def records(name: str, fields: str) -> str:
+    return f"from typing import NamedTuple\n\nclass {name}(NamedTuple):\n    {fields}\n"
+
+
+def called(package: Path, record: str = "Record") -> tuple[int, int]:
+    """What the loop gives in a process of its own, and how much of it came from an earlier one."""
+    command = [sys.executable, "-c", CALL.format(record)]
+    done = subprocess.run(command, cwd=package.parent, env={}, capture_output=True, text=True, check=True)
+    value, hits = map(int, done.stdout.split())
+    return value, hits
+
+
+def test_an_upgrade_compiles_again_and_leaves_nothing_of_the_old_code(package):
+    """As pip leaves it: new sources, and what was kept of the old ones beside them."""
+    assert [called(package), called(package)] == [(2, 0), (2, 1)]
+    (package / "inner.py").write_text(INNER.replace("1", "10"))
+    (package / "records.py").write_text(records("Renamed", "x: int\n    y: int"))
+    assert called(package, "Renamed") == (11, 0)
+    kept = [path for path in (package / "__pycache__").iterdir() if path.suffix in {".nbi", ".nbc"}]
+    assert len(kept) == 2
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "changes"),
+    [
+        ("inner.py", INNER.replace("1", "10"), True),
+        ("constants.py", "FACTOR = 5\n", True),
+        ("records.py", records("Record", "y: int\n    x: int"), True),
+        ("elsewhere.py", "FACTOR = 5\n", False),
+    ],
+    ids=["callee", "constant", "layout", "none"],
+)
+def test_compiled_code_is_kept_while_all_sources_in_it_stay_the_same(file, text, changes, package, monkeypatch):
+    monkeypatch.setattr(_kept_code, "PACKAGE", package)
+    found = []
+    for _ in range(2):
+        _kept_code._text.cache_clear()
+        _kept_code.fingerprint.cache_clear()
+        found.append(_kept_code.fingerprint(package / "outer.py"))
+        (package / file).write_text(text)
+    assert (found[0] != found[1]) is changes

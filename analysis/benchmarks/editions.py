@@ -1,9 +1,9 @@
 """This edition against an earlier one: the rows of the tables of times, in one run, taking turns.
 
-Run as ``python -m analysis.benchmarks.editions FOLDER [--rows ...] [--rounds 3]``; FOLDER holds the earlier edition
-(``git worktree add FOLDER COMMIT``). Every row is a few calls of the public interface that both know. Each
-round starts one process of each edition, which makes the calls once uncounted (imports and compiled code) and once
-counted in processor seconds; shown is the smallest of the rounds, by which noise of the machine counts least.
+Run as ``python -m analysis.benchmarks.editions FOLDER [--rows ...] [--kinds trace ...] [--rounds 3]``; FOLDER holds
+the earlier edition (``git worktree add FOLDER COMMIT``). Every row is a few calls of the public interface that both
+know. Each round starts one process of each edition, which makes the calls once uncounted (imports and compiled code)
+and once counted in processor seconds; shown is the smallest of the rounds, by which noise of the machine counts least.
 """
 
 from __future__ import annotations
@@ -16,13 +16,15 @@ import sys
 import tempfile
 import time
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-KINDS = ("trace", "logdet", "maxeig")
+KINDS = ["trace", "logdet", "maxeig"]
+"""Criteria that are asked for; ``--kinds`` names some of them."""
 PAPER = {
     10: (15, ((3, 11), (5, 15), (6, 22))),
     20: (20, ((6, 47), (10, 63), (13, 95))),
@@ -33,7 +35,7 @@ SLOWER = 1.1
 """Times the earlier edition's seconds from which a row counts as slower."""
 
 
-def problems(robots: int, seeds: int = 1, kinds: tuple[str, ...] = KINDS) -> Iterator[Any]:
+def problems(robots: int, seeds: int = 1) -> Iterator[Any]:
     """The paper's teams of one size."""
     import ratt_opt as ro
 
@@ -41,7 +43,7 @@ def problems(robots: int, seeds: int = 1, kinds: tuple[str, ...] = KINDS) -> Ite
     for alpha_s, alpha_c in budgets:
         for seed in range(seeds):
             scenario = ro.random_scenario(robots, targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
-            yield from (scenario.problem(kind) for kind in kinds)
+            yield from (scenario.problem(kind) for kind in KINDS)
 
 
 def planning() -> list[Callable[[], Any]]:
@@ -111,7 +113,7 @@ def brackets(robots: int) -> list[Callable[[], Any]]:
     """The bracket of total curvature over feasible sets."""
     import ratt_opt as ro
 
-    first = list(problems(robots, 1))[:3]
+    first = islice(problems(robots), len(KINDS))
     return [partial(ro.total_curvature, problem.objective, problem.robot) for problem in first]
 
 
@@ -156,7 +158,7 @@ def seconds_of(row: str) -> float:
 def seconds_in(folder: Path, row: str) -> float | None:
     """The same in a process of the edition in ``folder``; ``None`` where it fails."""
     environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    command = [sys.executable, str(Path(__file__).resolve()), "--child", row]
+    command = [sys.executable, str(Path(__file__).resolve()), "--child", row, *KINDS]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=folder)
     return json.loads(done.stdout) if done.returncode == 0 else None
 
@@ -179,7 +181,9 @@ def main() -> None:
     parser.add_argument("earlier", type=Path, help="folder of the earlier edition")
     parser.add_argument("--rows", nargs="+", default=list(ROWS), help="names, or beginnings of them")
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=KINDS)
     options = parser.parse_args()
+    KINDS[:] = options.kinds
     wanted = [row for row in ROWS if row.startswith(tuple(options.rows))]
     rows = []
     for row in wanted:
@@ -191,6 +195,7 @@ def main() -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--child"]:
+        KINDS[:] = sys.argv[3:]
         print(json.dumps(seconds_of(sys.argv[2])))
     else:
         main()

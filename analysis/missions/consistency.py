@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from analysis.paper.large_scale import STUDY as PAPER
 from analysis.studies.command import Entry, main
-from analysis.studies.plots import new_figure, save
+from analysis.studies.plots import IN_TURN, new_figure, save
 from analysis.studies.statistics import column, estimate, select
 from analysis.studies.study import Study
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
@@ -96,9 +97,12 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         spread = np.array([[e.mean - e.low for e in excess], [e.high - e.mean for e in excess]])
         spread[~np.isfinite(spread)] = 0.0
         at = np.arange(len(names)) + 0.2 * (k - 1)
-        axes.errorbar(at, [e.mean for e in excess], spread, fmt=marker, capsize=2, label=linearisation)
+        axes.errorbar(
+            at, [e.mean for e in excess], spread, fmt=marker, color=IN_TURN[k], capsize=2, label=linearisation
+        )
     axes.axhspan(0.95, 1.10, color="#dddddd", zorder=0, label="0.95 to 1.10")
-    axes.set_xticks(range(len(names)), [name.replace(" ", "\n") for name in names], fontsize=7)
+    labels = [re.sub(r"alpha_(\w)", r"$\\alpha_\1$", name).replace(" ", "\n") for name in names]
+    axes.set_xticks(range(len(names)), labels, fontsize=8)
     axes.set_ylabel("mean squared error / trace")
     axes.legend(frameon=False, ncols=4, fontsize=8)
     save(figure, folder, STUDY.name)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.report.palette import Look
 
-__all__ = ["LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save", "use_palette"]
+__all__ = ["IN_TURN", "LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save", "use_palette"]
 
 LOOKS = {
     "optimum": PLANNERS["maxmin"],
@@ -37,8 +37,8 @@ LABELS = {
 }
 
 
-IN_TURN = ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")
-"""Whose colours plain curves and bars take, one after the other: neighbours differ in lightness too."""
+IN_TURN = [PLANNERS[name].colour for name in ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")]
+"""Colours of plain curves and bars, one after the other: neighbours differ in lightness too."""
 
 
 def use_palette() -> None:
@@ -46,7 +46,7 @@ def use_palette() -> None:
     import matplotlib as mpl
     from matplotlib.rcsetup import cycler
 
-    mpl.rcParams["axes.prop_cycle"] = cycler(color=[PLANNERS[name].colour for name in IN_TURN])
+    mpl.rcParams["axes.prop_cycle"] = cycler(color=IN_TURN)
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["Label", "place_labels"]
+__all__ = ["Label", "halo", "place_labels"]
 
 SPOTS = (
     *((x, y, side) for x, side in ((8, "left"), (-8, "right")) for y in (-9, 9, -3)),
@@ -23,6 +23,9 @@ SPOTS = (
 """Offsets [points] from the place, the first preferred, and which end of the word is there."""
 MARK = 7.0
 """Half the width of a robot or target on paper [points]."""
+
+HALO = 2.0
+"""Width of the pale rim of a word [points]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +45,7 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
     for label in labels:
         style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
+        style["path_effects"] = halo()
         word = axes.annotate(
             label.text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
         )
@@ -52,6 +56,13 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         x, y, side = SPOTS[costs.index(min(costs))]
         word.set(position=(x, y), ha=side)
         taken.append(word.get_window_extent())
+
+
+def halo() -> list[Any]:
+    """The path effects of words behind which lines may run."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=HALO, foreground="white", alpha=0.8)]
 
 
 def _square(centre: FloatArray, half: float) -> Bbox:

@@ -39,6 +39,7 @@ def mission_figure(missions: Sequence[Mission]) -> Figure:
     below.axhline(first.dimension, color=INK, linewidth=0.8, linestyle="--", label="expected")
     below.set_ylabel("NEES, mean over targets")
     below.set_xlabel("step")
+    below.xaxis.get_major_locator().set_params(integer=True)
     below.set_ylim(bottom=0)
     for axes in (above, below):
         axes.legend(frameon=False, fontsize=8.5)
@@ -56,4 +57,4 @@ def _curve(axes: Axes, steps: Any, values: FloatArray, label: str) -> None:
         half = float(t.ppf(0.975, n - 1)) * values.std(axis=0, ddof=1) / n**0.5
         axes.fill_between(steps, mean - half, mean + half, color=SURVIVING, alpha=0.2)
         label = f"{label}, mean of {n} seeds with 95 % interval"
-    axes.plot(steps, mean, color=SURVIVING, label=label)
+    axes.plot(steps, mean, color=SURVIVING, marker=".", markersize=4, label=label)

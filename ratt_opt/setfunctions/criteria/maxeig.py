@@ -13,22 +13,20 @@ level and axis are the smallest eigenvalue and its vector.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.maxeig_marginals import MARGIN, marginal_ends
-from ratt_opt.setfunctions.criteria.outputs import check_output
+from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
 from ratt_opt.setfunctions.criteria.two_by_two import eigenvalues as eigenvalues_of
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
 from ratt_opt.setfunctions.criterion_parts import Tangent
-from ratt_opt.setfunctions.information import InformationObjective, symmetric_inverse
+from ratt_opt.setfunctions.information import symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
@@ -36,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["MaxEigenvalueObjective", "OutputMaxEigenvalueObjective"]
 
 
-class MaxEigenvalueObjective(InformationObjective):
+class MaxEigenvalueObjective(StateCriterion):
     """``max_j w_j lambda_max(prior_j) - max_j w_j lambda_max(Lambda_j(S)^{-1})``: worst axis (E-criterion) [m^2].
 
     ``output`` : the part of the state that counts, (q, d) or (M, q, d) of full row rank, or ``None`` for all of it:
@@ -48,23 +46,6 @@ class MaxEigenvalueObjective(InformationObjective):
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 2
-
-    def __new__(cls, *_: Any, output: ArrayLike | None = None, **__: Any) -> Self:
-        """The criterion of a part of the state is one of its own, without the planar formulas."""
-        kind = OutputMaxEigenvalueObjective if output is not None and cls is MaxEigenvalueObjective else cls
-        made: Self = object.__new__(kind)  # type: ignore[assignment]
-        return made
-
-    def __init__(
-        self,
-        prior: ArrayLike,
-        information: ArrayLike,
-        weights: ArrayLike | None = None,
-        *,
-        output: ArrayLike | None = None,
-    ) -> None:
-        assert output is None, "a criterion with an output matrix is an OutputMaxEigenvalueObjective"
-        super().__init__(prior, information, weights)
 
     @property
     def prior_criterion(self) -> float:
@@ -191,10 +172,12 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
     InputError : ``output`` has another shape, or its rows depend on each other.
     """
 
-    __slots__ = ("output",)
+    __slots__ = ()
 
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
+    output: FloatArray
+    stated = StateCriterion.stated
     # What is written in levels and axes holds as it stands.
     prior_criterion = MaxEigenvalueObjective.prior_criterion
     combine = MaxEigenvalueObjective.combine
@@ -203,17 +186,6 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
     cut_values = MaxEigenvalueObjective.cut_values
     fenchel_point = MaxEigenvalueObjective.fenchel_point
     marginal_ends = MaxEigenvalueObjective.marginal_ends
-
-    def __init__(
-        self,
-        prior: ArrayLike,
-        information: ArrayLike,
-        weights: ArrayLike | None = None,
-        *,
-        output: ArrayLike | None = None,
-    ) -> None:
-        self.output: FloatArray = check_output(output, prior)
-        super().__init__(prior, information, weights)
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted largest eigenvalues of the outputs' covariances."""
@@ -252,11 +224,6 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
         """It compares each value with a level."""
         return False
 
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The output matrices, row by row."""
-        return {"output": self.output.reshape(self.n_targets, -1).tolist()}
-
     def least_levels(self) -> FloatArray:
         """(n, M) ``l(X)`` of each element's information, from below; 0 where that is singular."""
         eigenvalues = np.linalg.eigvalsh(self.information)
@@ -271,3 +238,6 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
         root = np.linalg.cholesky(self.prior)
         q = np.linalg.eigvalsh(np.swapaxes(root, -1, -2) @ self.information @ root)[..., -1].clip(0.0)
         return np.asarray(self._baseline * q / (1 + q))
+
+
+MaxEigenvalueObjective.of_part = OutputMaxEigenvalueObjective

@@ -2,20 +2,60 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite, readonly
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["check_output"]
+__all__ = ["StateCriterion"]
 
 
-def check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
+class StateCriterion(InformationObjective):
+    """A criterion of targets' whole states or, with ``output``, of a part of them.
+
+    The latter has formulas of its own: a class that is made where ``output`` is given.
+    """
+
+    __slots__ = ("output",)
+
+    output: FloatArray | None
+    of_part: ClassVar[type[StateCriterion]]
+    """That class; a subclass of the one for whole states."""
+
+    def __new__(cls, *_: Any, output: ArrayLike | None = None, **__: Any) -> Self:
+        """An instance of the class that has the formulas."""
+        kind = cls.of_part if output is not None and cls.of_part.__mro__[1] is cls else cls
+        made: Self = object.__new__(kind)  # type: ignore[assignment]
+        return made
+
+    def __init__(
+        self,
+        prior: ArrayLike,
+        information: ArrayLike,
+        weights: ArrayLike | None = None,
+        *,
+        output: ArrayLike | None = None,
+    ) -> None:
+        is_of_part = isinstance(self, self.of_part)
+        if output is not None and not is_of_part:
+            known = self.of_part.__mro__[1].__name__
+            raise InputError("output", f"must be None for a criterion other than {known}", type(self).__name__)
+        self.output = _check_output(output, prior) if is_of_part else None
+        super().__init__(prior, information, weights)
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The output matrices, row by row."""
+        return {} if self.output is None else {"output": self.output.reshape(self.n_targets, -1).tolist()}
+
+
+def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
     """(M, q, d) matrices of full row rank, from (q, d) for all targets or (M, q, d).
 
     InputError : another shape, or rows that depend on each other.

@@ -25,20 +25,17 @@ isotropic prior makes the first the larger.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt._validation import readonly
-from ratt_opt.setfunctions.criteria.outputs import check_output
+from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
-from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
+from ratt_opt.setfunctions.information import packed, symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
@@ -53,7 +50,7 @@ MARGIN = 1e-11
 """Relative safety margin for rounding on the largest marginals."""
 
 
-class TraceObjective(InformationObjective):
+class TraceObjective(StateCriterion):
     """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2].
 
     ``output`` : the part of the state that counts, (q, d) or (M, q, d) of full row rank, or ``None`` for all of it:
@@ -65,22 +62,6 @@ class TraceObjective(InformationObjective):
     name: ClassVar[str] = "trace"
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 0
-
-    def __new__(cls, *_: Any, output: ArrayLike | None = None, **__: Any) -> Self:
-        """The criterion of a part of the state is one of its own, without the planar formulas."""
-        made: Self = object.__new__(OutputTraceObjective if output is not None and cls is TraceObjective else cls)  # type: ignore[assignment]
-        return made
-
-    def __init__(
-        self,
-        prior: ArrayLike,
-        information: ArrayLike,
-        weights: ArrayLike | None = None,
-        *,
-        output: ArrayLike | None = None,
-    ) -> None:
-        assert output is None, "a criterion with an output matrix is an OutputTraceObjective"
-        super().__init__(prior, information, weights)
 
     @property
     def prior_criterion(self) -> float:
@@ -196,28 +177,18 @@ class OutputTraceObjective(TraceObjective):
     InputError : ``output`` has another shape, or its rows depend on each other.
     """
 
-    __slots__ = ("_square", "output")
+    __slots__ = ()
 
     name: ClassVar[str] = "trace"
     unit: ClassVar[str] = "m²"
+    output: FloatArray
+    stated = StateCriterion.stated
     marginal_minorant = TraceObjective.marginal_minorant
-
-    def __init__(
-        self,
-        prior: ArrayLike,
-        information: ArrayLike,
-        weights: ArrayLike | None = None,
-        *,
-        output: ArrayLike | None = None,
-    ) -> None:
-        self.output: FloatArray = check_output(output, prior)
-        self._square: FloatArray = readonly(np.swapaxes(self.output, -1, -2) @ self.output)
-        super().__init__(prior, information, weights)
 
     @property
     def output_square(self) -> FloatArray:
         """(M, d, d) ``W = C'C``."""
-        return self._square
+        return np.asarray(np.swapaxes(self.output, -1, -2) @ self.output)
 
     @property
     def prior_criterion(self) -> float:
@@ -232,15 +203,13 @@ class OutputTraceObjective(TraceObjective):
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j Lambda_j^{-1} W_j Lambda_j^{-1}``: (..., M, d, d)."""
-        covariance = symmetric_inverse(posterior_information)
-        return np.asarray(self.weights[:, None, None] * (covariance @ self._square @ covariance))
+        y = self._fenchel(posterior_information)
+        return np.asarray(self.weights[:, None, None] * (y @ np.swapaxes(y, -1, -2)))
 
     def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
         """``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for *any* ``Y``: an inexact inverse costs strength only."""
-        y = self._fenchel(point)
-        slope = self.weights[:, None, None] * (y @ np.swapaxes(y, -1, -2))
-        value = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, y)
-        return Tangent(slope, float((self._baseline - value).sum()))
+        value = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, self._fenchel(point))
+        return Tangent(self.gradient(point), float((self._baseline - value).sum()))
 
     def conic_value(self, posterior: Sequence[Any]) -> Any:
         """``sum_j w_j [tr(C prior_j C') - sum_q c_q' L_j^{-1} c_q]`` in cvxpy."""
@@ -259,14 +228,12 @@ class OutputTraceObjective(TraceObjective):
         outputs = self.output @ self.prior @ np.swapaxes(self.output, -1, -2)
         return self._ends(np.asarray(np.linalg.eigvalsh(outputs)[:, -1], dtype=np.float64))
 
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The output matrices, row by row."""
-        return {"output": self.output.reshape(self.n_targets, -1).tolist()}
-
     def _fenchel(self, point: FloatArray) -> FloatArray:
-        """(M, d, q) ``L^{-1} C'``."""
+        """(..., M, d, q) ``L^{-1} C'``."""
         return np.asarray(symmetric_inverse(point) @ np.swapaxes(self.output, -1, -2))
+
+
+TraceObjective.of_part = OutputTraceObjective
 
 
 def _upper_eigenvalues(root: FloatArray, matrices: FloatArray) -> FloatArray:
