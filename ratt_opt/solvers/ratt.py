@@ -12,7 +12,7 @@ from ratt_opt.graph.largest_group.counting import counting_bound
 from ratt_opt.graph.largest_group.smallest import by_search
 from ratt_opt.graph.separable_groups import LARGEST_MASK
 from ratt_opt.graph.survivor_sizes import caa
-from ratt_opt.problem import Plan, Problem
+from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
@@ -24,22 +24,27 @@ PLAIN_WORK = 30_000_000
 MILP_NODES = 1_000
 """Nodes of the integer program for ``n_max`` on large graphs that are not complete; keeps RATT deterministic."""
 
+SIZE_SHARE, QUICK = 0.1, 2.0
+"""Of the seconds left for ``n_max``: on networks of 30 robots the program can take most of a minute. What takes no
+longer than so many seconds is the same within any limit: RATT's plan then does not depend on it."""
+
 
 @Step("the smallest largest group")
-def equivalent_sensing_attacks(problem: Problem) -> int:
+def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -> int:
     """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``.
 
     Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots and, where an
     attack can split off few groups, up to 60; else the integer program's up to 40 robots, and a valid lower bound
-    on it beyond that or where the program did not finish.
+    on it beyond that or where the program did not finish, such as where an outer search's ``budget`` is short.
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
-    if problem.threat.links_alike:
+    if check_problem(problem).threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
     if problem.n_robots > LARGEST_MASK:  # nothing but the bound is known of larger teams
         return problem.n_robots - counting_bound(problem.threat)
-    found = by_search(replace(problem.threat, alpha_s=0), Budget(max_nodes=MILP_NODES))
+    seconds = None if budget is None or budget.time_limit is None else max(SIZE_SHARE * budget.seconds_left, QUICK)
+    found = by_search(replace(problem.threat, alpha_s=0), Budget(seconds, MILP_NODES))
     return problem.n_robots - (found.lower if found.n_max is None else found.n_max)
 
 
@@ -53,7 +58,8 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
     Parameters
     ----------
     alpha_cs : sensing attacks that the link attacks are worth, where known; else asked for
-    budget : an outer search's budget: once it is spent, the robots left get their individually best element too
+    budget : an outer search's budget: where ``alpha_cs`` takes long it is a bound found in a part of its seconds, and
+        once it is spent, the robots left get their individually best element too
 
     Returns
     -------
@@ -61,14 +67,14 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
     Source: ratt.tex, Algorithm 1 (RATT); guarantee in Theorem 1, evaluations in Theorem 2.
     """
-    known = equivalent_sensing_attacks(problem) if alpha_cs is None else alpha_cs
+    known = equivalent_sensing_attacks(problem, budget) if alpha_cs is None else alpha_cs
     return replace(bait_and_greedy(problem, problem.alpha_s + known, budget), alpha_cs=known)
 
 
 @Step("planning")
 def bait_and_greedy(problem: Problem, alpha: int, budget: Budget | None = None) -> Plan:
     """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts."""
-    single = problem.objective.singletons()
+    single = check_problem(problem).objective.singletons()
     best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
     # A stable sort of the negated values keeps the lowest robot first among equals.
     order = np.argsort(-single[best], kind="stable")
@@ -135,11 +141,11 @@ def greedy(problem: Problem, *, budget: Budget | None = None) -> Plan:
 
 def myopic(problem: Problem, *, budget: Budget | None = None) -> Plan:
     """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
-    return bait_and_greedy(problem, problem.n_robots, budget)
+    return bait_and_greedy(problem, check_problem(problem).n_robots, budget)
 
 
 def random_plan(problem: Problem, *, seed: int) -> Plan:
     """Uniformly random element of every robot. Source: the algorithm Random of ratt.tex, Section VI."""
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
-    elements = np.array([choice[rng.integers(len(choice))] for choice in problem.choices])
+    elements = np.array([choice[rng.integers(len(choice))] for choice in check_problem(problem).choices])
     return Plan(elements=readonly(elements), evaluations=0)

@@ -23,6 +23,7 @@ from ratt_opt import (
     verify_certificate,
 )
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
+from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.certificates.plan_sets import PlanSets
@@ -61,6 +62,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     plan, lower = np.array(made["trace, path"]["plan"]), made["trace, path"]["claim"]["lower"]
     sets = PlanSets(problem, plan, lower * (1 - 1e-13))
     made["group_prices"] = made["trace, path"] | {"lower": group_price_proof(sets, 1000)}
+    made["group_covers"] = made["trace, path"] | {"lower": group_cover_proof(sets, 1000)}
     low = made["trace, path"]["claim"] | {"lower": 0.0}
     sized = forced_size_proof(PlanSets(problem, plan, 0.0), 1000)
     made["trees"] = made["trace, path"] | {"claim": low, "lower": sized}
@@ -69,7 +71,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_every_kind_is_covered(documents: dict[str, Any], schema: jsonschema.Draft202012Validator) -> None:
     assert {document["lower"]["kind"] for document in documents.values()} == {
-        "forced_size", "attack_tree", "group_prices", "enumerated",
+        "forced_size", "attack_tree", "group_prices", "group_covers", "enumerated",
     }  # fmt: skip
     assert any("attack" in node for document in documents.values() for node in document["upper"]["tree"])
     for document in documents.values():

@@ -15,15 +15,18 @@ from ratt_opt import (
     caa,
     greedy,
     myopic,
+    network_scenario,
     nonrobust_optimum,
     random_plan,
     random_scenario,
     ratt,
 )
+from ratt_opt.budget import Budget
 from ratt_opt.problem import Attack
 from ratt_opt.solvers import ratt as ratt_module
 from ratt_opt.solvers.maxmin import solve
 from ratt_opt.solvers.maxmin.solve import nonrobust_search
+from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from ratt_opt.stopping import Stop
 from tests.strategies import OBJECTIVES, information_data, random_problem
 
@@ -179,3 +182,9 @@ def test_no_attack_needs_no_outcomes(n_robots: int, controls: int) -> None:
     assert found.stop is Stop.EXHAUSTED
     assert found.lower == problem.objective(found.elements)
     assert found.lower >= problem.objective(ratt(problem).elements) * (1 - 1e-12)
+
+
+@pytest.mark.parametrize("family", ["dense", "disk-6", "hubs"])
+def test_the_plan_of_a_small_network_does_not_depend_on_the_limit(family):
+    problem = network_scenario(family, 14, 4, alpha_s=0.2, alpha_c=0.3, seed=2).problem()
+    assert ratt(problem).alpha_cs == equivalent_sensing_attacks(problem, Budget(0.0)) > 0

@@ -26,7 +26,10 @@ PART = 500_000
 """Moves between two looks at the clock, times targets: some hundredths of a second."""
 
 HOT, COLD = 0.05, 0.0005
-"""First and last temperature relative to the whole team's value; HOT is a fifth where a start is a good attack."""
+"""First and last temperature relative to the whole team's value."""
+
+WARM = HOT / 5
+"""First temperature where a start is a good attack, or regions."""
 
 PRICE = 0.02
 """Of a link too many, relative to the whole team's value; 0.005 leaves starts that never come back into the budget."""
@@ -47,13 +50,13 @@ class Partition:
 
 
 class Starts:
-    """Annealed attacks, one start after the other; deterministic for a seed.
+    """Annealed attacks of so many moves a robot, one start after the other; deterministic for a seed.
 
     ``best`` : the best partition so far, ``None`` before the first
     """
 
-    def __init__(self, team: PricedTeam, links: Links, threat: Threat, seed: int = 0) -> None:
-        self._team, self._links, self._threat = team, links, threat
+    def __init__(self, team: PricedTeam, links: Links, threat: Threat, seed: int = 0, moves: int = MOVES) -> None:
+        self._team, self._links, self._threat, self._moves = team, links, threat, moves
         self._rng = np.random.default_rng(seed)
         self._count = 0
         whole = team.prior + team.information.sum(axis=0)
@@ -74,7 +77,7 @@ class Starts:
         """
         kind = self._count % 4 if self.best is not None else 0
         self._count += 1
-        hot = HOT if kind < 2 else HOT / 5
+        hot = HOT if kind < 2 else WARM
         group = np.zeros(len(self._team.single), dtype=np.int64)
         blind = self._blinded()
         if kind == 2:
@@ -83,8 +86,19 @@ class Starts:
             group, blind = self.best.group.copy(), self.best.blind.copy()
         return self._anneal(group, blind, hot, budget)
 
+    def near(self, attack: Attack, budget: Budget) -> Partition | None:
+        """The outcome of a start from an attack within the budgets; otherwise as :meth:`next`."""
+        group = np.zeros(len(self._team.single), dtype=np.int64)
+        for label, members in enumerate(self._threat.graph.groups(attack.links)):
+            group[list(members)] = label
+        blind = np.zeros(len(group), dtype=np.bool_)
+        blind[list(attack.sensing)] = True
+        free = self._rng.permutation(np.flatnonzero(~(blind | self._links.seeing)))
+        blind[free[: self._threat.n_blinded - len(attack.sensing)]] = True
+        return self._anneal(group, blind, WARM, budget)
+
     def _anneal(self, group: IntArray, blind: BoolArray, hot: float, budget: Budget) -> Partition | None:
-        scale, steps, least, partition = self._scale, MOVES * len(group), np.inf, None
+        scale, steps, least, partition = self._scale, self._moves * len(group), np.inf, None
         found, state = (group.copy(), blind.copy()), State.of(self._team, group, blind)
         part = max(PART // len(self._team.prior), 1)
         for first in range(0, steps, part):

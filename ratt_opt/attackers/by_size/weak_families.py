@@ -11,8 +11,6 @@ import numpy as np
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.attackers.weakest_set.exchanges import AT_ONCE, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.linear_descent import descended
-from ratt_opt.budget import OutOfBudget
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -52,14 +50,14 @@ class WeakFamilies:
 
         Raises
         ------
-        OutOfBudget : the time is up.
+        OutOfBudget : the time is up before the first.
         """
         families: list[GroupExchanges] = []
         part = self._budget.part(EXCHANGES_SHARE)
         for sizes in vectors:
-            self._budget.check()
             if families and part.stop() is not None:
                 break
+            self._budget.check()
             family = self._settled(sizes, part)
             for largest in () if part.is_over else self._weak_largest(sizes, part):
                 if part.is_over:
@@ -67,12 +65,8 @@ class WeakFamilies:
                 family.around(largest, part)
             families.append(family)
         families.sort(key=attrgetter("value"))
-        try:
-            for family in families[:SHAKEN]:
-                family.shake(SHAKES, part)
-        except OutOfBudget as out:  # of the share
-            if out.stop is Stop.INTERRUPTED:
-                raise
+        for family in families[:SHAKEN]:
+            family.shake(SHAKES, part)
         return sorted(families, key=attrgetter("value"))
 
     def deciding(self, vectors: list[Sizes], largest: int) -> list[GroupExchanges]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.verifier.forced_size import is_forced, is_forced_by_trees
+from ratt_opt.certificates.verifier.group_covers import check_group_covers
 from ratt_opt.certificates.verifier.group_prices import check_group_prices
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
 from ratt_opt.certificates.verifier.size_tree import check_size_tree
@@ -38,8 +39,10 @@ class LowerCheck:
             return self._check_attack_tree(fields("lower proof", part, "kind tree")[1], Worth(self.about, lower))
         if kind == "group_prices":
             return check_group_prices(self.about, part, Worth(self.about, lower))
+        if kind == "group_covers":
+            return check_group_covers(self.about, part, Worth(self.about, lower))
         fields("lower proof", part, "kind")
-        kinds = "attack_tree, forced_size, group_prices or enumerated"
+        kinds = "attack_tree, forced_size, group_prices, group_covers or enumerated"
         need(kind == "enumerated", f"lower proof: the kind must be {kinds}")
         return 0
 

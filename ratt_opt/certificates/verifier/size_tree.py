@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["check_size_tree"]
 
 
-def check_size_tree(n: int, size: int, tree: object, worth: Worth) -> int:
-    """Check that every set of ``size`` of ``n`` robots is worth it; returns the number of leaves.
+def check_size_tree(n: int, size: int, tree: object, worth: Worth, others: frozenset[int] = frozenset()) -> int:
+    """Check that every set of ``size`` of ``n`` robots but the ``others`` is worth it; returns the number of leaves.
 
     In preorder, i >= 0: robot i is in the set; or not. -1: the robots I in the set are worth it. -2: fewer than
     ``size`` robots are left. -3: some robots are missing, and I with any so many of those undecided is worth it.
@@ -37,4 +37,4 @@ def check_size_tree(n: int, size: int, tree: object, worth: Worth) -> int:
             yield worth.plus(known, i), decided | {i}, out
             yield known, decided | {i}, out + 1
 
-    return walk("lower", tree, (worth.nobody, frozenset(), 0), expand)
+    return walk("lower", tree, (worth.nobody, others, len(others)), expand)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
@@ -96,6 +97,8 @@ def _at_their_best(problem: Problem) -> PlanarTeam | None:
 
 SEARCHED_BY_SIZE = 12
 """Larger teams with all links alike are attacked by exchanges first (``by_size``): fast and hardly ever wrong."""
+QUICK_SHARE = 0.05
+"""Of the time left for one quick attack: without a limit those on 100 robots took up to two seconds each."""
 SAME_VALUE = 1e-12
 """Relative difference of team values under two attacks that counts as none."""
 
@@ -103,6 +106,10 @@ SAME_VALUE = 1e-12
 NEAR = 4
 """Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew. Not
 tuned."""
+
+
+BRIEF_MOVES, MOVES = 300, 2_000
+"""Moves a robot of annealing a known attack briefly, as for each relaxed plan, and of a plan that this did not hurt."""
 
 
 class Adversary:
@@ -114,6 +121,8 @@ class Adversary:
     def __init__(self, problem: Problem, pool: OutcomePool, budget: Budget) -> None:
         self.problem, self.pool, self.budget = problem, pool, budget
         self._lasting = LastingAttacks(problem, budget)
+        on_network = problem.n_robots > SEARCHED_BY_SIZE and not problem.threat.links_alike
+        self._annealed = AnnealedAttacks.of(problem, budget) if on_network else None
 
     @property
     def is_exact_cheaply(self) -> bool:
@@ -123,9 +132,27 @@ class Adversary:
     def learn(self, plan: IntArray) -> bool:
         """Attack a plan quickly, unless all outcomes are known; whether that found a new outcome."""
         known = len(self.pool)
-        if not self.pool.complete and not self._learn_near(plan):
+        if not self.pool.complete and not self._learn_near(plan) and not self._learn_annealed(plan):
             self._remember(self.problem, plan, self._quick_attack(self.problem, plan))
         return len(self.pool) > known
+
+    def _learn_annealed(self, plan: IntArray) -> bool:
+        """Anneal the known outcome that hurts a plan most, then others anew; whether a worse one was found."""
+        if self._annealed is None:
+            return False
+        before, known = self.pool.plan_value(plan), len(self.pool)
+        worst = self._worst_known(self.problem, plan)
+        for moves, first in (BRIEF_MOVES, worst), (MOVES, None), (MOVES, worst), (MOVES, None):
+            attack = self._annealed.attack(self.problem, plan, moves, first)
+            if attack is not None and self.problem.team_value(plan, attack) < before - SAME_VALUE * abs(before):
+                self.pool.add(attack)
+                break
+        return len(self.pool) > known
+
+    def _worst_known(self, problem: Problem, plan: IntArray) -> Attack | None:
+        """The known outcome that hurts most a plan of a problem with this threat."""
+        values = self.pool.outcome_values(self.pool.group_values(problem.information_objective.information[plan]))
+        return self.pool.attack(int(values.argmin())) if len(values) else None
 
     def _learn_near(self, plan: IntArray) -> bool:
         """Exchange robots of known outcomes for a worse one: few descents where an attack takes hundreds."""
@@ -157,8 +184,14 @@ class Adversary:
         relaxed = replace(self.problem, objective=objective, robot=owners)
         if len(owners) <= SEARCHED_BY_SIZE:
             self.pool.add(greedy_attack(relaxed, owners).attack)
-        self._remember(relaxed, owners, self._quick_attack(relaxed, owners))
+        self._remember(relaxed, owners, self._attack_relaxed(relaxed, owners))
         return len(self.pool) > known
+
+    def _attack_relaxed(self, relaxed: Problem, owners: IntArray) -> Attack:
+        annealed, worst = None, self._worst_known(relaxed, owners)
+        if self._annealed is not None:
+            annealed = self._annealed.attack(relaxed, owners, BRIEF_MOVES, worst)
+        return self._quick_attack(relaxed, owners) if annealed is None else annealed
 
     def attack(self, plan: IntArray, budget: Budget) -> AttackResult:
         """Exact worst case of a plan within a part of the budget."""
@@ -184,6 +217,6 @@ class Adversary:
             return bounded_rational_attack(problem, plan).attack
         if not problem.threat.links_alike:
             return greedy_attack(problem, plan, budget=self.budget).attack
-        found = worst_case_attack(problem, plan, max_nodes=0, budget=self.budget)
+        found = worst_case_attack(problem, plan, max_nodes=0, budget=self.budget.part(QUICK_SHARE))
         self.heed(found)
         return found.attack

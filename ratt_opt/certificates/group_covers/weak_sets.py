@@ -1,0 +1,100 @@
+"""Sets of robots of which only so many may see in a group worth less than the threshold.
+
+A group with more robots of such a set has so many blinded at least. First come the strongest robots of the team, any
+number of them; a group that needs more than these say gets a set of its own, made as large as it can be.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, weak_subset
+from ratt_opt.certificates.plan_sets import NotClosedError
+from ratt_opt.certificates.size_tree import size_tree
+from ratt_opt.certificates.verifier.work import tick
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.by_prices.team import PricedTeam
+    from ratt_opt.certificates.plan_sets import PlanSets
+
+__all__ = ["WeakSets"]
+
+VALUES = 300_000
+"""Values looked at to prove that no robots of a set are worth less: a tenth of a second."""
+
+
+class WeakSets:
+    """``robots`` : masks of the sets; ``room`` : robots of each that may see.
+
+    Parameters
+    ----------
+    largest : a size that no set of robots worth less than the threshold exceeds
+    """
+
+    def __init__(self, team: PricedTeam, threshold: float, largest: int) -> None:
+        self._team, self._threshold = team, threshold
+        self._strongest = [int(i) for i in np.argsort(-team.single, kind="stable")]
+        n_robots = len(self._strongest)
+        self.robots, self.room = [(1 << n_robots) - 1], [largest]
+        for size in range(n_robots - 1, 0, -1):
+            tick()
+            mask, room = sum(1 << i for i in self._strongest[:size]), min(self.room[-1], size)
+            while room > 0 and not self._has_weak(mask, room):
+                room -= 1
+            if room < min(self.room[-1], size):
+                self.robots.append(mask)
+                self.room.append(room)
+
+    def need(self, group: int) -> int:
+        """Blinded robots that a group has at least."""
+        pairs = zip(self.robots, self.room, strict=True)
+        return max(max((group & robots).bit_count() - room, 0) for robots, room in pairs)
+
+    def fewest(self, n_blinded: int) -> int:
+        """Groups that an attack leaves at least."""
+        pairs = zip(self.robots, self.room, strict=True)
+        return max([1, *(-((n_blinded - robots.bit_count()) // room) for robots, room in pairs if room)])
+
+    def raise_need(self, group: int) -> bool:
+        """Add a set that says what a group needs, where those known say less."""
+        known, size = self.need(group), group.bit_count()
+        room = size - known
+        while room > 0 and not self._has_weak(group, room):
+            room -= 1
+        if room == size - known:
+            return False
+        for i in self._strongest:
+            tick()
+            if not group >> i & 1 and not self._has_weak(group | 1 << i, room + 1):
+                group |= 1 << i
+        self.robots.append(group)
+        self.room.append(room)
+        return True
+
+    def _has_weak(self, robots: int, size: int) -> bool:
+        """Whether so many of the robots may be worth less; true also where that is not decided."""
+        n_robots = len(self._strongest)
+        inside, found = (
+            np.array([robots >> i & 1 for i in range(n_robots)], dtype=np.bool_),
+            np.zeros(n_robots, np.bool_),
+        )
+        nobody, spared = np.zeros(n_robots, dtype=np.bool_), robots.bit_count() - size
+        return bool(weak_subset(self._team, nobody, inside, spared, self._threshold, VALUES, found) != ABSENT)
+
+    def records(self, sets: PlanSets, max_nodes: int) -> list[dict[str, Any]]:
+        """The sets with their proofs.
+
+        Raises
+        ------
+        NotClosedError : a tree is too large.
+        """
+        records: list[dict[str, Any]] = []
+        for mask, room in zip(self.robots, self.room, strict=True):
+            robots = [i for i in range(len(self._strongest)) if mask >> i & 1]
+            tree = size_tree(sets, room + 1, max_nodes, robots)
+            records.append({"robots": robots, "room": room, "tree": tree})
+            if sum(len(record["tree"]) for record in records) > max_nodes:
+                raise NotClosedError
+        return records

@@ -1,0 +1,60 @@
+"""Quick attacks on one plan after the other, on any graph."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
+from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin.plans.adversary import Adversary
+from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_elements, random_problem
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_attacks_are_within_the_budgets_and_no_milder_than_what_they_start_from(seed):
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 5, kind=list(OBJECTIVES)[seed % 3])
+    attacks = AnnealedAttacks.of(problem, Budget())
+    for _ in range(3):
+        plan = random_elements(rng, problem)
+        known = ro.random_attack(problem, plan, seed=seed).attack
+        exact = brute_force_worst_case(problem, plan)
+        for first in (None, known):
+            attack = problem.check_attack(attacks.attack(problem, plan, 50, first))
+            assert problem.team_value(plan, attack) >= exact - 1e-12
+        assert problem.team_value(plan, attack) <= problem.team_value(plan, known) + 1e-12
+
+
+def test_no_attack_after_the_time():
+    problem = ro.network_scenario("disk-6", 16, 3, alpha_s=3, alpha_c=6, seed=0).problem()
+    attacks = AnnealedAttacks.of(problem, Budget(0))
+    assert attacks.attack(problem, ro.greedy(problem).elements, 50) is None
+
+
+def test_criteria_without_compiled_code_are_attacked_otherwise():
+    class Own(ro.TraceObjective):
+        compiled_code = None  # as in a criterion of one's own
+
+    scenario = ro.network_scenario("disk-6", 16, 3, alpha_s=3, alpha_c=6, seed=0)
+    shown = scenario.problem()
+    problem = ro.Problem(
+        Own(shown.objective.prior, shown.objective.information), shown.robot, shown.graph, shown.alpha_s, shown.alpha_c
+    )
+    assert AnnealedAttacks.of(problem, Budget()) is None
+    assert Adversary(problem, OutcomePool(problem), Budget()).learn(ro.greedy(problem).elements)
+
+
+@pytest.mark.parametrize("family", ["hubs", "small-world", "disk-12"])
+def test_the_known_outcomes_of_a_plan_on_a_network_are_nearly_its_worst(family):
+    """Greedy attacks alone are 5 % milder on hubs and small worlds."""
+    problem = ro.network_scenario(family, 20, 10, alpha_s=0.25, alpha_c=0.25, seed=1).problem()
+    pool = OutcomePool(problem)
+    adversary, plan = Adversary(problem, pool, Budget()), ro.greedy(problem).elements
+    while adversary.learn(plan):
+        pass
+    exact = ro.worst_case_attack(problem, plan)
+    assert exact.lower <= pool.plan_value(plan) <= 1.02 * exact.upper

@@ -1,0 +1,241 @@
+"""Lower ends proved by covers of groups: against brute force, the exact attacker, and mutations."""
+
+from __future__ import annotations
+
+import copy
+from types import SimpleNamespace
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt import (
+    FileFormatError,
+    Problem,
+    ProofError,
+    TraceObjective,
+    exhaustive_optimum,
+    worst_case_attack,
+)
+from ratt_opt.certificates import write
+from ratt_opt.certificates.group_covers.proof import group_cover_proof
+from ratt_opt.certificates.lower import ENUMERATED, weaker_lower_proof
+from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
+from ratt_opt.certificates.verifier.group_costs import Group
+from ratt_opt.certificates.verifier.partitions import Partitions
+from tests.certificates.cases import certified
+from tests.certificates.test_group_prices import KINDS, checker, drawn, exact, network
+from tests.certificates.test_group_prices import proof as price_proof
+from tests.certificates.test_mutations import accepted, changed, is_false, places, variants
+from tests.strategies import information_data
+
+NODES = 50_000
+
+
+def proof(problem, plan, threshold):
+    """The proof of a threshold, or ``None``."""
+    try:
+        return group_cover_proof(PlanSets(problem, np.asarray(plan), threshold), NODES)
+    except NotClosedError:
+        return None
+
+
+def small_proofs(seeds):
+    for seed in seeds:
+        problem, plan, worst = drawn(seed)
+        if worst > 1e-3:
+            yield problem, plan, worst, proof(problem, plan, worst * (1 - 1e-7))
+
+
+def check_small(seeds):
+    """Worst cases are proved, but for some with protected robots, and nothing above them.
+
+    Returns how many, and how many of them not by prices alone.
+    """
+    closed = listed = 0
+    for problem, plan, worst, part in small_proofs(seeds):
+        assert proof(problem, plan, worst * (1 + 1e-6)) is None
+        if part is None:
+            assert problem.protected_robots
+            continue
+        assert checker(problem, plan).check(part, exact(worst * (1 - 2e-7))) > 0
+        with pytest.raises(ProofError):
+            checker(problem, plan).check(part, exact(worst * (1 + 1e-6)))
+        closed += 1
+        listed += price_proof(problem, plan, worst * (1 - 1e-7)) is None
+    return closed, listed
+
+
+def test_small_teams_by_brute_force():
+    """Also those worst cases that prices alone do not prove."""
+    closed, listed = check_small(range(24))
+    assert closed >= 15
+    assert listed >= 1
+
+
+@pytest.mark.slow
+def test_more_small_teams_by_brute_force():
+    closed, listed = check_small(range(100, 1100))
+    assert closed >= 700
+    assert listed >= 150
+
+
+def test_a_weaker_lower_end_is_proved_where_the_first_is_not():
+    """A threshold above the worst case by 2 %: what is lower by 1 % is too much still, by 3 % no more."""
+    problem, plan, worst = drawn(0)
+    lower, part = weaker_lower_proof(problem, np.array(plan), worst * 1.02)
+    assert lower == pytest.approx(worst * 1.02 * 0.97)
+    assert checker(problem, plan).check(part, exact(lower * (1 - 1e-9))) > 0
+
+
+def test_a_certificate_says_how_much_less_it_proves(tmp_path, monkeypatch):
+    monkeypatch.setattr(write, "lower_proof", lambda *_: ENUMERATED)
+    problem = drawn(0)[0]
+    best = exhaustive_optimum(problem).lower
+    written, document = certified(problem, tmp_path / "c.json")
+    assert document["lower"]["kind"] == "group_covers"
+    assert written.verified.lower_proved
+    assert written.verified.lower == pytest.approx(best * 0.99)
+    assert written.lower_shaved == pytest.approx(best * 0.01)
+
+
+def mutants(seeds, share, path):
+    """Mutate the fields of proofs whose claim was made false by little; returns how many."""
+    rng, count = np.random.default_rng(53), 0
+    for problem, plan, worst, part in small_proofs(seeds):
+        if part is None:
+            continue
+        document = certified(problem, path)[1] | {"plan": [int(e) for e in plan], "lower": part}
+        document["claim"] = {"lower": worst * (1 - 2e-7), "upper": max(document["claim"]["upper"], worst)}
+        assert accepted(document, path)
+        lie = changed(document, ("claim", "lower"), worst * (1 + 1e-5))
+        lie["claim"]["upper"] = max(lie["claim"]["upper"], 2 * worst)
+        assert is_false(lie)
+        for at, value in list(places({"lower": part})):
+            for new in variants(value, rng):
+                if new != value and rng.random() <= share:
+                    count += 1
+                    assert not accepted(changed(lie, at, new), path), (at, value, new)
+    return count
+
+
+def test_no_mutated_proof_hides_a_false_claim(tmp_path):
+    assert mutants(range(6), 0.03, tmp_path / "m.json") >= 50
+
+
+@pytest.mark.slow
+def test_many_mutated_proofs(tmp_path):
+    assert mutants(range(100, 170), 0.5, tmp_path / "m.json") >= 10_000
+
+
+@pytest.fixture(scope="module")
+def large():
+    """A small world of 18 robots."""
+    problem, plan = network("small-world", 18, (0.2, 0.15), 1)
+    found = worst_case_attack(problem, plan)
+    return problem, plan, found, proof(problem, plan, found.lower * (1 - 1e-9))
+
+
+def test_where_attack_trees_do_not_close(large):
+    problem, plan, found, part = large
+    leaves = checker(problem, plan).check(part, exact(found.lower * (1 - 2e-9)))
+    assert leaves > 100
+    assert proof(problem, plan, found.upper * (1 + 1e-6)) is None
+
+
+def _first(part, kind):
+    return next(k for k, node in enumerate(part["tree"]) if kind(node))
+
+
+FAULTS = {
+    "cost too little": lambda p: p["robots"].__setitem__(slice(None), [x + 2**23 for x in p["robots"]]),
+    "a flow exceeds": lambda p: p["flows"][0].__setitem__(3, 2**22 + 1),
+    "is not complete": lambda p: p.update(tree=[-1]),
+    "may be part of an attack": lambda p: p["tree"].__setitem__(_first(p, lambda node: node < -2), -2),
+    "decided twice": lambda p: p.update(tree=[0, 0]),
+    "worth less": lambda p: p["sets"][0].update(tree=[-1]),
+    "a case has no leaf": lambda p: p["tree"].pop(),
+    "a node is repeated": lambda p: p["tree"].append(-1),
+    "a leaf is not impossible": lambda p: p["sets"][0].update(tree=[-2]),
+}
+
+
+@pytest.mark.parametrize("text", FAULTS)
+def test_every_fault_has_its_name(large, text):
+    problem, plan, found, part = large
+    broken = copy.deepcopy(part)
+    FAULTS[text](broken)
+    with pytest.raises((ProofError, FileFormatError), match=text):
+        checker(problem, plan).check(broken, exact(found.lower * (1 - 2e-9)))
+
+
+def test_groups_that_cover_the_team_are_a_fault():
+    """Two robots that see too little apart: a proof that lists both and claims what they see together."""
+    prior, information = information_data(np.random.default_rng(6), 2, 1)
+    problem = Problem(TraceObjective(prior, information), [0, 1], nx.path_graph(2), 0, 1)
+    prices = {"half_link": 1, "robots": [0, 0], "blinded": 0, "group": 0, "triples": [], "flows": []}
+    both = [{"robots": [0, 1], "room": 1, "tree": [0, 1, -1, -2, -2]}]
+    part = {"kind": "group_covers", **prices, "sets": both, "tree": [0, 1, -1, -1, 1, -1, -1]}
+    with pytest.raises(ProofError, match="groups within the budgets cover the team"):
+        checker(problem, [0, 1]).check(part, exact(problem.objective([0, 1]) * (1 - 1e-9)))
+
+
+def by_definition(groups, n, budgets, last):
+    """Whether disjoint groups, and all other robots as one more or none, are within the budgets."""
+
+    def fits(chosen):
+        left = (1 << n) - 1 - sum(group.robots for group in chosen)
+        rest = last(left) if left else None
+        parts = [*chosen, rest] if rest else chosen
+        sums = [sum(getattr(g, name) for g in parts) for name in ("cost", "need", "links")]
+        return (not left or rest is not None) and all(s <= b for s, b in zip(sums, budgets, strict=True))
+
+    chosen = [[]]
+    for group in groups:
+        chosen += [[*some, group] for some in chosen if not any(group.robots & other.robots for other in some)]
+    return any(map(fits, chosen))
+
+
+def test_covers_by_definition():
+    found = 0
+    for seed in range(150):
+        rng = np.random.default_rng([55, seed])
+        n = 5
+        costs = rng.integers(0, 4, (1 << n, 3))
+        every = [Group(mask, *map(int, costs[mask])) for mask in range(1, 1 << n)]
+        budgets = (int(rng.integers(0, 7)), int(rng.integers(0, 5)), 2 * int(rng.integers(0, 4)))
+        groups = [every[k] for k in rng.permutation(len(every))[:10]]
+        allowed = {mask for mask in range(1, 1 << n) if rng.random() < 0.3}
+
+        def last(mask, every=every, allowed=allowed):
+            return every[mask - 1] if mask in allowed else None
+
+        about = SimpleNamespace(slack=budgets[0], most=budgets[1], about=SimpleNamespace(alpha_c=budgets[2] // 2))
+        about.robot, about.everyone, about.flows, about.group_of = [0] * n, (1 << n) - 1, [], last
+        about.need = about.impossible = lambda *_: 0
+        cover = Partitions(groups, about).first()
+        assert (cover is not None) == by_definition(groups, n, budgets, last)
+        found += cover is not None
+    assert 30 <= found <= 120
+
+
+def agreement(family, n_robots, shares, seed, kind="trace"):
+    """The attacker and the verifier, where both end: nothing above the attack is proved, what the attacker says is."""
+    problem, plan = network(family, n_robots, shares, seed, kind)
+    found = worst_case_attack(problem, plan, time_limit=60)
+    assert proof(problem, plan, found.upper * (1 + 1e-6)) is None
+    part = proof(problem, plan, found.lower * (1 - 1e-9))
+    if part is not None:
+        assert checker(problem, plan).check(part, exact(found.lower * (1 - 2e-9))) > 0
+    return part is not None
+
+
+def test_agrees_with_the_attacker():
+    assert agreement("disk-6", 20, (0.2, 0.15), 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("family", ["dense", "disk-12", "disk-6", "small-world", "hubs"])
+@pytest.mark.parametrize("n_robots", [20, 22, 24])
+def test_agrees_with_the_attacker_on_every_family(family, n_robots):
+    assert sum(agreement(family, n_robots, (0.2, 0.15), seed, KINDS[seed]) for seed in range(3)) >= 2
