@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from numpy.typing import ArrayLike
 
 __all__ = [
     "BoolArray",
@@ -24,6 +25,7 @@ __all__ = [
     "check_link",
     "check_number",
     "check_subset",
+    "integer_array",
     "readonly",
 ]
 
@@ -53,6 +55,21 @@ def check_integer(argument: str, value: object, *, low: int, high: int | None = 
     if number < low or (high is not None and number > high):
         raise InputError(argument, rule, value)
     return number
+
+
+def integer_array(value: ArrayLike) -> NDArray[Any]:
+    """Return ``value`` as an array, of objects where an entry is no integer: NumPy reads ``[True, 2]`` as ``[1, 2]``.
+
+    Rows of different shapes give an array without entries.
+    """
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iu":
+        return value
+    try:
+        entries = np.asarray(value, dtype=object)
+    except ValueError:
+        return np.empty(0, dtype=object)
+    whole = all(isinstance(x, (int, np.integer)) and not isinstance(x, bool) for x in entries.flat)
+    return np.array(entries.tolist()) if whole else entries
 
 
 def check_link(argument: str, link: Any) -> tuple[int, int]:
@@ -92,7 +109,9 @@ def check_number(argument: str, value: object, *, low: float = -np.inf) -> float
 def check_finite(argument: str, value: object, *, ndim: int | None = None) -> FloatArray:
     """Return ``value`` as a read-only float64 array without NaN or infinities."""
     try:
-        array = np.array(value, dtype=np.float64)
+        given = np.asarray(value)
+        # Text and complex numbers would be converted in silence; the word is no number either.
+        array = np.array(given if given.dtype.kind in "biufO" else "no numbers", dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(argument, "must be an array of numbers", type(value).__name__) from None
     if ndim is not None and array.ndim != ndim:
@@ -108,6 +127,8 @@ def check_subset(argument: str, subset: Iterable[int], size: int) -> IntArray:
     """Return the sorted indices of ``subset``, each in ``[0, size)`` and given once."""
     if isinstance(subset, np.ndarray) and subset.dtype.kind == "b":
         raise InputError(argument, "must hold element indices, not a mask", f"boolean array of shape {subset.shape}")
+    if not isinstance(subset, Iterable):
+        raise InputError(argument, "must hold element indices", subset)
     indices = sorted(check_integer(f"{argument} index", item, low=0, high=size - 1) for item in subset)
     for first, second in pairwise(indices):
         if first == second:

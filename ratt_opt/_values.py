@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt._rounding import named_text
 
-__all__ = ["ByValue", "Shown", "plain", "shown"]
+__all__ = ["ByValue", "Shown", "counted", "plain", "shown"]
 
 MOST_SHOWN = 12
 """Entries of an array that a ``repr`` shows; the rest is counted."""
@@ -51,6 +51,11 @@ def _key(value: Any) -> Any:
     if isinstance(value, (tuple, list)):
         return tuple(_key(x) for x in value)
     return None if isinstance(value, float) and value != value else value  # noqa: PLR0124  (NaN)
+
+
+def counted(number: int, noun: str) -> str:
+    """Return a number of things: "1 robot", "2 robots"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def shown(value: Any) -> str:

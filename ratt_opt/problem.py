@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt._validation import IntArray, check_distinct, check_integer, check_link, readonly
+from ratt_opt._validation import IntArray, check_distinct, check_integer, check_link, integer_array, readonly
 from ratt_opt._values import ByValue, Shown
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
@@ -165,14 +165,9 @@ class Problem:
         ------
         InputError : wrong shape, not integers, or an element of another robot.
         """
-        try:
-            array = np.asarray(elements)
-        except ValueError:
-            array = np.empty(0, dtype=np.int64)
-        if array.dtype.kind not in "iu":
-            array = np.asarray(elements, dtype=object)  # keeps each entry as it was given, for the error text
+        array = integer_array(elements)
         if array.shape != (self.n_robots,):
-            raise InputError("elements", f"must hold one element per robot, shape ({self.n_robots},)", array.tolist())
+            raise InputError("elements", f"must hold one element per robot, shape ({self.n_robots},)", elements)
         for i, element in enumerate(array):
             e = check_integer(f"elements[{i}]", element, low=0, high=self.objective.n - 1)
             if self.robot[e] != i:
@@ -226,12 +221,19 @@ class Problem:
         return [group - attack.sensing for group in self.communication.groups(attack.links)]
 
 
+def check_problem(problem: Problem) -> Problem:
+    """Return ``problem``. ``InputError`` : it is something else, as a scenario in its place."""
+    if not isinstance(problem, Problem):
+        raise InputError("problem", "must be a Problem, as scenario.problem() returns", type(problem).__name__)
+    return problem
+
+
 def _check_owners(robot: ArrayLike, n_elements: int) -> IntArray:
-    owners = np.asarray(robot)
+    owners = integer_array(robot)
     if owners.shape != (n_elements,):
         raise InputError("robot", f"must have shape ({n_elements},), one owner per element", f"shape {owners.shape}")
     if owners.dtype.kind not in "iu":
-        raise InputError("robot", "must hold integers", owners.dtype)
+        raise InputError("robot", "must hold integers", owners.tolist())
     if owners.min() < 0:
         raise InputError("robot", "must hold robots >= 0", int(owners.min()))
     missing = sorted(set(range(int(owners.max()) + 1)) - set(owners.tolist()))

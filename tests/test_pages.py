@@ -70,6 +70,7 @@ def test_the_source_distribution_holds_docs_licence_and_builds_the_same_wheel(tm
         "docs/first_hour.md",
         "docs/guides/own_graph.md",
         "docs/audit.md",
+        "formal/README.md",
         "tests/conftest.py",
     ):
         assert (unpacked / name).exists(), name

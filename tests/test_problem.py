@@ -5,11 +5,13 @@ from __future__ import annotations
 import copy
 import pickle
 from dataclasses import replace
+from functools import partial
 
 import networkx as nx
 import numpy as np
 import pytest
 
+import ratt_opt as ro
 from ratt_opt import Attack, InputError, Plan, Problem, TableFunction, TraceObjective
 from ratt_opt.graph.communication import CommunicationGraph
 
@@ -66,6 +68,9 @@ def test_interleaved_and_ragged_owners() -> None:
         ({"robot": [0, 0, 2, 2]}, "none for robot 1"),
         ({"robot": [0, 0, 1]}, r"robot must have shape \(4,\)"),
         ({"robot": [0.0, 0, 1, 1]}, "robot must hold integers"),
+        ({"robot": [0, False, 1, 1]}, "robot must hold integers"),
+        ({"robot": [0, 0, True, 1]}, "robot must hold integers"),
+        ({"robot": [[0], [0, 1], 1, 1]}, "robot must hold integers"),
         ({"robot": [-1, 0, 1, 1]}, "robot must hold robots >= 0"),
         ({"objective": 3}, "objective must be a SetFunction; got int"),
         ({"graph": nx.path_graph(3)}, r"graph must have the nodes 0..1; got \[0, 1, 2\]"),
@@ -98,6 +103,9 @@ def test_bad_problems_are_refused(change: dict[str, object], text: str) -> None:
         ([0, 4], r"elements\[1\] must be an integer in \[0, 3\]"),
         ([0.0, 2.0], r"elements\[0\] must be an integer"),
         ([[0, 2]], "one element per robot"),
+        ([True, 2], r"elements\[0\] must be an integer in \[0, 3\]; got True"),
+        ([0, 2**70], r"elements\[1\] must be an integer in \[0, 3\]"),
+        ([np.zeros((2, 2)), np.zeros((2, 3))], "one element per robot"),
     ],
 )
 def test_bad_plans_are_refused(elements: object, text: str) -> None:
@@ -196,3 +204,13 @@ def test_numbers_that_floating_point_loses_beside_each_other_are_refused(
         TraceObjective([prior], [[information]])
     with pytest.raises(InputError, match=r"weights must be in \[1e-100, 1e\+100\]"):
         TraceObjective([[[1.0]]], [[[[1.0]]]], [1e-200])
+
+
+@pytest.mark.parametrize("given", [ro.random_scenario(2, 1, alpha_s=0, alpha_c=0, seed=0), None])
+def test_planners_and_attackers_say_that_they_want_a_problem(given: object) -> None:
+    planners = (ro.ratt, ro.greedy, ro.myopic, ro.nonrobust_optimum, ro.solve_maxmin, ro.exhaustive_optimum)
+    attackers = (ro.worst_case_attack, ro.greedy_attack, ro.bounded_rational_attack, ro.criticality_ranking)
+    calls = [*planners, partial(ro.random_plan, seed=0), *(partial(f, elements=[0, 12]) for f in attackers)]
+    for call in calls:
+        with pytest.raises(InputError, match=r"problem must be a Problem, as scenario.problem\(\) returns; got"):
+            call(given)

@@ -2,7 +2,8 @@
 
 Run as ``python -m analysis.benchmarks.cores [--workers 1 2] [--robots 20] [--steps 4] [--seeds K] [--gap G]``. Teams
 that have carried out their best plans for some steps are harder than those just drawn (``warm.py``). Besides wall time,
-which only a quiet machine measures, the processor time of the caller and of its workers.
+which only a quiet machine measures, the processor time of the caller and of its workers; and the gap that the verifier
+accepts of the certificate, which of several workers is merged from their proofs.
 """
 
 from __future__ import annotations
@@ -10,15 +11,19 @@ from __future__ import annotations
 import argparse
 import os
 import resource
+import sys
+import tempfile
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from analysis.benchmarks.warm import BUDGETS, TARGETS, moved
 from analysis.tables import print_table
-from ratt_opt import random_scenario, solve_maxmin
+from ratt_opt import certify, random_scenario, solve_maxmin, verify_certificate
 
 if TYPE_CHECKING:
     from ratt_opt import MaxMinResult, Problem
+    from ratt_opt.certificates.verifier.verified import Verified
 
 
 def moved_problem(robots: int, steps: int, seed: int, gap: float) -> Problem:
@@ -40,6 +45,14 @@ def measured(problem: Problem, gap: float, seconds: float, workers: int) -> tupl
         "caller_s": time.process_time() - own,
         "workers_s": workers_seconds() - children,
     }
+
+
+def proved(problem: Problem, result: MaxMinResult) -> Verified:
+    """What the verifier accepts of the result's certificate."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "certificate.json")
+        certify(problem, result, path)
+        return verify_certificate(path)
 
 
 def workers_seconds() -> float:
@@ -67,7 +80,10 @@ def main() -> None:
             alone = alone or seconds["wall_s"]
             row = {"seed": seed, "workers": workers, "nodes": result.nodes, **seconds}
             row |= {"speedup": alone / seconds["wall_s"], "stop": result.stop.name}
+            claim = proved(problem, result)
+            row |= {"proved_gap": claim.gap, "lower_proved": claim.lower_proved, "leaves": claim.upper_leaves}
             rows.append(row | {"lower": result.lower, "upper": result.upper})
+            print(rows[-1], file=sys.stderr, flush=True)
     print_table(f"N = {options.robots}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}", rows)
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._rounding import down, up
-from ratt_opt._values import Shown, plain
-from ratt_opt.problem import Attack
+from ratt_opt._values import Shown, counted, plain
+from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class PlanValues(SetFunction):
     __slots__ = ("evaluations", "objective", "plan")
 
     def __init__(self, problem: Problem, elements: ArrayLike) -> None:
-        self.plan: IntArray = problem.check_plan(elements)
+        self.plan: IntArray = check_problem(problem).check_plan(elements)
         self.objective: SetFunction = problem.objective
         self.evaluations = 0
 
@@ -80,7 +80,7 @@ class AttackResult(Shown):
         return {**ends, **self.attack.to_dict(), "stop": self.stop.value, **cost}
 
     def __repr__(self) -> str:
-        attack = f"{len(self.attack.sensing)} robots blinded, {len(self.attack.links)} links cut"
+        attack = f"{counted(len(self.attack.sensing), 'robot')} blinded, {counted(len(self.attack.links), 'link')} cut"
         cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
         return f"AttackResult([{down(self.lower, 6)}, {up(self.upper, 6)}], {attack}, {self.stop.value}, {cost})"
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
-from ratt_opt._validation import check_integer
+from ratt_opt._validation import check_integer, check_number
 from ratt_opt.errors import InputError
 
 __all__ = [
@@ -212,7 +212,7 @@ def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
     if (k is None) == (c is None):
         raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
     name, given = ("k", k) if k is not None else ("c", c)
-    value = float(given.upper if isinstance(given, HasUpper) else given)  # type: ignore[arg-type]
+    value = check_number(name, given.upper if isinstance(given, HasUpper) and not isinstance(given, str) else given)
     if not 0 <= value <= 1:
         raise InputError(name, "must be in [0, 1]", value)
     return name, value

@@ -66,7 +66,7 @@ def _unequal(record: dict[str, Any], expected: dict[str, Any], computed: set[str
     names = [name for name in expected if name not in computed and record[name] != expected[name]]
     if "objective" in names:
         return f"its criterion is {record['objective']!s:.20}, not {expected['objective']}"
-    return f"its {names[0]} differs" if names else ""
+    return f"its field '{names[0]}' differs" if names else ""
 
 
 def _outside(record: dict[str, Any], name: str, enclosed: Iterator[Any]) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
 
-__all__ = ["ENUMERATED", "lower_proof"]
+__all__ = ["ENUMERATED", "lower_proof", "weaker_lower_proof"]
 
 LARGEST_TREE = 200_000
 """Most nodes of a tree."""
@@ -32,6 +32,8 @@ NODES_TIMES_PAIRS = 20_000_000
 """Most nodes of an attack tree, times pairs of robots."""
 SHARE_OF_OTHERS = 0.4
 """Of the seconds left that each kind but the last may take."""
+LOWERED = (0.01, 0.03, 0.1, 0.3)
+"""Shares of a threshold by which it is lowered, in turn, until it is proved."""
 ENUMERATED: dict[str, Any] = {"kind": "enumerated"}
 """Says that the outcomes were enumerated in floating point: not a proof."""
 
@@ -71,11 +73,29 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     def by_covers() -> dict[str, Any]:
         return group_cover_proof(sets(), max_nodes)
 
-    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices, by_covers]
-    for way in [by_size, *ways] if problem.communication.is_complete else ways:
+    ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices]
+    ways = [by_size, *ways] if problem.communication.is_complete else [*ways, by_covers]
+    for way in ways:
         try:
-            with limited(seconds_left() * (1.0 if way is by_covers else SHARE_OF_OTHERS)):
+            with limited(seconds_left() * (1.0 if way is ways[-1] else SHARE_OF_OTHERS)):
                 return way()
         except (NotClosedError, UndecidedError):
             continue
     return ENUMERATED
+
+
+def weaker_lower_proof(
+    problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE
+) -> tuple[float, Any]:
+    """A threshold that is lower by one of ``LOWERED``, with its proof by covers of groups.
+
+    Parameters are those of :func:`lower_proof`; where none is proved, the threshold itself comes with ``ENUMERATED``.
+    """
+    for share in LOWERED if not problem.communication.is_complete else ():
+        lower = threshold * (1 - share)
+        try:
+            with limited(seconds_left() * SHARE_OF_OTHERS):
+                return lower, group_cover_proof(PlanSets(problem, elements, lower), max_nodes)
+        except (NotClosedError, UndecidedError):
+            continue
+    return threshold, ENUMERATED

@@ -12,8 +12,6 @@ from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.link_choice.best_links import BestLinks
-    from ratt_opt.graph.communication import Link
-    from ratt_opt.problem import Problem
 
 __all__ = ["attack"]
 
@@ -61,21 +59,9 @@ def attack(
     if protect:
         links["protect"] = links_to_protect(problem, elements, protect, time_limit=time_limit)
     if add:
-        near = None if reach is None else new_links_within(source, problem, reach)
+        near = None if reach is None else sorted(set(source.pairs_within(reach)) - problem.communication.links)
         links["add"] = links_to_add(problem, elements, add, candidates=near, time_limit=time_limit)
     if as_json:
         print_json(attack_document(objective, elements, results, critical, budgets, best_links=links))
     else:
         print_tables(attack_tables(results, critical, budgets, below, best_links=links))
-
-
-def new_links_within(source: object, problem: "Problem", reach: float) -> "list[Link]":
-    """Pairs of robots without a link that are close enough for one.
-
-    Raises ``InputError`` : the input does not say where the robots are.
-    """
-    from ratt_opt.scenario.model import Scenario
-
-    if not isinstance(source, Scenario):
-        raise InputError("--reach", "needs a scenario, which says where the robots are", type(source).__name__)
-    return sorted(set(source.pairs_within(reach)) - problem.communication.links)

@@ -90,7 +90,7 @@ def _bound(
     if as_json:
         print_json(report.to_dict())
     else:
-        print_tables(report_tables(report, source.element_labels))
+        print_tables(report_tables(report))
         print_lines(["written: " + ", ".join(printable(str(file)) for file in files)])
     if report.interrupted:
         raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_subset
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_subset, integer_array
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, finite_values
@@ -79,12 +79,12 @@ def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) 
     """
     error, everything = _rounding(f), np.arange(f.n)
     if plan is not None:
-        chosen = check_subset("plan", np.asarray(plan).tolist(), f.n)
+        chosen = check_subset("plan", integer_array(plan).tolist(), f.n)
         alone = np.arange(len(chosen))
         return Domain(name="robots", restricted=_restriction(f, chosen), owners=alone, names=chosen, rounding=error)
     if owners is None:
         return Domain(name="elements", restricted=f, owners=everything, names=everything, rounding=error)
-    given = np.asarray(owners)
+    given = integer_array(owners)
     if given.shape != (f.n,) or given.dtype.kind not in "iu":
         raise InputError("owners", f"must hold {f.n} integers, one per element", f"shape {given.shape}, {given.dtype}")
     _, numbered = np.unique(given, return_inverse=True)

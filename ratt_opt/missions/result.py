@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, IntArray, readonly
+from ratt_opt._validation import FloatArray, IntArray, check_number, readonly
 from ratt_opt._values import ByValue
+from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -127,6 +128,7 @@ class Mission(ByValue):
         """What :attr:`nees` of a step lies in with probability ``level`` for a consistent filter (chi-square)."""
         from scipy.stats import chi2
 
+        _check_level(level)
         freedom = self.dimension * self.scenario.n_targets
         low, high = (float(chi2.ppf(end, freedom)) for end in ((1 - level) / 2, (1 + level) / 2))
         return low / self.scenario.n_targets, high / self.scenario.n_targets
@@ -135,6 +137,7 @@ class Mission(ByValue):
         """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN where none."""
         from scipy.stats import chi2
 
+        _check_level(level)
         counts = np.array([step.team.innovation.count or np.nan for step in self.steps])
         ends = [(1 - level) / 2, (1 + level) / 2]
         return readonly(np.stack([chi2.ppf(end, counts) / counts for end in ends], axis=-1))
@@ -176,3 +179,8 @@ class Mission(ByValue):
         from ratt_opt.report.mission.write import write_animation
 
         return write_animation(self, path)
+
+
+def _check_level(level: float) -> None:
+    if not 0 < check_number("level", level) < 1:
+        raise InputError("level", "must be between 0 and 1", level)

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["SHARING", "run_mission"]
 
 SHARING = ("best group", "all surviving")
+MOST_STEPS = 10**6
+"""Every step is kept, and written; a million take gigabytes already."""
 TRUTH, MOTION, LUCK, STRIKE, ATTACKER = range(5)
 """Streams of random numbers: the first states, motion noise, measurement noise, failures, the attacker's own."""
 
@@ -63,7 +65,7 @@ def run_mission(
     Parameters
     ----------
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
-    steps : T >= 1
+    steps : T, from 1 to a million: every step is kept
     planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)``
         that returns a plan or its elements, such as :class:`MaxMinPlanner`
     attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
@@ -88,7 +90,7 @@ def run_mission(
     InputError : an argument breaks its rule, a planner or attacker returns what it may not, or the journal is another
         mission's.
     """
-    check_integer("steps", steps, low=1)
+    check_integer("steps", steps, low=1, high=MOST_STEPS)
     check_integer("seed", seed, low=0)
     if sharing not in SHARING:
         raise InputError("sharing", f"must be {' or '.join(SHARING)}", sharing)

@@ -6,6 +6,7 @@ pickles and becomes JSON and back without losing a bit: a robot may die, and ano
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as LateError
 from dataclasses import replace
@@ -24,9 +25,10 @@ from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.tracker_state import Measurement, TrackerState
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Plan
+from ratt_opt.scenario.record import LARGEST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
@@ -118,10 +120,12 @@ class Tracker:
 
         Raises
         ------
-        InputError : a measurement names no robot or target or has another length, a number is not finite, or time
-            runs backwards. The state is then as it was.
+        InputError : a measurement names no robot or target or has another length, a number is not finite or puts a
+            target beyond 1e12 m, or time runs backwards. The state is then as it was.
         """
         began = monotonic()
+        if not isinstance(measurements, Iterable):
+            raise InputError("measurements", "must be Measurements", measurements)
         state = self._measured(list(measurements), now, poses)
         offered = offered_sequences(self.world, state.belief, state.poses, state.time)
         rest = _nearest(offered, state.controls)
@@ -156,7 +160,7 @@ class Tracker:
         for name, shape in expected.items():
             if found[name] != shape:
                 raise InputError(f"state {name}", f"must have shape {shape} for this team", f"shape {found[name]}")
-        return state
+        return _within_reach(state)
 
     def _measured(self, measurements: list[Measurement], now: float | None, poses: ArrayLike | None) -> TrackerState:
         """The state after time has passed and the measurements are taken in."""
@@ -174,7 +178,7 @@ class Tracker:
             pieces, _ = group_pieces(self.world, belief, dict(enumerate(places)), readings, readings)
             belief = belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
         clock = now if now is not None else None if state.now is None else state.now + passed
-        return replace(state, time=time, now=clock, poses=places, belief=belief)
+        return _within_reach(replace(state, time=time, now=clock, poses=places, belief=belief))
 
     def _passed(self, now: float | None) -> float:
         """Seconds since the last step; none before the first."""
@@ -234,6 +238,17 @@ class Tracker:
             return self._running.result(timeout=left)
         except LateError:
             return None
+
+
+def _within_reach(state: TrackerState) -> TrackerState:
+    """Return the state after checking that what is computed with it stays finite.
+
+    Raises ``InputError`` : a robot or target is where no scenario could place it, as after a range of 1e300 m.
+    """
+    for name, numbers in (("poses", state.poses), ("estimates", state.belief.mean)):
+        if not np.abs(numbers).max() <= LARGEST:
+            raise InputError(name, f"must stay within {LARGEST:g}", float(np.abs(numbers).max()))
+    return state
 
 
 def _in_thread(work: Callable[[], IntArray]) -> Future[IntArray]:

@@ -52,12 +52,7 @@ def name_things(axes: Axes, picture: Picture) -> None:
     drawn = sorted(_drawn_robots(picture))
     names = [Label(text=picture.names[i], place=picture.places[i], colour=INK) for i in drawn if picture.names[i]]
     targets = () if picture.targets is None else picture.targets
-    weights = np.ones(len(targets)) if picture.weights is None else picture.weights[: len(targets)]
-    weighted = len(targets) > 0 and bool(np.ptp(weights) > 0)
-    for j, (place, weight) in enumerate(zip(targets, weights, strict=True)):
-        name = picture.target_names[j] if picture.target_names else ""
-        text = f"T{j} {name}".rstrip() + (f" ×{weight:g}" if weighted else "")
-        names.append(Label(text=text, place=place, colour=TARGET))
+    names += [Label(text=picture.target_label(j), place=place, colour=TARGET) for j, place in enumerate(targets)]
     place_labels(axes, names, [*picture.places[drawn], *targets])
 
 
@@ -109,9 +104,7 @@ def _draw_targets(axes: Axes, picture: Picture) -> None:
                 axes.add_patch(Ellipse(mean, width, height, angle=angle, color=TARGET, linewidth=1.0, **style))
         axes.plot([], [], color=TARGET, linestyle=":", label="95 % before measuring")
         axes.scatter([], [], marker="o", s=90, color=TARGET, alpha=0.3, label="95 % after, best group")
-    weights = np.ones(len(picture.targets)) if picture.weights is None else picture.weights
-    weighted = bool(np.ptp(weights) > 0)
-    label = "target (predicted), T: its number" + (", ×: its weight" if weighted else "")
+    label = "target (predicted), T: its number" + (", ×: its weight" if picture.is_weighted else "")
     x, y = picture.targets.T
     axes.scatter(x, y, marker="*", s=70, color=TARGET, zorder=4, label=label)
 

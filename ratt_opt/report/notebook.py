@@ -7,6 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text
+from ratt_opt._values import counted
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.tables import share_text
@@ -34,7 +35,8 @@ def plan_view(plan: PlanAssessment) -> str:
         for i, element in enumerate(plan.elements.tolist())
     ]
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
-    title = f"{plan.name}: keeps {kept} with {len(attack.sensing)} robots blinded and {len(attack.links)} links cut"
+    lost = f"{counted(len(attack.sensing), 'robot')} blinded and {counted(len(attack.links), 'link')} cut"
+    title = f"{plan.name}: keeps {kept} with {lost}"
     return html_table(title, ("robot", "element", "bait", "under attack"), rows)
 
 

@@ -46,6 +46,17 @@ class Picture:
     groups: tuple[frozenset[int], ...]
     best: frozenset[int]
 
+    @property
+    def is_weighted(self) -> bool:
+        """Some targets count more than others."""
+        return self.weights is not None and len(self.weights) > 0 and bool(np.ptp(self.weights) > 0)
+
+    def target_label(self, j: int) -> str:
+        """Target ``j`` on the map: its number, its name if it has one, its weight where weights differ."""
+        name = self.target_names[j] if self.target_names else ""
+        weight = f" ×{self.weights[j]:g}" if self.weights is not None and self.is_weighted else ""
+        return f"T{j} {name}".rstrip() + weight
+
 
 def picture_of(source: object, report: BoundReport, view: PlanAssessment | None = None) -> Picture:
     """Put together what :func:`draw_map` draws; ``view``: one of the report's views, by default the worst."""

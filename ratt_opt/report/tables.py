@@ -6,9 +6,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, down, up
+from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from rich.console import RenderableType
     from rich.table import Table
@@ -35,15 +36,10 @@ LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
 
-def report_tables(report: BoundReport, labels: Sequence[str] | None = None) -> Iterable[RenderableType]:
-    """Yield the tables of a bound report: planners, plan, bracket, guarantees.
-
-    Parameters
-    ----------
-    labels : (E,) what each element is ("3 m/s, 1 rad/s"); element indices where unknown
-    """
+def report_tables(report: BoundReport) -> Iterable[RenderableType]:
+    """Yield the tables of a bound report: planners, plan, bracket, guarantees."""
     yield _planners(report)
-    yield _plan(report, labels)
+    yield _plan(report)
     yield _bracket(report)
     yield _guarantees(report)
 
@@ -134,14 +130,15 @@ def _planners(report: BoundReport) -> Table:
     return table
 
 
-def _plan(report: BoundReport, labels: Sequence[str] | None) -> Table:
-    plan = report.recommended
+def _plan(report: BoundReport) -> Table:
+    plan, known = report.recommended, describe(report.problem, report.source)
     table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
     home = {i: k for k, group in enumerate(plan.groups) for i in group}
     for i, element in enumerate(plan.elements.tolist()):
         state = "blinded" if i in plan.worst_case.attack.sensing else "sees"
         group = f", group {home[i]} of {len(plan.groups)}" if len(plan.groups) > 1 else ""
-        table.add_row(str(i), str(element), labels[element] if labels else "", state + group)
+        control = known.labels[element] if known.labels else ""
+        table.add_row(known.robot(i), str(element), control, state + group)
     table.caption = f"cut links: {_links(plan.worst_case.attack)}"
     return table
 

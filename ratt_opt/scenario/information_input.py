@@ -107,6 +107,10 @@ class InformationInput(ProblemRecord):
         return np.array(self.robot)
 
     @property
+    def _places(self) -> FloatArray | None:
+        return None if self.robot_positions is None else np.array(self.robot_positions)
+
+    @property
     def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray | None]:
         return *self.matrices, None if self.weights is None else np.array(self.weights)
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from ratt_opt._validation import check_number, readonly
+from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.motion import move_robots, predict_targets
-from ratt_opt.scenario.problem_record import Link, ProblemRecord
+from ratt_opt.scenario.problem_record import Link, ProblemRecord, near_pairs
 from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
 
@@ -172,11 +172,7 @@ class Scenario(ProblemRecord):
         """The communication graph of robots at poses (N, 3), or ``None`` for the complete one."""
         if self.communication_range is None:
             return super().graph
-        return self._graph_of(_pairs_within(poses, self.communication_range))
-
-    def pairs_within(self, reach: float) -> tuple[tuple[int, int], ...]:
-        """Pairs of robots ``(i, j)``, ``i < j``, at most ``reach`` [m] apart, ascending; linked or not."""
-        return _pairs_within(self.poses, check_number("reach", reach, low=0))
+        return self._graph_of(near_pairs(poses, self.communication_range))
 
     @cached_property
     def element_labels(self) -> tuple[str, ...]:
@@ -186,6 +182,10 @@ class Scenario(ProblemRecord):
     @property
     def _owners(self) -> IntArray:
         return self.robot
+
+    @property
+    def _places(self) -> FloatArray:
+        return self.poses
 
     @property
     def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -214,9 +214,3 @@ class Scenario(ProblemRecord):
                 rule,
                 tuple(self.predicted_targets[j].tolist()),
             )
-
-
-def _pairs_within(poses: FloatArray, reach: float) -> tuple[tuple[int, int], ...]:
-    apart = np.linalg.norm(poses[:, None, :2] - poses[None, :, :2], axis=-1)
-    close = np.argwhere(np.triu(apart <= reach, 1))
-    return tuple((int(i), int(j)) for i, j in close)

@@ -7,8 +7,10 @@ import json
 from typing import TYPE_CHECKING, Annotated
 
 import networkx as nx
+import numpy as np
 from pydantic import AfterValidator
 
+from ratt_opt._validation import check_number
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.record import Record, Whole
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["Link", "ProblemRecord"]
+__all__ = ["Link", "ProblemRecord", "near_pairs"]
 
 
 MOST_ROBOTS = 2000
@@ -32,6 +34,13 @@ def _ordered(link: tuple[int, int]) -> tuple[int, int]:
     if link[0] == link[1]:
         raise InputError("", "must join two different robots", list(link))
     return (min(link), max(link))
+
+
+def near_pairs(places: FloatArray, reach: float) -> tuple[tuple[int, int], ...]:
+    """Return the pairs ``(i, j)``, ``i < j``, of ``places`` (N, 2 or more) that are at most ``reach`` [m] apart."""
+    apart = np.linalg.norm(places[:, None, :2] - places[None, :, :2], axis=-1)
+    close = np.argwhere(np.triu(apart <= reach, 1))
+    return tuple((int(i), int(j)) for i, j in close)
 
 
 Link = Annotated[tuple[Whole, Whole], AfterValidator(_ordered)]
@@ -63,6 +72,10 @@ class ProblemRecord(Record):
         @property
         def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray | None]:
             """Priors (M, d, d), information (E, M, d, d) and weights (M,) or ``None``."""
+
+        @property
+        def _places(self) -> FloatArray | None:
+            """(N, 2 or more) where the robots are, x and y [m] first, or ``None``."""
 
     def __repr__(self) -> str:
         sizes = f"{self.n_robots} robots, {self.n_targets} targets"
@@ -97,6 +110,18 @@ class ProblemRecord(Record):
             frozenset(self.protected_robots),
             frozenset(self.protected_links),
         )
+
+    def pairs_within(self, reach: float) -> tuple[tuple[int, int], ...]:
+        """Pairs of robots ``(i, j)``, ``i < j``, at most ``reach`` [m] apart, ascending; linked or not.
+
+        Raises
+        ------
+        InputError : ``reach`` is negative, or the input does not say where the robots are.
+        """
+        places = self._places
+        if places is None:
+            raise InputError("reach", "needs an input that says where the robots are (robot_positions)", "none")
+        return near_pairs(places, check_number("reach", reach, low=0))
 
     def _graph_of(self, links: Iterable[tuple[int, int]]) -> nx.Graph:
         graph: nx.Graph = nx.Graph()

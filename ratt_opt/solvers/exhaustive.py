@@ -11,6 +11,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
+from ratt_opt.problem import check_problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import Metered
@@ -54,7 +55,7 @@ def exhaustive_optimum(
 
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
-    shape = _shape(problem, range(problem.n_robots))
+    shape = _shape(problem, range(check_problem(problem).n_robots))
     with np.errstate(over="ignore"):
         n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
     if n_plans > LARGEST_SEARCH:

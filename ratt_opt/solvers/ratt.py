@@ -12,7 +12,7 @@ from ratt_opt.graph.largest_group.counting import counting_bound
 from ratt_opt.graph.largest_group.smallest import by_search
 from ratt_opt.graph.separable_groups import LARGEST_MASK
 from ratt_opt.graph.survivor_sizes import caa
-from ratt_opt.problem import Plan, Problem
+from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
@@ -39,7 +39,7 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
-    if problem.threat.links_alike:
+    if check_problem(problem).threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
     if problem.n_robots > LARGEST_MASK:  # nothing but the bound is known of larger teams
         return problem.n_robots - counting_bound(problem.threat)
@@ -74,7 +74,7 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 @Step("planning")
 def bait_and_greedy(problem: Problem, alpha: int, budget: Budget | None = None) -> Plan:
     """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts."""
-    single = problem.objective.singletons()
+    single = check_problem(problem).objective.singletons()
     best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
     # A stable sort of the negated values keeps the lowest robot first among equals.
     order = np.argsort(-single[best], kind="stable")
@@ -141,11 +141,11 @@ def greedy(problem: Problem, *, budget: Budget | None = None) -> Plan:
 
 def myopic(problem: Problem, *, budget: Budget | None = None) -> Plan:
     """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
-    return bait_and_greedy(problem, problem.n_robots, budget)
+    return bait_and_greedy(problem, check_problem(problem).n_robots, budget)
 
 
 def random_plan(problem: Problem, *, seed: int) -> Plan:
     """Uniformly random element of every robot. Source: the algorithm Random of ratt.tex, Section VI."""
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
-    elements = np.array([choice[rng.integers(len(choice))] for choice in problem.choices])
+    elements = np.array([choice[rng.integers(len(choice))] for choice in check_problem(problem).choices])
     return Plan(elements=readonly(elements), evaluations=0)

@@ -63,7 +63,7 @@ def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
     moved = _shifted(record, rng, 2)
     assert moved != record
     assert difference(moved) == ""
-    assert difference(_shifted(record, rng, 2) | {"alpha_s": 0}) == "its alpha_s differs"
+    assert difference(_shifted(record, rng, 2) | {"alpha_s": 0}) == "its field 'alpha_s' differs"
     assert "its prior is not what comes of" in difference(record | {"prior": record["prior"][::-1]})
     assert difference(problem_document(scenario.problem("trace"))) == "its criterion is trace, not logdet"
     first, *others = scenario.targets
@@ -78,7 +78,7 @@ def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
         other = problem_document(changed.problem("logdet"))
         assert other == record or difference(other)
     weighted = scenario.replace(targets=(first.replace(weight=1.0 + 2**-52), *others))
-    assert difference(problem_document(weighted.problem("logdet"))) == "its weights differs"
+    assert difference(problem_document(weighted.problem("logdet"))) == "its field 'weights' differs"
 
 
 def test_a_comparison_counts_as_work_of_the_verifier() -> None:

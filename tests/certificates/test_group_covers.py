@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import copy
+from types import SimpleNamespace
 
 import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, worst_case_attack
+from ratt_opt import (
+    FileFormatError,
+    Problem,
+    ProofError,
+    TraceObjective,
+    exhaustive_optimum,
+    worst_case_attack,
+)
+from ratt_opt.certificates import write
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
+from ratt_opt.certificates.lower import ENUMERATED, weaker_lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
-from ratt_opt.certificates.verifier.group_covers import Group, first_cover
+from ratt_opt.certificates.verifier.group_costs import Group
+from ratt_opt.certificates.verifier.partitions import Partitions
 from tests.certificates.cases import certified
 from tests.certificates.test_group_prices import KINDS, checker, drawn, exact, network
 from tests.certificates.test_group_prices import proof as price_proof
@@ -67,6 +78,25 @@ def test_more_small_teams_by_brute_force():
     closed, listed = check_small(range(100, 1100))
     assert closed >= 700
     assert listed >= 150
+
+
+def test_a_weaker_lower_end_is_proved_where_the_first_is_not():
+    """A threshold above the worst case by 2 %: what is lower by 1 % is too much still, by 3 % no more."""
+    problem, plan, worst = drawn(0)
+    lower, part = weaker_lower_proof(problem, np.array(plan), worst * 1.02)
+    assert lower == pytest.approx(worst * 1.02 * 0.97)
+    assert checker(problem, plan).check(part, exact(lower * (1 - 1e-9))) > 0
+
+
+def test_a_certificate_says_how_much_less_it_proves(tmp_path, monkeypatch):
+    monkeypatch.setattr(write, "lower_proof", lambda *_: ENUMERATED)
+    problem = drawn(0)[0]
+    best = exhaustive_optimum(problem).lower
+    written, document = certified(problem, tmp_path / "c.json")
+    assert document["lower"]["kind"] == "group_covers"
+    assert written.verified.lower_proved
+    assert written.verified.lower == pytest.approx(best * 0.99)
+    assert written.lower_shaved == pytest.approx(best * 0.01)
 
 
 def mutants(seeds, share, path):
@@ -173,14 +203,17 @@ def test_covers_by_definition():
         n = 5
         costs = rng.integers(0, 4, (1 << n, 3))
         every = [Group(mask, *map(int, costs[mask])) for mask in range(1, 1 << n)]
-        budgets = (int(rng.integers(0, 7)), int(rng.integers(0, 5)), int(rng.integers(0, 7)))
+        budgets = (int(rng.integers(0, 7)), int(rng.integers(0, 5)), 2 * int(rng.integers(0, 4)))
         groups = [every[k] for k in rng.permutation(len(every))[:10]]
         allowed = {mask for mask in range(1, 1 << n) if rng.random() < 0.3}
 
         def last(mask, every=every, allowed=allowed):
             return every[mask - 1] if mask in allowed else None
 
-        cover = first_cover(groups, n, budgets, last)
+        about = SimpleNamespace(slack=budgets[0], most=budgets[1], about=SimpleNamespace(alpha_c=budgets[2] // 2))
+        about.robot, about.everyone, about.flows, about.group_of = [0] * n, (1 << n) - 1, [], last
+        about.need = about.impossible = lambda *_: 0
+        cover = Partitions(groups, about).first()
         assert (cover is not None) == by_definition(groups, n, budgets, last)
         found += cover is not None
     assert 30 <= found <= 120

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ratt_opt import (
+    InformationInput,
     breaking_budgets,
     criticality_ranking,
     links_to_add,
@@ -241,6 +242,24 @@ def test_attack_finds_the_best_links(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert run(command) == 0
     assert "the best links" in capsys.readouterr().out
     refused([*command[:-1], "nan"], capsys, "reach must be a finite number >= 0; got nan")
+
+
+def test_new_links_are_drawn_where_a_model_free_file_places_its_robots(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of robots 0, 3 and 5 m along a line, of which 1 alone has a link, only 1 and 2 are within 4 m."""
+    path, plan = tmp_path / "team.json", tmp_path / "plan.json"
+    plan.write_text('{"elements": [0, 1, 2]}')
+    team = InformationInput(
+        prior=[[[1.0]]], information=[[[[1.0]]]] * 3, robot=[0, 1, 2], alpha_s=0, alpha_c=0, links=[(0, 1)],
+        robot_positions=[(0, 0), (3, 0), (5, 0)],
+    )  # fmt: skip
+    path.write_text(team.model_dump_json())
+    command = ["attack", str(path), "--plan", str(plan), "--add", "1", "--reach", "4"]
+    assert run([*command, "--json"]) == 0
+    assert _strict(capsys.readouterr().out)["best_links"]["add"]["links"] == [[1, 2]]
+    path.write_text(team.model_copy(update={"robot_positions": None}).model_dump_json())
+    refused(command, capsys, "reach needs an input that says where the robots are")
 
 
 def test_attack_evaluates_the_users_plan(

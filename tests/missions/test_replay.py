@@ -130,5 +130,32 @@ def test_the_dataset_replayed() -> None:
     assert all(len(step.running) == 3 for step in hit.steps)
     assert all(len(step.attack.sensing) <= 1 and len(step.attack.links) <= 2 for step in hit.steps)
     assert sum(step.used for step in hit.steps) < sum(step.used for step in free.steps)
-    with pytest.raises(InputError, match="steps must end before the poses do"):
-        replay_mrclam(REAL, steps=10_000, sensor=sensor)
+    for steps in (10_000, 10**400):
+        with pytest.raises(InputError, match="steps must end before the poses do"):
+            replay_mrclam(REAL, steps=steps, sensor=sensor)
+    with pytest.raises(InputError, match=r"cameras must be an integer in \[0, 5\]; got 6"):
+        replay_mrclam(REAL, steps=1, sensor=sensor, settings=ReplaySettings(cameras=6))
+    assert fit_sensor(REAL) == fit_sensor(data)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"cameras": -1}, "cameras must be an integer >= 0"),
+        ({"cameras": True}, "cameras must be an integer >= 0"),
+        ({"seed": -1}, "seed must be an integer >= 0"),
+        ({"prior_std": 1e300}, "prior_std must be at most"),
+        ({"start": float("nan")}, "start must be a finite number >= 0"),
+    ],
+)
+def test_bad_settings_are_refused(change: dict[str, object], text: str) -> None:
+    with pytest.raises(InputError, match=text):
+        ReplaySettings(**change)
+
+
+def test_a_replay_of_something_else_is_refused(tmp_path) -> None:
+    for arguments, text in (({"settings": 7}, "settings must be"), ({"sensor": 7}, "sensor must be a FittedSensor")):
+        with pytest.raises(InputError, match=text):
+            replay_mrclam(tmp_path, steps=1, **arguments)
+    with pytest.raises(InputError, match="Landmark_Groundtruth"):
+        fit_sensor(tmp_path)

@@ -175,6 +175,9 @@ def test_a_consistent_filter_stays_within_its_bands() -> None:
     assert abs(mission.nees.mean() - 2) < 5 * 2 * np.sqrt(2 / (numbers / 10))
     assert abs(mission.nis.mean() - 1) < 5 * np.sqrt(2 / (3 * numbers))
     low, high = mission.nees_band()
+    for band in (mission.nees_band, mission.nis_band):
+        with pytest.raises(InputError, match="level must be between 0 and 1; got 2"):
+            band(2)
     assert np.mean((low <= mission.nees) & (mission.nees <= high)) > 0.85
     band = mission.nis_band()
     assert np.mean((band[:, 0] <= mission.nis) & (mission.nis <= band[:, 1])) > 0.9
@@ -225,7 +228,8 @@ def test_own_planners_and_attackers() -> None:
         ({"attacker": 3}, "attacker must be none"),
         ({"attacks": "sometimes"}, "attacks must be renewed"),
         ({"sharing": "nothing"}, "sharing must be best group"),
-        ({"steps": 0}, "steps must be an integer >= 1"),
+        ({"steps": 0}, r"steps must be an integer in \[1, 1000000\]"),
+        ({"steps": 10**10}, r"steps must be an integer in \[1, 1000000\]"),
         ({"horizon": 0}, "horizon must be an integer >= 1"),
         ({"horizon": 9}, "horizon must give robot 0"),
         ({"seed": -1}, "seed must be an integer"),

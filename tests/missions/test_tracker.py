@@ -136,6 +136,9 @@ def test_errors_of_a_planner_are_raised() -> None:
         ({"now": np.inf}, "now must be a finite number"),
         ({"now": 1e9}, "now must be within 10000 sampling periods of the last step's, by 10005 s"),
         ({"measurements": [None]}, r"measurements\[0\] must be a Measurement"),
+        ({"measurements": None}, "measurements must be Measurements; got None"),
+        ({"measurements": [Measurement(robot=0, target=1, values=(1e300, 0.0))]}, r"estimates must stay within 1e\+12"),
+        ({"poses": np.full((4, 3), 1e200)}, r"poses must stay within 1e\+12"),
         ({"poses": np.zeros((2, 3))}, "poses must have shape"),
         ({"poses": np.full((4, 3), np.nan)}, "poses must be finite"),
     ],
@@ -164,6 +167,8 @@ def test_bad_states_and_arguments() -> None:
     for name, value in changes.items():
         with pytest.raises(InputError, match=name):
             Tracker(scenario, state=TrackerState.from_dict(good | {name: value}))
+    with pytest.raises(InputError, match="estimates must stay within"):
+        Tracker(scenario, state=TrackerState.from_dict(good | {"mean": [[1e300, 0.0]] * 3}))
     with pytest.raises(InputError, match="covariance is missing"):
         TrackerState.from_dict({k: v for k, v in good.items() if k != "covariance"})
     with pytest.raises(InputError, match="state must be a record"):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.report.mission.frames import MOST_LINKS, frames_of
 from tests.report.browser import opened
 
 
@@ -47,10 +49,20 @@ def test_every_step_shows_its_numbers_and_another_map(browser, mission) -> None:
         text = browser.find_element("id", "text").text
         assert text.startswith(f"Step {k + 1} of 4: RMSE ")
         assert float(text.split("RMSE ")[1].split()[0]) == pytest.approx(mission.rmse[k], rel=6e-3)
-        assert f"{len(step.attack.sensing)} robots blinded, {len(step.attack.links)} links cut" in text
+        shown = re.search(r"(\d+) robots? blinded, (\d+) links? cut", text)
+        assert [int(n) for n in shown.groups()] == [len(step.attack.sensing), len(step.attack.links)]
     drawn = [int((picture[..., 3] > 0).sum()) for picture in maps]
     assert min(drawn) > 1000
     assert all((a != b).any() for a, b in pairwise(maps))
+
+
+def test_cut_links_are_counted_whole_where_too_many_are_drawn() -> None:
+    def cut_most(problem, _elements):
+        return ro.Attack(links=sorted(problem.communication.links)[:95])
+
+    scenario = ro.random_scenario(15, 1, alpha_s=0, alpha_c=95, seed=0)
+    (frame,) = frames_of(ro.run_mission(scenario, steps=1, attacker=cut_most))
+    assert (frame["n_cut"], len(frame["cut"])) == (95, MOST_LINKS)
 
 
 def test_robots_are_where_the_mission_had_them(browser, mission) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.graph.threat import Threat
+    from ratt_opt.highs import Rows
 
 __all__ = ["GroupPrices", "KnownGroup", "PriceVector"]
 
@@ -75,6 +76,7 @@ class GroupPrices:
             self._adjacent[i, j] = self._adjacent[j, i] = 1
         self._groups: dict[tuple[bytes, int], KnownGroup] = {}
         self._program: LinearProgram | None = None
+        self._slack_program: LinearProgram | None = None
         self._threshold = -np.inf
 
     def add(self, groups: Iterable[KnownGroup]) -> int:
@@ -109,23 +111,27 @@ class GroupPrices:
 
         Blinded robots count more than links: prices of theirs prune the enumeration most.
         """
-        n_robots, known = len(self._adjacent), [g for g in self._groups.values() if g.value < threshold]
-        half = self.half_cuts(np.array([group.robots for group in known])).tolist()
-        entries = []
-        for group, cut in zip(known, half, strict=True):
-            members = np.flatnonzero(group.robots).tolist()
-            margin = cut + SLACK_OF_BLINDED * group.need
-            entries.append(([*members, n_robots, n_robots + 1], [1.0] * len(members) + [-float(group.need), margin]))
-        claim = ([*range(n_robots + 1)], [-1.0] * n_robots + [float(self._threat.n_blinded)])
-        rows = rows_of([*entries, claim], [-np.inf] * (len(known) + 1), [*half, -links])
-        cost, most = np.append(np.zeros(n_robots + 1), 1.0), self._most()
-        low, high = np.append(np.full(n_robots, -most), [0.0, 0.0]), np.append(np.full(n_robots, most), [most, most])
-        x = LinearProgram(cost, low, high, rows=rows, maximise=True).solve(seconds).x
+        if self._program is None or threshold != self._threshold:
+            self._start(threshold)
+        if self._slack_program is None:
+            self._slack_program = self._start_slack()
+        self._slack_program.bound_row(0, -np.inf, -links)
+        n_robots, x = len(self._adjacent), self._slack_program.solve(seconds).x
         if len(x) != n_robots + 2:
             return None
         blinded = max(float(x[n_robots]), 0.0)
         claimed = float(x[:n_robots].sum()) - blinded * self._threat.n_blinded
         return PriceVector(robot=x[:n_robots], blinded=blinded, links=claimed) if claimed >= links - 1e-6 else None
+
+    def _start_slack(self) -> LinearProgram:
+        """The program of :meth:`slackest`: prices, and the slack's share; the first row is the links they claim."""
+        n_robots, most = len(self._adjacent), self._most()
+        claim = rows_of([([*range(n_robots + 1)], [-1.0] * n_robots + [float(self._threat.n_blinded)])], -np.inf, 0.0)
+        cost = np.append(np.zeros(n_robots + 1), 1.0)
+        low, high = np.append(np.full(n_robots, -most), [0.0, 0.0]), np.append(np.full(n_robots, most), [most, most])
+        program = LinearProgram(cost, low, high, rows=claim, maximise=True)
+        program.add_rows(self._rows(self._weak(), slack=True))
+        return program
 
     def _most(self) -> float:
         return 2.0 * len(self._threat.graph.links) + 2.0
@@ -136,8 +142,12 @@ class GroupPrices:
         cost = np.append(np.ones(n_robots), -float(self._threat.n_blinded))
         low, high = np.append(np.full(n_robots, -most), 0.0), np.append(np.full(n_robots, most), most)
         self._program = LinearProgram(cost, low, high, maximise=True)
+        self._slack_program = None
         self._threshold = threshold
-        self._append([group for group in self._groups.values() if group.value < threshold])
+        self._append(self._weak())
+
+    def _weak(self) -> list[KnownGroup]:
+        return [group for group in self._groups.values() if group.value < self._threshold]
 
     def half_cut(self, robots: BoolArray) -> float:
         """Half the links that separate these robots (N,) from the others."""
@@ -151,12 +161,21 @@ class GroupPrices:
         if not groups:
             return
         assert self._program is not None
-        entries, sides = [], []
-        for group in groups:
+        self._program.add_rows(self._rows(groups, slack=False))
+        if self._slack_program is not None:
+            self._slack_program.add_rows(self._rows(groups, slack=True))
+
+    def _rows(self, groups: list[KnownGroup], *, slack: bool) -> Rows:
+        """That no group pays, or that each could pay its part of the slack besides."""
+        n_robots, entries = len(self._adjacent), []
+        half = self.half_cuts(np.array([group.robots for group in groups]).reshape(-1, n_robots))
+        for group, cut in zip(groups, half.tolist(), strict=True):
             members = np.flatnonzero(group.robots).tolist()
-            entries.append(([*members, len(self._adjacent)], [1.0] * len(members) + [-float(group.need)]))
-            sides.append(self.half_cut(group.robots))
-        self._program.add_rows(rows_of(entries, [-np.inf] * len(groups), sides))
+            columns, values = [*members, n_robots], [1.0] * len(members) + [-float(group.need)]
+            if slack:
+                columns, values = [*columns, n_robots + 1], [*values, cut + SLACK_OF_BLINDED * group.need]
+            entries.append((columns, values))
+        return rows_of(entries, [-np.inf] * len(groups), half)
 
     def _forget(self, robot: FloatArray, blinded: float) -> None:
         """Keep the groups whose reduced cost is among the least, and start afresh next time."""
@@ -167,3 +186,4 @@ class GroupPrices:
         order = np.argsort(slack, kind="stable")[: MOST_ROWS // 2]
         self._groups = dict(known[k] for k in order)
         self._program = None
+        self._slack_program = None

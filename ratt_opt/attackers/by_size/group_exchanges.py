@@ -78,14 +78,10 @@ class GroupExchanges:
         self._improve(home, budget)
 
     def shake(self, rounds: int, budget: Budget) -> None:
-        """Exchange a few random robots of the best family and improve it again, so often.
-
-        Raises
-        ------
-        OutOfBudget : the time is up.
-        """
+        """Exchange a few random robots of the best family and improve it again, so often; as far as time allows."""
         for _ in range(rounds):
-            budget.check()
+            if budget.is_over:
+                return
             home = self._home.copy()
             for one, other in self._rng.integers(0, len(home), (STRENGTH, 2)).tolist():
                 if (home[one] and home[other]) or not (self._must[one] or self._must[other]):

@@ -48,14 +48,14 @@ class WeakFamilies:
 
         Raises
         ------
-        OutOfBudget : the time is up.
+        OutOfBudget : the time is up before the first.
         """
         families: list[GroupExchanges] = []
         part = self._budget.part(EXCHANGES_SHARE)
         for sizes in vectors:
-            self._budget.check()
             if families and part.stop() is not None:
                 break
+            self._budget.check()
             family = self._settled(sizes)
             for largest in () if self._budget.is_over else self._weak_largest(sizes):
                 if self._budget.is_over:
@@ -64,7 +64,6 @@ class WeakFamilies:
             families.append(family)
         families.sort(key=attrgetter("value"))
         for family in families[:SHAKEN]:
-            self._budget.check()
             family.shake(SHAKES, self._budget)
         return sorted(families, key=attrgetter("value"))
 

@@ -8,30 +8,16 @@ Imported only where a certificate is written.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
+from ratt_opt.certificates.group_covers.case_bounds import closing_set, lost, need, penalties, reached
 from ratt_opt.compiling import numba
+from ratt_opt.graph.separable_groups import count_ones
 
-if TYPE_CHECKING:
-    from ratt_opt.attackers.by_prices.team import Links
-    from ratt_opt.graph.threat import Threat
-
-__all__ = [
-    "COMPLETE",
-    "FINISHED",
-    "FLOW",
-    "FULL",
-    "IMPOSSIBLE",
-    "PAUSED",
-    "Found",
-    "Network",
-    "Sets",
-    "Tariff",
-    "grow_tree",
-]
+__all__ = ["FINISHED", "FLOW", "FULL", "PAUSED", "Found", "grow_tree"]
 
 FINISHED, PAUSED, FULL = 0, 1, 2
 
@@ -43,50 +29,6 @@ RECENT = 48
 
 SHARES = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
 """Of a blinded robot's price that an open robot pays in the flows that a case looks for."""
-
-
-class Network(NamedTuple):
-    """A threat's graph. By robot: masks of the ``near`` ones and of those it cannot be cut from (``tied``), (N,);
-    ``links`` : as the attacker has them; ``most`` : blinded robots, links cut; ``seeing`` : mask of protected robots"""
-
-    near: Any
-    tied: Any
-    links: Any
-    most: Any
-    seeing: int
-
-    @classmethod
-    def of(cls, threat: Threat, links: Links) -> Network:
-        """The graph of a threat of at most 60 robots."""
-        near, tied = np.zeros((2, threat.graph.n_robots), dtype=np.int64)
-        for i, j in threat.graph.links:
-            near[i] |= 1 << j
-            near[j] |= 1 << i
-        for i, j in threat.protected_links:
-            tied[i] |= 1 << j
-            tied[j] |= 1 << i
-        most = np.array([threat.n_blinded, threat.alpha_c], dtype=np.int64)
-        return cls(near, tied, links, most, sum(1 << i for i in threat.protected_robots))
-
-
-class Sets(NamedTuple):
-    """Sets of robots (F,) as masks, of whose robots at most ``room`` (F,) see in a group worth less."""
-
-    robots: Any
-    room: Any
-
-
-class Tariff(NamedTuple):
-    """Prices of robots (N,) and of a blinded one, half a link, and the reduced cost above which a group is closed."""
-
-    robot: Any
-    blinded: int
-    half_link: int
-    slack: int
-    order: Any
-    group: int
-    triple: Any
-    penalty: Any
 
 
 class Found(NamedTuple):
@@ -117,129 +59,6 @@ class Found(NamedTuple):
 
 
 @numba.njit(cache=True)
-def _ones(mask: int) -> int:
-    ones = 0
-    while mask:
-        mask &= mask - 1
-        ones += 1
-    return ones
-
-
-@numba.njit(cache=True)
-def _reached(network: Any, inside: int, usable: int) -> int:
-    """Robots in reach of the lowest one inside, through usable ones."""
-    reached, front = inside & -inside, inside & -inside
-    while front:
-        lowest = front & -front
-        front ^= lowest
-        new = network.near[_ones(lowest - 1)] & usable & ~reached
-        reached |= new
-        front |= new
-    return reached
-
-
-@numba.njit(cache=True)
-def _lost(network: Any, inside: int, outside: int) -> int:
-    """Links between both; more than any budget where one of them is protected."""
-    lost = 0
-    for i in range(len(network.near)):
-        if inside >> i & 1:
-            lost += _ones(network.near[i] & outside)
-            if network.tied[i] & outside:
-                return len(network.links.robot) + 1
-    return lost
-
-
-@numba.njit(cache=True)
-def _need(network: Any, sets: Any, inside: int) -> int:
-    """Blinded robots that a group with these robots has at least; more than any budget where it cannot be blinded."""
-    need = 0
-    for k in range(len(sets.room)):
-        own = inside & sets.robots[k]
-        if _ones(own & network.seeing) > sets.room[k]:
-            return len(network.near) + 1
-        need = max(need, _ones(own) - sets.room[k])
-    return need
-
-
-@numba.njit(cache=True)
-def _penalties(tariff: Any, inside: int, outside: int, extra: Any) -> int:
-    """What triples cost: those with two robots inside; ``extra`` (N,) what an open robot beside one inside adds."""
-    paid = 0
-    extra[:] = 0
-    for k in range(len(tariff.triple)):
-        triple, penalty = tariff.triple[k], tariff.penalty[k]
-        within = _ones(triple & inside)
-        if within >= 2:
-            paid += penalty
-        elif within == 1:
-            rest = triple & ~inside & ~outside
-            share = penalty if _ones(rest) == 1 else penalty // 2
-            while rest:
-                lowest = rest & -rest
-                extra[_ones(lowest - 1)] += share
-                rest ^= lowest
-    return int(paid)
-
-
-@numba.njit(cache=True)
-def _open_costs(network: Any, tariff: Any, flow: Any, inside: int, outside: int, cost: Any) -> int:  # noqa: PLR0917
-    """Fill ``cost`` (N,) of the open robots; returns what the group costs without them and blinded ones."""
-    start, robot = network.links.start, network.links.robot
-    paid = _penalties(tariff, inside, outside, cost) - tariff.group
-    for i in range(len(cost)):
-        if inside >> i & 1:
-            paid -= tariff.robot[i]
-            paid += tariff.half_link * _ones(network.near[i] & ~inside)
-        elif not outside >> i & 1:
-            c = cost[i] - tariff.robot[i]
-            for a in range(start[i], start[i + 1]):
-                if inside >> robot[a] & 1:
-                    c -= tariff.half_link
-                elif outside >> robot[a] & 1:
-                    c += tariff.half_link
-                else:
-                    c += flow[a]
-            cost[i] = c
-    return int(paid)
-
-
-@numba.njit(cache=True)
-def _closing_set(network: Any, sets: Any, tariff: Any, flow: Any, case: Any, work: Any) -> int:  # noqa: PLR0917
-    """The set whose bound exceeds the slack by this flow; -1 where none does."""
-    inside, outside = case
-    cost, order = work
-    paid = _open_costs(network, tariff, flow, inside, outside, cost)
-    n_open = 0
-    for i in range(len(cost)):
-        if not (inside | outside) >> i & 1 and cost[i] < 0:
-            k = n_open
-            while k > 0 and cost[order[k - 1]] > cost[i]:
-                order[k] = order[k - 1]
-                k -= 1
-            order[k] = i
-            n_open += 1
-    for s in range(len(sets.room)):
-        room = sets.room[s] - _ones(inside & sets.robots[s])
-        blinded = max(-room, 0)
-        room, more = max(room, 0), network.most[0] - blinded
-        total = paid + tariff.blinded * blinded
-        for k in range(n_open):
-            i = order[k]
-            if not sets.robots[s] >> i & 1:
-                total += cost[i]
-            elif room > 0:
-                total += cost[i]
-                room -= 1
-            elif more > 0:
-                total += min(cost[i] + tariff.blinded, 0)
-                more -= 1
-        if total > tariff.slack:
-            return s
-    return -1
-
-
-@numba.njit(cache=True)
 def _known(network: Any, sets: Any, tariff: Any, found: Any, case: Any, work: Any) -> int:  # noqa: PLR0917
     """The leaf of a flow found before that closes the case; 0 without one."""
     count, last = found.count[2], found.count[4]
@@ -247,7 +66,7 @@ def _known(network: Any, sets: Any, tariff: Any, found: Any, case: Any, work: An
         flow = last if k == count else k
         if (k == count and count == 0) or (k < count and flow == last):
             continue
-        s = _closing_set(network, sets, tariff, found.flows[flow], case, work)
+        s = closing_set(network, sets, tariff, found.flows[flow], case, work)
         if s >= 0:
             found.count[4] = flow
             return int(FLOW - (flow * len(sets.room) + s))
@@ -263,7 +82,7 @@ def _found_flow(network: Any, sets: Any, tariff: Any, found: Any, case: Any, wor
     flow = (np.empty(n_robots), np.empty(n_robots), np.empty(len(network.links.robot)))
     room = (np.empty(n_robots, np.int64), np.empty(n_robots, np.int64), np.empty(n_robots, np.int64))
     new, extra = found.count[2], np.zeros(n_robots, np.int64)
-    _penalties(tariff, inside, outside, extra)
+    penalties(tariff, inside, outside, extra)
     for s in range(len(sets.room)):
         for share in SHARES:
             for i in range(n_robots):
@@ -280,7 +99,7 @@ def _found_flow(network: Any, sets: Any, tariff: Any, found: Any, case: Any, wor
                     amount = int(np.rint((half - flow[2][a]) * unit))
                     found.flows[new, a] = amount
                     found.flows[new, network.links.back[a]] = -amount
-            closing = _closing_set(network, sets, tariff, found.flows[new], case, work)
+            closing = closing_set(network, sets, tariff, found.flows[new], case, work)
             if closing >= 0:
                 found.count[2] += 1
                 found.count[4] = new
@@ -297,8 +116,8 @@ def _branch(network: Any, tariff: Any, inside: int, outside: int) -> int:
             continue
         if not inside:
             return int(i)
-        linked = _ones(network.near[i] & inside)
-        decided = _ones(network.near[i] & (inside | outside))
+        linked = count_ones(network.near[i] & inside)
+        decided = count_ones(network.near[i] & (inside | outside))
         if linked and decided > most:
             best, most = i, decided
     return best
@@ -308,10 +127,10 @@ def _branch(network: Any, tariff: Any, inside: int, outside: int) -> int:
 def _list(network: Any, tariff: Any, found: Any, case: Any, need: int, extra: Any) -> None:  # noqa: PLR0917
     """Add a complete group where its reduced cost is within the slack."""
     inside, outside = case
-    cost = tariff.blinded * need + _penalties(tariff, inside, outside, extra) - tariff.group
+    cost = tariff.blinded * need + penalties(tariff, inside, outside, extra) - tariff.group
     for i in range(len(tariff.robot)):
         if inside >> i & 1:
-            cost += tariff.half_link * _ones(network.near[i] & outside) - tariff.robot[i]
+            cost += tariff.half_link * count_ones(network.near[i] & outside) - tariff.robot[i]
     if inside and cost <= tariff.slack:
         found.group[found.count[1]], found.cost[found.count[1]] = inside, cost
         found.count[1] += 1
@@ -334,18 +153,18 @@ def grow_tree(network: Any, sets: Any, tariff: Any, found: Any, nodes: int) -> i
         count[3] -= 1
         inside, outside = found.stack[count[3], 0], found.stack[count[3], 1]
         if inside:
-            reached = _reached(network, inside, everyone & ~outside)
-            torn = inside & ~reached
-            outside = everyone & ~reached
+            within = reached(network, inside, everyone & ~outside)
+            torn = inside & ~within
+            outside = everyone & ~within
         else:
             torn = 0
-        need = _need(network, sets, inside)
+        needed = need(network, sets, inside)
         leaf = 0
-        if torn or need > network.most[0] or _lost(network, inside, outside) > network.most[1]:
+        if torn or needed > network.most[0] or lost(network, inside, outside) > network.most[1]:
             leaf = IMPOSSIBLE
         elif inside | outside == everyone:
             leaf = COMPLETE
-            _list(network, tariff, found, (inside, outside), need, work[0])
+            _list(network, tariff, found, (inside, outside), needed, work[0])
         else:
             leaf = _known(network, sets, tariff, found, (inside, outside), work)
             if leaf == 0:

@@ -6,6 +6,7 @@ fractional. Then the groups that cost no more than what is left are listed by a 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,18 +16,23 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
-from ratt_opt.certificates.verifier.group_covers import Group, first_cover
+from ratt_opt.certificates.verifier.group_costs import Group, Groups
+from ratt_opt.certificates.verifier.partitions import Partitions
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
 
 if TYPE_CHECKING:
     from ratt_opt.certificates.group_covers.group_tree import Found
     from ratt_opt.certificates.group_covers.weak_sets import WeakSets
     from ratt_opt.certificates.plan_sets import PlanSets
+    from ratt_opt.graph.threat import Threat
 
 __all__ = ["LARGEST_TEAM", "group_cover_proof"]
 
 LARGEST_TEAM = 60
 """Robots: a group is a mask of 64 bits."""
+
+WORK, STEPS = 1_500_000_000, 300_000
+"""Most cases of all trees, times robots and arcs (about a minute), and most steps of a search of partitions."""
 
 LISTED, PAYING = 50_000, 300
 """Most groups that are listed, and that are added to the program at a time."""
@@ -38,7 +44,8 @@ AT_ONCE = 500
 """Cases between two looks at the clock: up to a tenth of a second."""
 
 EASY = 0.1
-"""Share of the budget of links that prices may lack for the groups to be listed without more triples."""
+"""Share of the budget of links that prices may lack for the groups to be listed without more triples, which are added
+as long as they make up for half a link at a time."""
 
 MOVES, WARM, COLD = 1_500, 2.0, 0.05
 """Moves around each robot to find groups that pay the first prices; temperatures [links]."""
@@ -60,10 +67,10 @@ def group_cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 class _CoverProof:
     def __init__(self, sets: PlanSets, team: PricedTeam, max_nodes: int) -> None:
         from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes  # compiles
-        from ratt_opt.certificates.group_covers.group_tree import Network
+        from ratt_opt.certificates.group_covers.case_bounds import Network
         from ratt_opt.certificates.group_covers.weak_sets import WeakSets
 
-        self.sets, self.team, self.max_nodes = sets, team, max_nodes
+        self.sets, self.team, self.max_nodes, self.work = sets, team, max_nodes, 0
         self.threat = threat = sets.problem.threat
         self.links = Links.of(threat)
         self.network = Network.of(threat, self.links)
@@ -80,25 +87,30 @@ class _CoverProof:
         """Prices, the tree of groups, and sets until no partition is left."""
         self._anneal()
         prices = self._priced()
-        while prices.slack > EASY * 2 * HALF_LINK * self.threat.alpha_c and self.program.add_triples():
-            prices = self._priced()
+        easy, before = EASY * 2 * HALF_LINK * self.threat.alpha_c, np.inf
+        while easy < prices.slack < before - HALF_LINK and self.program.add_triples():
+            before, prices = prices.slack, self._priced()
+        from ratt_opt.certificates.group_covers.group_tree import FLOW
+
         n_sets = len(self.weak.robots)
         found = self._grown(prices, max(prices.slack // 2, -1), LISTED)
         n_nodes, n_groups = found.count[:2].tolist()
-        self._refute_covers(prices, found.group[:n_groups].tolist())
-        tree, flows = self._renumbered(found.tree[:n_nodes], found.flows, n_sets)
+        tree = found.tree[:n_nodes].tolist()
+        flows = self._used_flows(tree, found.flows, n_sets)
         triples = [(int(t), int(p)) for t, p in zip(prices.triple, prices.penalty, strict=True) if p]
-        return {
+        record = {
             "kind": "group_covers",
             "half_link": HALF_LINK,
             "robots": prices.robot.tolist(),
             "blinded": prices.blinded,
             "group": prices.group,
-            "sets": self.weak.records(self.sets, self.max_nodes),
             "triples": [{"robots": _members(t), "half_penalty": p // 2} for t, p in triples],
             "flows": flows,
-            "tree": tree,
         }
+        self._refute_covers(record, found.group[:n_groups].tolist())
+        added = len(self.weak.robots) - n_sets
+        tree = [node - (FLOW - node) // n_sets * added if node <= FLOW else node for node in tree]
+        return record | {"sets": self.weak.records(self.sets, self.max_nodes), "tree": tree}
 
     def _anneal(self) -> None:
         """Groups that pay, by annealing, until they are hard to find; then the tree finds them."""
@@ -130,7 +142,8 @@ class _CoverProof:
         ------
         NotClosedError : there is no room for the tree.
         """
-        from ratt_opt.certificates.group_covers.group_tree import FINISHED, PAUSED, Found, Sets, Tariff, grow_tree
+        from ratt_opt.certificates.group_covers.case_bounds import Sets, Tariff
+        from ratt_opt.certificates.group_covers.group_tree import FINISHED, PAUSED, Found, grow_tree
 
         n_robots, n_arcs = len(prices.robot), len(self.links.robot)
         weak = Sets(np.array(self.weak.robots, dtype=np.int64), np.array(self.weak.room, dtype=np.int64))
@@ -142,59 +155,70 @@ class _CoverProof:
         code = PAUSED
         while code == PAUSED:
             tick()
+            self.work += AT_ONCE * n_robots * n_arcs
+            if self.work > WORK:
+                raise NotClosedError
             tell(COVERING, int(found.count[0]))
             code = grow_tree(self.network, weak, tariff, found, AT_ONCE)
         if code != FINISHED and not (slack < 0 and found.count[1]):
             raise NotClosedError
         return found
 
-    def _refute_covers(self, prices: CoverPrices, masks: list[int]) -> None:
+    def _refute_covers(self, record: dict[str, Any], masks: list[int]) -> None:
         """Add sets until no partition into the groups is within the budgets.
 
         Raises
         ------
         NotClosedError : one is.
         """
-        threat = self.threat
-        budgets = (prices.slack, threat.n_blinded, 2 * threat.alpha_c)
         cover: list[Group] | None = []
         while cover is not None:
-            groups = [self._group(prices, mask) for mask in masks]
-            cover = first_cover(groups, threat.graph.n_robots, budgets, lambda mask: self._last(prices, mask))
+            groups = Groups(_Threat.of(self.threat), *(record[name] for name in ("half_link", "robots", "blinded")))
+            groups.sets = list(zip(self.weak.robots, self.weak.room, strict=True))
+            groups.add(record["group"], record["triples"])
+            groups.flows = [groups.carried(flow) for flow in record["flows"]]
+            listed = [group for mask in masks if (group := groups.group_of(mask)) and group.cost <= groups.limit]
+            cover = Partitions(listed, groups).first(STEPS)
             raised = [self.weak.raise_need(group.robots) for group in cover or ()]
             if cover is not None and not any(raised):
                 raise NotClosedError
 
-    def _group(self, prices: CoverPrices, mask: int) -> Group:
-        need, links = self.weak.need(mask), self.program.links(mask)
-        cost = HALF_LINK * links + prices.blinded * need - prices.group
-        held = [int(t) & mask for t in prices.triple]
-        penalties = [int(p) for p, both in zip(prices.penalty, held, strict=True) if both.bit_count() >= 2]
-        return Group(mask, cost + sum(penalties) - int(prices.robot[_members(mask)].sum()), need, links)
-
-    def _last(self, prices: CoverPrices, mask: int) -> Group | None:
-        """The group of all robots left, if they are connected and their links may be cut."""
-        reached = front = mask & -mask
-        while front:
-            i = front.bit_length() - 1
-            new = int(self.network.near[i]) & mask & ~reached
-            reached, front = reached | new, front ^ 1 << i | new
-        tied = any(int(self.network.tied[i]) & ~mask for i in _members(mask))
-        return None if tied or reached != mask else self._group(prices, mask)
-
-    def _renumbered(self, tree: Any, flows: Any, n_sets: int) -> tuple[list[int], list[list[int]]]:
-        """The leaves' bounds by the flows that are used and the sets that there are now."""
+    def _used_flows(self, tree: list[int], flows: Any, n_sets: int) -> list[list[int]]:
+        """The flows that close leaves, which are numbered anew in place."""
         from ratt_opt.certificates.group_covers.group_tree import FLOW
 
         place: dict[int, int] = {}
-        numbers = [(at, divmod(FLOW - node, n_sets)) for at, node in enumerate(tree.tolist()) if node <= FLOW]
-        nodes = tree.tolist()
-        for at, (flow, chosen) in numbers:
-            nodes[at] = FLOW - (place.setdefault(flow, len(place)) * len(self.weak.robots) + chosen)
+        for at, node in enumerate(tree):
+            if node <= FLOW:
+                flow, chosen = divmod(FLOW - node, n_sets)
+                tree[at] = FLOW - (place.setdefault(flow, len(place)) * n_sets + chosen)
         ends = sorted(self.threat.graph.links)
         arcs = {arc: a for a, arc in enumerate(sorted([*ends, *((j, i) for i, j in ends)]))}
         own = [arcs[link] for link in ends]
-        return nodes, [flows[flow][own].tolist() for flow in place]
+        return [flows[flow][own].tolist() for flow in place]
+
+
+@dataclass(slots=True)
+class _Threat:
+    """A threat in the verifier's terms."""
+
+    n: int
+    near: list[set[int]]
+    safe_robots: frozenset[int]
+    safe_links: frozenset[tuple[int, int]]
+    links: frozenset[tuple[int, int]]
+    alpha_s: int
+    alpha_c: int
+
+    @classmethod
+    def of(cls, threat: Threat) -> _Threat:
+        """The same threat."""
+        graph, near = threat.graph, [set[int]() for _ in range(threat.graph.n_robots)]
+        for i, j in graph.links:
+            near[i].add(j)
+            near[j].add(i)
+        safe = threat.protected_robots, threat.protected_links
+        return cls(graph.n_robots, near, *safe, graph.links, threat.alpha_s, threat.alpha_c)
 
 
 def _members(mask: int) -> list[int]:

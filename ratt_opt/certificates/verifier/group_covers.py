@@ -23,37 +23,20 @@ carries out of a group at most half_link a lost link. Links and triples with dec
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt.certificates.verifier.group_costs import Case, Group, Groups, mask_of
+from ratt_opt.certificates.verifier.partitions import Partitions
 from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need, walk
 from ratt_opt.certificates.verifier.size_tree import check_size_tree
-from ratt_opt.certificates.verifier.work import tick
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterator
 
     from ratt_opt.certificates.verifier.statement import Statement
     from ratt_opt.certificates.verifier.worth import Worth
 
-__all__ = ["Group", "check_group_covers", "first_cover"]
-
-LARGEST = 2**53
-"""Of prices, penalties and flows, in size."""
-
-Case = tuple[int, int]
-"""Who is inside a group and who is outside, as bit masks; the others are open."""
-
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """A group that an attack may leave, as a bit mask, with its cost, blinded robots at least, and links lost."""
-
-    robots: int
-    cost: int
-    need: int
-    links: int
+__all__ = ["check_group_covers"]
 
 
 def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
@@ -65,13 +48,13 @@ def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
     """
     names = "kind half_link robots blinded group sets triples flows tree"
     _, half, robots, blinded, group, sets, triples, flows, tree = fields("lower proof", part, names)
-    groups, leaves = _Groups(about, half, robots, blinded), 0
+    groups, leaves = Groups(about, half, robots, blinded), 0
     for given in array("sets", sets):
         members, room, proof = fields("set", given, "robots room tree")
         inside, most = indices("set robots", members, about.n), index("set room", room, about.n)
         others = frozenset(range(about.n)).difference(inside)
         leaves += check_size_tree(about.n, most + 1, proof, worth, others)
-        groups.sets.append((_mask(inside), most))
+        groups.sets.append((mask_of(inside), most))
     groups.add(group, triples)
     groups.flows = [groups.carried(flow) for flow in array("flows", flows)]
     listed: list[Group] = []
@@ -97,173 +80,6 @@ def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
             yield inside, outside | 1 << i
 
     leaves += walk("lower", tree, (0, 0), expand)
-    cover = first_cover(listed, about.n, (groups.slack, groups.most, 2 * about.alpha_c), groups.group_of)
+    cover = Partitions(listed, groups).first()
     need(cover is None, "lower proof: groups within the budgets cover the team")
     return leaves
-
-
-class _Groups:
-    """What groups cost at the prices given."""
-
-    def __init__(self, about: Statement, half: object, robots: object, blinded: object) -> None:
-        self.about, self.everyone = about, (1 << about.n) - 1
-        self.half, self.blinded = index("half_link", half, LARGEST), index("blinded", blinded, LARGEST)
-        self.robot = [_signed("robots", price) for price in array("robots", robots, about.n)]
-        self.near = [_mask(others) for others in about.near]
-        self.safe, self.tied = _mask(about.safe_robots), [0] * about.n
-        for i, j in about.safe_links:
-            self.tied[i] |= 1 << j
-            self.tied[j] |= 1 << i
-        self.most = min(about.alpha_s, about.n - len(about.safe_robots))
-        self.slack = 2 * self.half * about.alpha_c + self.blinded * self.most - sum(self.robot)
-        self.sets: list[tuple[int, int]] = []
-        self.triples: list[tuple[int, int]] = []
-        self.flows: list[list[dict[int, int]]] = []
-        self.group = 0
-
-    def add(self, group: object, triples: object) -> None:
-        """Read the price of a group, and the triples."""
-        self.group, seeing = (
-            index("group", group, LARGEST),
-            [(r.bit_count() - self.most, room) for r, room in self.sets],
-        )
-        self.slack -= self.group * max([1, *(-(-number // room) for number, room in seeing if room)])
-        for given in array("triples", triples):
-            robots, half_penalty = fields("triple", given, "robots half_penalty")
-            three = indices("triple robots", array("triple robots", robots, 3), self.about.n)
-            self.triples.append((_mask(three), 2 * index("half_penalty", half_penalty, LARGEST)))
-            self.slack += self.triples[-1][1]
-
-    @property
-    def limit(self) -> int:
-        """One group of an attack at most costs more."""
-        return max(self.slack // 2, -1)
-
-    def carried(self, flow: object) -> list[dict[int, int]]:
-        """By robot and neighbour, what a flow carries there, after checking it."""
-        out: list[dict[int, int]] = [{} for _ in range(self.about.n)]
-        pairs = sorted(self.about.links)
-        for (i, j), given in zip(pairs, array("flow", flow, len(pairs)), strict=True):
-            out[i][j] = amount = _signed("flow", given)
-            out[j][i] = -amount
-            fits = abs(amount) <= self.half or (i, j) in self.about.safe_links
-            need(fits, "lower proof: a flow exceeds half a link")
-        return out
-
-    def settled(self, case: Case) -> Case:
-        """The case with who cannot be in a connected group outside; a robot inside that cannot be stays inside."""
-        inside, outside = case
-        if not inside:
-            return case
-        reached = front = inside & -inside
-        while front:
-            i = front.bit_length() - 1
-            new = self.near[i] & ~outside & ~reached
-            reached, front = reached | new, front ^ 1 << i | new
-        return inside, self.everyone & ~reached
-
-    def impossible(self, inside: int, outside: int) -> bool:
-        """Whether no group with these robots, and without those, is left by an attack within the budgets."""
-        if inside & outside or self._need(inside) > self.most:
-            return True
-        if any((inside & robots & self.safe).bit_count() > room for robots, room in self.sets):
-            return True
-        lost = sum((self.near[i] & outside).bit_count() for i in _robots(inside))
-        return lost > self.about.alpha_c or any(self.tied[i] & outside for i in _robots(inside))
-
-    def group_of(self, inside: int) -> Group | None:
-        """The group of these robots, if an attack may leave it."""
-        if not inside or self.settled((inside, self.everyone & ~inside)) != (inside, self.everyone & ~inside):
-            return None
-        if self.impossible(inside, self.everyone & ~inside):
-            return None
-        links = sum((self.near[i] & ~inside).bit_count() for i in _robots(inside))
-        blinded = self._need(inside)
-        cost = self.half * links + self.blinded * blinded - self.group - sum(self.robot[i] for i in _robots(inside))
-        cost += sum(penalty for triple, penalty in self.triples if (triple & inside).bit_count() >= 2)
-        return Group(inside, cost, blinded, links)
-
-    def _need(self, inside: int) -> int:
-        return max((max((inside & robots).bit_count() - room, 0) for robots, room in self.sets), default=0)
-
-    def least(self, inside: int, outside: int, flow: int, chosen: int) -> int:
-        """No group of the case costs less, of which at most so many robots of the chosen set see."""
-        robots, room = self.sets[chosen]
-        seeing = room - (inside & robots).bit_count()
-        paid, few, others = self.blinded * max(-seeing, 0) - self.group, [], 0
-        paid += self.half * sum((self.near[i] & ~inside).bit_count() for i in _robots(inside))
-        paid -= sum(self.robot[i] for i in _robots(inside))
-        paid_for_triples, extra = self._penalties(inside, outside)
-        open_ = self.everyone & ~inside & ~outside
-        for i in _robots(open_):
-            cost = extra.get(i, 0) - self.robot[i]
-            cost += self.half * ((self.near[i] & outside).bit_count() - (self.near[i] & inside).bit_count())
-            cost += sum(amount for j, amount in self.flows[flow][i].items() if open_ >> j & 1)
-            if cost < 0 and robots >> i & 1:
-                few.append(cost)
-            else:
-                others += min(cost, 0)
-        few.sort()
-        seen, blind = few[: max(seeing, 0)], few[max(seeing, 0) :]
-        blind = blind[: max(self.most - max(-seeing, 0), 0)]
-        return paid + paid_for_triples + others + sum(seen) + sum(min(c + self.blinded, 0) for c in blind)
-
-    def _penalties(self, inside: int, outside: int) -> tuple[int, dict[int, int]]:
-        """Of triples with two robots inside, and by open robot its part of those with one: half, or all if alone."""
-        paid, extra = 0, dict[int, int]()
-        for triple, penalty in self.triples:
-            within = (triple & inside).bit_count()
-            rest = list(_robots(triple & ~inside & ~outside))
-            paid += penalty if within >= 2 else 0
-            for i in rest if within == 1 else ():
-                extra[i] = extra.get(i, 0) + penalty // len(rest)
-        return paid, extra
-
-
-def first_cover(
-    groups: list[Group], n: int, budgets: tuple[int, int, int], last: Callable[[int], Group | None]
-) -> list[Group] | None:
-    """A partition of ``n`` robots into groups, and one more, within the budgets of costs, needs and links.
-
-    ``None`` without one. ``last`` : the group of these robots, if they can be one. Groups are bits of masks: of those
-    that hold a robot, and of those within what is left of each budget.
-    """
-    groups = sorted(groups, key=lambda group: group.cost)
-    costs = [group.cost for group in groups]
-    holds = [_mask(k for k, group in enumerate(groups) if group.robots >> i & 1) for i in range(n)]
-    needs = [_mask(k for k, group in enumerate(groups) if group.need <= most) for most in range(budgets[1] + 1)]
-    links = [_mask(k for k, group in enumerate(groups) if group.links <= most) for most in range(budgets[2] + 1)]
-
-    def search(usable: int, left: int, cost: int, blinded: int, cut: int) -> list[Group] | None:
-        tick()
-        rest = last(left) if left else None
-        if not left or (rest and rest.cost <= cost and rest.need <= blinded and rest.links <= cut):
-            return [rest] if rest else []
-        usable &= needs[blinded] & links[cut] & (1 << bisect_right(costs, cost)) - 1
-        for k in _robots(usable):
-            group, usable = groups[k], usable & ~(1 << k)
-            disjoint = usable
-            for i in _robots(group.robots):
-                disjoint &= ~holds[i]
-            spent = cost - group.cost, blinded - group.need, cut - group.links
-            cover = search(disjoint, left & ~group.robots, *spent)
-            if cover is not None:
-                return [group, *cover]
-        return None
-
-    return None if budgets[0] < 0 else search((1 << len(groups)) - 1, (1 << n) - 1, *budgets)
-
-
-def _robots(mask: int) -> Iterator[int]:
-    """The bits of a mask, ascending."""
-    while mask:
-        yield (mask & -mask).bit_length() - 1
-        mask &= mask - 1
-
-
-def _mask(bits: Iterable[int]) -> int:
-    return sum(1 << i for i in bits)
-
-
-def _signed(where: str, value: Any) -> int:
-    return index(where, value, LARGEST) if type(value) is not int or value >= 0 else -index(where, -value, LARGEST)

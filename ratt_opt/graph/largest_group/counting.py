@@ -7,6 +7,7 @@ from itertools import accumulate, pairwise
 from math import comb
 from typing import TYPE_CHECKING
 
+from ratt_opt._values import counted
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import caa, links_within
@@ -46,7 +47,8 @@ class LargestGroup:
     claimed_lower: int
 
     def __repr__(self) -> str:
-        return f"LargestGroup([{self.lower}, {self.upper}], {len(self.cut)} links cut, {self.method!r}: {self.reason})"
+        cut = f"{counted(len(self.cut), 'link')} cut"
+        return f"LargestGroup([{self.lower}, {self.upper}], {cut}, {self.method!r}: {self.reason})"
 
     @property
     def n_max(self) -> int | None:

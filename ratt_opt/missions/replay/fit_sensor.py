@@ -8,6 +8,7 @@ and maximisation in turn (Dempster, Laird, Rubin 1977) estimate both; of the two
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -15,13 +16,12 @@ import numpy as np
 from ratt_opt._validation import FloatArray, check_finite
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.mrclam import LONGEST_GAP, pose_at
+from ratt_opt.scenario.mrclam_reader import MrclamData, read_mrclam
 from ratt_opt.scenario.record import Positive
 from ratt_opt.scenario.sensor import Sensor, measure, wrap_angle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from ratt_opt.scenario.mrclam_reader import MrclamData
 
 __all__ = ["FittedSensor", "Residuals", "fit_sensor", "mrclam_residuals"]
 
@@ -79,7 +79,7 @@ def mrclam_residuals(data: MrclamData, *, until: float | None = None, since: flo
 
 
 def fit_sensor(
-    distance: ArrayLike | Residuals | MrclamData,
+    distance: ArrayLike | Residuals | MrclamData | str | Path,
     bearing: ArrayLike | None = None,
     range_error: ArrayLike | None = None,
     bearing_error: ArrayLike | None = None,
@@ -88,7 +88,8 @@ def fit_sensor(
 
     Parameters
     ----------
-    distance : (L,) true ranges [m]; or all four as :class:`Residuals`; or a dataset, whose residuals are taken
+    distance : (L,) true ranges [m]; or all four as :class:`Residuals`; or a dataset or its folder, whose residuals
+        are taken
     bearing : (L,) true bearings [rad]
     range_error, bearing_error : (L,) measured minus true [m], [rad]
 
@@ -97,6 +98,7 @@ def fit_sensor(
     Raises
     ------
     InputError : fewer than 20 residuals, lengths that differ, or a number that is not finite.
+    FileFormatError : a file of the folder is missing or malformed.
     """
     given = _residuals(distance, bearing, range_error, bearing_error)
     fits = [_Fit.of(given, law) for law in ("std", "variance")]
@@ -114,12 +116,14 @@ def fit_sensor(
 
 
 def _residuals(
-    first: ArrayLike | Residuals | MrclamData, bearing: object, range_error: object, bearing_error: object
+    first: ArrayLike | Residuals | MrclamData | str | Path, bearing: object, range_error: object, bearing_error: object
 ) -> Residuals:
+    if isinstance(first, (str, Path)):
+        first = read_mrclam(first)
     if isinstance(first, Residuals):
         found = first
-    elif hasattr(first, "landmarks"):
-        found = mrclam_residuals(first)  # type: ignore[arg-type]
+    elif isinstance(first, MrclamData):
+        found = mrclam_residuals(first)
     else:
         names = ("distance", "bearing", "range_error", "bearing_error")
         values = (first, bearing, range_error, bearing_error)

@@ -21,6 +21,7 @@ from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.mrclam import MRCLAM_SENSOR, from_mrclam, pose_at
 from ratt_opt.scenario.mrclam_reader import read_mrclam
+from ratt_opt.scenario.record import LARGEST
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
 if TYPE_CHECKING:
@@ -98,6 +99,13 @@ class ReplaySettings:
     drift_std: float = 0.0
     seed: int = 0
 
+    def __post_init__(self) -> None:
+        for name in ("start", "period", "prior_std", "drift_std"):
+            if check_number(name, getattr(self, name), low=0.0) > LARGEST:
+                raise InputError(name, f"must be at most {LARGEST:g}", getattr(self, name))
+        for name in ("cameras", "seed"):
+            check_integer(name, getattr(self, name), low=0)
+
 
 def replay_mrclam(
     directory: str | Path,
@@ -128,13 +136,16 @@ def replay_mrclam(
     FileFormatError : a file is missing or malformed.
     InputError : an argument breaks its rule, or the poses end before the replay does.
     """
-    s = settings or ReplaySettings()
+    s = ReplaySettings() if settings is None else settings
+    if not isinstance(s, ReplaySettings):
+        raise InputError("settings", "must be a ReplaySettings", type(s).__name__)
+    if sensor is not None and not isinstance(sensor, FittedSensor):
+        raise InputError("sensor", "must be a FittedSensor, as fit_sensor returns", type(sensor).__name__)
     check_integer("steps", steps, low=1)
-    for name in ("start", "period", "prior_std", "drift_std"):
-        check_number(name, getattr(s, name), low=0.0)
     data = read_mrclam(directory)
+    check_integer("cameras", s.cameras, low=0, high=len(data.poses))
     flight = _Replay(data, directory, s, sensor)
-    if flight.begin + steps * s.period > min(poses[-1, 0] for poses in data.poses):
+    if steps > float(min(poses[-1, 0] for poses in data.poses) - flight.begin) / s.period:
         raise InputError("steps", "must end before the poses do", steps)
     choose, attack, model = camera_planner(planner), attacker_called(attacker), attack_model(attacks)
     for step in range(steps):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.report.mission.frames import frames_of, limits
-from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET
+from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,5 +70,9 @@ def _draw(axes: Axes, frame: dict[str, Any]) -> None:
     for role, (colour, marker) in ROLES.items():
         chosen = robots[[r == role for r in frame["roles"]]]
         axes.scatter(chosen[:, 0], chosen[:, 1], s=70, color=colour, marker=marker, label=role, zorder=4)
+    beside: dict[str, Any] = {"textcoords": "offset points", "fontsize": 7, "color": INK, "zorder": 6}
+    for letter, places in (("", robots[:, :2]), ("T", np.array(frame["targets"]))):
+        for number, place in enumerate(places):
+            axes.annotate(f"{letter}{number}", place, xytext=(6, 5), **beside)
     turn: dict[str, Any] = {"units": "inches", "scale_units": "inches", "scale": 1 / 0.18, "width": 0.014, "zorder": 5}
     axes.quiver(robots[:, 0], robots[:, 1], np.cos(robots[:, 2]), np.sin(robots[:, 2]), **turn)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.missions.result import Mission, MissionStep
 
-__all__ = ["SIGMAS", "frames_of", "limits"]
+__all__ = ["MOST_LINKS", "SIGMAS", "frames_of", "limits"]
 
 SIGMAS = 2.4477
 """Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
@@ -39,6 +39,7 @@ def _frame(number: int, step: MissionStep) -> dict[str, Any]:
         "roles": [step.role(i) for i in range(len(step.poses))],
         "links": [list(link) for link in sorted(step.links)[:MOST_LINKS]],
         "cut": [list(link) for link in sorted(step.attack.links)[:MOST_LINKS]],
+        "n_cut": len(step.attack.links),
         "targets": step.truth[:, :2].tolist(),
         "estimates": step.team.belief.positions.tolist(),
         "ellipses": ellipses,

@@ -42,7 +42,7 @@ def save_log(mission: Mission, path: Path) -> None:
     try:
         from mcap.writer import Writer
     except ImportError:
-        raise InputError("path", "needs the extra viewers (pip install ratt-opt[viewers])", path) from None
+        raise InputError("path", "needs the extra viewers (pip install ratt-opt[viewers])", path.suffix) from None
     period = mission.scenario.sampling_period
     with path.open("wb") as stream:
         writer = Writer(stream)

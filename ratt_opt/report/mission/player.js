@@ -6,6 +6,8 @@ const [x0, x1, y0, y1] = data.view, size = canvas.width;
 const scale = size / Math.max(x1 - x0, y1 - y0);
 const X = (x) => (x - x0) * scale, Y = (y) => size - (y - y0) * scale;
 
+function counted(number, noun) { return `${number} ${noun}${number === 1 ? "" : "s"}`; }
+
 function line(a, b, colour, dash) {
   pen.strokeStyle = colour; pen.setLineDash(dash); pen.beginPath();
   pen.moveTo(X(a[0]), Y(a[1])); pen.lineTo(X(b[0]), Y(b[1])); pen.stroke(); pen.setLineDash([]);
@@ -21,8 +23,11 @@ function draw(k) {
     pen.fillStyle = data.colours.target; pen.globalAlpha = 0.25; pen.beginPath();
     pen.ellipse(X(p[0]), Y(p[1]), a * scale, b * scale, -angle, 0, 2 * Math.PI); pen.fill(); pen.globalAlpha = 1;
   });
-  pen.fillStyle = data.colours.target; pen.font = "14px sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle";
-  for (const p of f.targets) pen.fillText("★", X(p[0]), Y(p[1]));
+  pen.fillStyle = data.colours.target; pen.textAlign = "center"; pen.textBaseline = "middle";
+  f.targets.forEach((p, j) => {
+    pen.font = "14px sans-serif"; pen.fillText("★", X(p[0]), Y(p[1]));
+    pen.font = "11px sans-serif"; pen.fillText("T" + j, X(p[0]) + 14, Y(p[1]) + 10);
+  });
   f.robots.forEach((p, i) => {
     const role = f.roles[i], x = X(p[0]), y = Y(p[1]);
     pen.fillStyle = data.colours[role]; pen.beginPath();
@@ -38,7 +43,7 @@ function draw(k) {
   });
   const blinded = f.roles.filter((r) => r === "blinded").length;
   text.textContent = `Step ${f.step} of ${data.frames.length}: RMSE ${data.rmse[k].toPrecision(3)} m, ` +
-    `NEES ${data.nees[k].toPrecision(3)}; ${blinded} robots blinded, ${f.cut.length} links cut`;
+    `NEES ${data.nees[k].toPrecision(3)}; ${counted(blinded, "robot")} blinded, ${counted(f.n_cut, "link")} cut`;
   slider.value = k;
 }
 

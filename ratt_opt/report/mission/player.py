@@ -7,7 +7,7 @@ from html import escape
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from ratt_opt.report.mission.frames import frames_of, limits
+from ratt_opt.report.mission.frames import MOST_LINKS, frames_of, limits
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 
 if TYPE_CHECKING:
@@ -42,7 +42,8 @@ def player_page(mission: Mission) -> str:
     script = (resources.files("ratt_opt.report.mission") / "player.js").read_text(encoding="utf-8")
     title = f"Mission of {mission.scenario.n_robots} robots, {mission.scenario.n_targets} targets"
     about = "; ".join(f"{name}: {value}" for name, value in mission.settings.items())
-    key = "Blue circles: the team's best group; grey squares: cut off; crossed: blinded; dashed: cut links; "
+    key = "Blue circles: the team's best group; grey squares: cut off; crossed: blinded; "
+    key += f"lines: links, dashed: cut ones (at most {MOST_LINKS} of a kind are drawn); "
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
         f"<title>{escape(title)}</title><style>{STYLE}</style></head><body><h1>{escape(title)}</h1>"

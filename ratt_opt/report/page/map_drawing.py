@@ -10,7 +10,7 @@ import numpy as np
 from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.main_job.result import BoundReport, PlanAssessment
@@ -36,20 +36,36 @@ def map_svg(picture: Picture, report: BoundReport, view: PlanAssessment) -> str:
     )
 
 
-def legend_html() -> str:
-    """Return what the marks of the map mean."""
+def legend_html(pictures: Sequence[Picture]) -> str:
+    """Return what the marks of the maps mean, of those that are on one of them."""
     entries = (
-        ("<circle cx='10' cy='10' r='8' class='seeing'/>", "robot of the best group"),
-        ("<rect x='3' y='3' width='14' height='14' class='lost'/>", "robot of another group"),
-        ("<path d='M3 3L17 17M17 3L3 17' class='cross'/>", "blinded robot"),
-        ("<circle cx='10' cy='10' r='8' class='guard'/>", "protected robot"),
-        ("<path d='M0 10H20' class='link'/>", "link"),
-        ("<path d='M0 10H20' class='link guarded'/>", "protected link"),
-        ("<path d='M0 10H20' class='cut'/>", "cut link"),
-        ("<path d='M10 2L18 17H2Z' class='target'/>", "target (dotted: 95 % before, filled: after measuring)"),
+        ("<circle cx='10' cy='10' r='8' class='seeing'/>", "robot of the best group", lambda _: True),
+        ("<rect x='3' y='3' width='14' height='14' class='lost'/>", "robot of another group", _has_lost),
+        ("<path d='M3 3L17 17M17 3L3 17' class='cross'/>", "blinded robot", lambda p: p.attack.sensing),
+        ("<circle cx='10' cy='10' r='8' class='guard'/>", "protected robot", lambda p: p.protected_robots),
+        ("<path d='M0 10H20' class='heading'/>", "heading", lambda p: p.headings is not None),
+        ("<path d='M0 10H20' class='link'/>", "link", lambda p: p.links),
+        ("<path d='M0 10H20' class='link guarded'/>", "protected link", lambda p: p.protected_links),
+        ("<path d='M0 10H20' class='cut'/>", "cut link", lambda p: p.attack.links),
+        ("<path d='M10 2L18 17H2Z' class='target'/>", _target_words(pictures), lambda p: p.targets is not None),
     )
-    items = (f"<li><svg width='20' height='20' aria-hidden='true'>{mark}</svg> {text}</li>" for mark, text in entries)
+    items = (
+        f"<li><svg width='20' height='20' aria-hidden='true'>{mark}</svg> {text}</li>"
+        for mark, text, is_on in entries
+        if any(map(is_on, pictures))
+    )
     return f'<ul class="legend">{"".join(items)}</ul>'
+
+
+def _has_lost(picture: Picture) -> bool:
+    return len(picture.best | picture.attack.sensing) < len(picture.places)
+
+
+def _target_words(pictures: Sequence[Picture]) -> str:
+    drawn = any(picture.posterior is not None for picture in pictures)
+    known = ["dotted: 95 % before, filled: after measuring"] if drawn else []
+    known += ["×: its weight"] if any(picture.is_weighted for picture in pictures) else []
+    return f"target ({'; '.join(known)})" if known else "target"
 
 
 class _Frame:
@@ -98,7 +114,7 @@ def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
             text += f", root of the trace left after measuring {deviation:.3g} m"
         mark = f'<path d="M{x:.1f} {y - 8:.1f}l8 14h-16Z" class="target"/>'
         yield f'<g tabindex="0" role="img" aria-label="{escape(text)}"><title>{escape(text)}</title>{mark}</g>'
-        yield f'<text x="{x + 9:.1f}" y="{y + 12:.1f}" class="small">T{j}</text>'
+        yield f'<text x="{x + 9:.1f}" y="{y + 12:.1f}" class="small">{escape(picture.target_label(j))}</text>'
 
 
 def _ellipse(x: float, y: float, covariance: FloatArray, scale: float, kind: str) -> str:

@@ -7,7 +7,9 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, down, up
+from ratt_opt._values import counted
 from ratt_opt.report.bars import bar_ends
+from ratt_opt.report.description import describe
 from ratt_opt.report.notebook import html_table
 from ratt_opt.report.page.map_drawing import legend_html, map_svg
 from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
@@ -54,9 +56,9 @@ def _sections(report: BoundReport) -> Iterator[str]:
     share = share_text(plan.worst_case.lower, report.upper)
     yield (
         f"<p>This plan keeps <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}) under the worst "
-        f"attack that blinds at most {report.problem.alpha_s} robots and cuts at most {report.problem.alpha_c} links: "
-        f"of what any plan could keep that is {escape(share)}, and no plan keeps more than "
-        f"{up(report.upper, 10)}.</p>"
+        f"attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
+        f"{counted(report.problem.alpha_c, 'link')}: of what any plan could keep that "
+        f"is {escape(share)}, and no plan keeps more than {up(report.upper, 10)}.</p>"
     )
     yield from _map_section(report)
     yield from _planner_section(report)
@@ -78,20 +80,20 @@ def _map_section(report: BoundReport) -> Iterator[str]:
             f"{escape(VIEW_TITLES[name])}</label>"
         )
     yield "</fieldset>"
-    for k, (name, view) in enumerate(report.views.items()):
+    pictures = [picture_of(report.source, report, view) for view in report.views.values()]
+    for k, ((name, view), picture) in enumerate(zip(report.views.items(), pictures, strict=True)):
         hidden = " hidden" if k else ""
-        svg = map_svg(picture_of(report.source, report, view), report, view)
         yield (
-            f'<figure class="view" id="view-{name.replace(" ", "-")}"{hidden}>{svg}'
-            f"<figcaption>{escape(_caption(name, view))}</figcaption></figure>"
+            f'<figure class="view" id="view-{name.replace(" ", "-")}"{hidden}>{map_svg(picture, report, view)}'
+            f"<figcaption>{escape(_caption(name, view, report))}</figcaption></figure>"
         )
-    yield f'{legend_html()}<p id="hint" role="status" aria-live="polite">Point at a robot or target, or tab to it.</p>'
-    yield "</section>"
+    yield f'{legend_html(pictures)}<p id="hint" role="status" aria-live="polite">'
+    yield "Point at a robot or target, or tab to it.</p></section>"
 
 
-def _caption(name: str, view: PlanAssessment) -> str:
-    attack = view.worst_case.attack
-    blinded = " ".join(map(str, sorted(attack.sensing))) or "none"
+def _caption(name: str, view: PlanAssessment, report: BoundReport) -> str:
+    attack, known = view.worst_case.attack, describe(report.problem, report.source)
+    blinded = ", ".join(known.robot(i) for i in sorted(attack.sensing)) or "none"
     cut = " ".join(f"{i}-{j}" for i, j in sorted(attack.links)) or "none"
     left = f"value left {up(view.worst_case.upper, 10)}"
     return f"{VIEW_TITLES[name]}: {left}; blinded robots: {blinded}; cut links: {cut}"

@@ -12,6 +12,7 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
+from ratt_opt.problem import check_problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.any_function import search_any
@@ -90,7 +91,7 @@ def solve_maxmin(
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    check_workers(problem, workers)
+    check_workers(check_problem(problem), workers)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap)
@@ -223,7 +224,7 @@ def nonrobust_search(
     ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
     ``budget`` : an outer search's budget: its seconds and interrupts count too
     """
-    unattacked = replace(problem, alpha_s=0, alpha_c=0)
+    unattacked = replace(check_problem(problem), alpha_s=0, alpha_c=0)
     own = Budget.inside(budget, time_limit)
     with np.errstate(over="ignore"):
         few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS

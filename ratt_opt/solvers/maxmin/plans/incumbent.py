@@ -25,7 +25,7 @@ __all__ = ["PROVED", "Candidates", "Incumbent", "ProvedPlan", "climb"]
 def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
-    ``plan`` : (N,) element of each robot to start from; not changed. Raises ``OutOfBudget`` : the time is up.
+    ``plan`` : (N,) element of each robot to start from; not changed. Where the time is up, the pass ends where it is.
     """
     objective = pool.objective
     current = plan.copy()
@@ -34,8 +34,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -
     value = float(pool.outcome_values(base).min(initial=np.inf))
     unchanged, i = 0, 0
     seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
-    while unchanged < problem.n_robots:
-        budget.check()
+    while unchanged < problem.n_robots and not budget.is_over:
         choice = problem.choices[i]
         rows = np.flatnonzero(pool.membership()[:, i])
         others = choice[choice != current[i]]
@@ -140,7 +139,12 @@ class ProvedPlan:
 LOCAL_SEARCH_ROUNDS = 50
 """Rounds of climbing and attacking after which a plan is left as it is; in teams of ten 1 takes as many nodes."""
 FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
-"""Nodes, and share of the time, spent at once on a first lower bound for a large team."""
+"""Nodes, and share of the time left, spent at once on attacks that bound the first plan, and the best one, from below.
+Nearly all attacks on teams of up to 30 robots close in less."""
+IMPROVED_SHARE = 0.1
+"""Of the time left for the local search from one plan: at 100 robots each attack on the way takes up to two seconds."""
+RIVAL_SHARE = 0.5
+"""Of the time left for the proof of the best plan, where more is proved so far of another one, which gets the rest."""
 
 
 class Incumbent:
@@ -160,9 +164,11 @@ class Incumbent:
         return self.proved.lower >= level - PROVED * abs(level) - self.problem.objective.rounding
 
     def start(self, plans: Sequence[IntArray]) -> None:
-        """Improve the most promising of some plans, beat all of them, and attack the best one briefly."""
-        # What is known at once of the first plan: whatever interrupts the rest, the bracket is not empty.
-        self.proved.attack(plans[0], self.budget.part(max_nodes=0))
+        """Attack the first of some plans, improve the most promising one, beat all of them, and attack the best one.
+
+        Whatever ends the rest, what the brief attack on the first plan proved is kept.
+        """
+        self.proved.attack(plans[0], self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF))
         if self.budget.is_over:
             return
         for plan in plans:
@@ -190,9 +196,12 @@ class Incumbent:
         if (key := plan.tobytes()) in self._started:
             return
         self._started.add(key)
-        current = plan
+        current, part = plan, self.budget.part(IMPROVED_SHARE)
         for _ in range(LOCAL_SEARCH_ROUNDS):
-            current = climb(self.problem, self.pool, current, self.budget)
+            if part.is_over:
+                self.offer(current)
+                return
+            current = climb(self.problem, self.pool, current, part)
             known = len(self.pool)
             if not self.adversary.learn(current):
                 self.offer(current)
@@ -200,9 +209,22 @@ class Incumbent:
                 return
 
     def prove(self) -> bool:
-        """Attack the best plan exactly in the time left; return whether the search can go on with what was learnt."""
+        """Attack the best plan exactly in the time left; return whether the search can go on with what was learnt.
+
+        Where that is in vain, and the attack at the start proved more of another plan, that one is attacked once more.
+        """
         if self.is_proved or self.budget.stop() not in {None, Stop.NODES}:
             return False
-        level = self.candidates.level
-        self.proved.attack(self.candidates.best, self.budget.part())
+        level, rival = self.candidates.level, self._rival()
+        self.proved.attack(self.candidates.best, self.budget.part(1.0 if rival is None else RIVAL_SHARE))
+        if rival is not None and not self.is_proved and self.candidates.level == level:
+            self.proved.attack(rival, self.budget.part())
         return self.is_proved or self.candidates.level < level
+
+    def _rival(self) -> IntArray | None:
+        """The plan of which most is proved, where it is not the best one and more may be proved of it."""
+        plan = self.proved.elements
+        if np.array_equal(plan, self.candidates.best):
+            return None
+        is_open = self.pool.plan_value(plan) > self.proved.lower * (1 + PROVED) + self.problem.objective.rounding
+        return plan if is_open else None

@@ -1,0 +1,81 @@
+"""What is proved of the first plan of a large team, whatever becomes of the search for a better one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from ratt_opt import Attack, Stop, random_scenario, ratt, worst_case_attack
+from ratt_opt.attackers.task import AttackResult
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.solvers.maxmin.plans import incumbent
+from ratt_opt.solvers.maxmin.plans.adversary import Adversary
+from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+
+if TYPE_CHECKING:
+    from ratt_opt import Problem
+    from ratt_opt._validation import IntArray
+
+NODES = 40
+"""Few: an attack on teams of this size takes thousands."""
+
+
+def started(problem: Problem, first: IntArray) -> Incumbent:
+    return Incumbent(problem, OutcomePool(problem), first, Budget())
+
+
+@pytest.mark.parametrize(("robots", "blinded", "cut"), [(40, 13, 195), (40, 1, 600), (60, 19, 442)])
+def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_nodes(
+    robots: int, blinded: int, cut: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The time is up as soon as a better plan is looked for."""
+    problem = random_scenario(robots, 6, alpha_s=blinded, alpha_c=cut, seed=0).problem()
+    first = ratt(problem).elements
+    alone = worst_case_attack(problem, first, max_nodes=NODES)
+    at_once = worst_case_attack(problem, first, max_nodes=0)
+    search = started(problem, first)
+
+    def no_time(*_: object) -> None:
+        raise OutOfBudget(Stop.TIME)
+
+    monkeypatch.setattr(incumbent, "FIRST_PROOF", NODES)
+    monkeypatch.setattr(search, "improve", no_time)
+    with pytest.raises(OutOfBudget):
+        search.start([first])
+    assert search.proved.lower >= alone.lower > at_once.lower
+    assert np.array_equal(search.proved.elements, first)
+
+
+@pytest.mark.parametrize("share_of_best", [0.5, 0.9])
+def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
+    share_of_best: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the proof of the best plan is in vain, the one of which most was proved is attacked again."""
+    problem = random_scenario(40, 6, alpha_s=2, alpha_c=300, seed=0).problem()
+    first = ratt(problem).elements
+    search = started(problem, first)
+    search.adversary.learn(first)
+    known = search.pool.plan_value(first)
+    rng, best = np.random.default_rng(0), first
+    while not search.pool.plan_value(best) > known:
+        drawn = np.array([rng.choice(choice) for choice in problem.choices])
+        best = np.where(rng.random(len(first)) < 0.2, drawn, first)
+    search.candidates.add(first)
+    search.candidates.add(best)
+    attacked = []
+
+    def attack(_: Adversary, plan: IntArray, _budget: Budget) -> AttackResult:
+        is_first = np.array_equal(plan, first)
+        attacked.append(is_first)
+        share = 0.95 + 0.01 * len(attacked) if is_first else share_of_best
+        return AttackResult(attack=Attack(), lower=share * known, upper=known, stop=Stop.TIME, evaluations=1)
+
+    monkeypatch.setattr(Adversary, "attack", attack)
+    search.proved.attack(first, Budget())
+    search.proved.attack(best, Budget())
+    assert not search.prove()
+    assert attacked == [True, False, False, True]
+    assert search.proved.lower == pytest.approx(0.99 * known)
