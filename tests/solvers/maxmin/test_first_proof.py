@@ -24,7 +24,7 @@ NODES = 40
 
 
 def started(problem: Problem, first: IntArray) -> Incumbent:
-    return Incumbent(problem, OutcomePool(problem), first, Budget())
+    return Incumbent(problem, OutcomePool(problem), first, Budget(time_limit=3600.0))
 
 
 @pytest.mark.parametrize(("robots", "blinded", "cut"), [(40, 13, 195), (40, 1, 600), (60, 19, 442)])
@@ -53,7 +53,7 @@ def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_n
 def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     share_of_best: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where the proof of the best plan is in vain, the one of which most was proved is attacked again."""
+    """Before the proof of the best plan, which may be in vain, the one of which most was proved is attacked again."""
     problem = random_scenario(40, 6, alpha_s=2, alpha_c=300, seed=0).problem()
     first = ratt(problem).elements
     search = started(problem, first)
@@ -77,5 +77,5 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     search.proved.attack(first, Budget())
     search.proved.attack(best, Budget())
     assert not search.prove()
-    assert attacked == [True, False, False, True]
-    assert search.proved.lower == pytest.approx(0.99 * known)
+    assert attacked == [True, False, True, False]
+    assert search.proved.lower == pytest.approx(0.98 * known)

@@ -144,7 +144,7 @@ Nearly all attacks on teams of up to 30 robots close in less."""
 IMPROVED_SHARE = 0.1
 """Of the time left for the local search from one plan: at 100 robots each attack on the way takes up to two seconds."""
 RIVAL_SHARE = 0.5
-"""Of the time left for the proof of the best plan, where more is proved so far of another one, which gets the rest."""
+"""Of the time left, once, for a second attack on a plan of which more is proved so far than of the best one."""
 
 
 class Incumbent:
@@ -156,6 +156,7 @@ class Incumbent:
         self.adversary = Adversary(problem, pool, budget)
         self.proved = ProvedPlan(self.adversary, first)
         self._started: set[bytes] = set()
+        self._rivals: set[bytes] = set()
 
     @property
     def is_proved(self) -> bool:
@@ -211,20 +212,25 @@ class Incumbent:
     def prove(self) -> bool:
         """Attack the best plan exactly in the time left; return whether the search can go on with what was learnt.
 
-        Where that is in vain, and the attack at the start proved more of another plan, that one is attacked once more.
+        Where the attacks at the start proved more of another plan, that one is attacked once more before.
         """
         if self.is_proved or self.budget.stop() not in {None, Stop.NODES}:
             return False
-        level, rival = self.candidates.level, self._rival()
-        self.proved.attack(self.candidates.best, self.budget.part(1.0 if rival is None else RIVAL_SHARE))
-        if rival is not None and not self.is_proved and self.candidates.level == level:
-            self.proved.attack(rival, self.budget.part())
+        level = self.candidates.level
+        if (rival := self._rival()) is not None:
+            self._rivals.add(rival.tobytes())
+            self.proved.attack(rival, self.budget.part(RIVAL_SHARE))
+        self.proved.attack(self.candidates.best, self.budget.part())
         return self.is_proved or self.candidates.level < level
 
     def _rival(self) -> IntArray | None:
-        """The plan of which most is proved, where it is not the best one and more may be proved of it."""
+        """The plan of which most is proved, unless it is the best one, was a rival, or no more is to be proved of it.
+
+        None without a time limit: then the proof of the best one comes to its end.
+        """
         plan = self.proved.elements
-        if np.array_equal(plan, self.candidates.best):
+        was_rival, is_limited = plan.tobytes() in self._rivals, np.isfinite(self.budget.seconds_left)
+        if was_rival or not is_limited or np.array_equal(plan, self.candidates.best):
             return None
         is_open = self.pool.plan_value(plan) > self.proved.lower * (1 + PROVED) + self.problem.objective.rounding
         return plan if is_open else None
