@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search, weak_families
+from ratt_opt.attackers.by_size import group_exchanges, low_lists, size_vector_search, vector_search, weak_families
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
@@ -14,6 +14,7 @@ from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
+from ratt_opt.attackers.weakest_set.linear_descent import descended
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
@@ -276,3 +277,44 @@ def test_exchanges_keep_fixed_robots_and_stay_among_those_allowed(name, seed):
     lowest = min(team.value(reached - {i} | {e}) for i in reached - fixed for e in among - reached)
     assert lowest >= team.value(reached) - 1e-9 * max(team.value(reached), 1.0)
     assert exchanged(team, start, among=start) == start
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(6))
+def test_linear_descent_ends_no_higher_and_where_no_step_leads_on(name, seed):
+    problem, elements = team_problem(seed, 14, name)
+    team = PlanarTeam.of(problem.objective, elements)
+    rng = np.random.default_rng(seed)
+    start = rng.permutation(14)[: int(rng.integers(1, 14))]
+    found = descended(team, start)
+    assert len(set(found.tolist())) == len(start)
+    assert team.value(found) <= team.value(start)
+    assert team.value(descended(team, found)) == team.value(found)
+
+
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_large_teams_start_from_where_linear_descent_ends(name, monkeypatch):
+    """With time for one exchange only, that is much of what the attack is."""
+    monkeypatch.setattr(group_exchanges, "AT_ONCE", 0)
+    found = {0: 0.0, 10**9: 0.0}
+    for seed in range(4):
+        problem = ro.random_scenario(40, 12, alpha_s=4, alpha_c=40, seed=seed).problem(name)
+        values = PlanValues(problem, ro.ratt(problem).elements)
+        team = PlanarTeam.of(problem.objective, values.plan)
+        task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=0))
+        sizes = SizeVectorSearch(task, team).vectors[0]
+        for large in found:
+            monkeypatch.setattr(weak_families, "AT_ONCE", large)
+            found[large] += weak_families.WeakFamilies(task, team)._settled(sizes, task.budget).value
+    assert found[0] < found[10**9]
+
+
+def test_exchanges_that_do_not_end_leave_time_for_bounds(monkeypatch):
+    monkeypatch.setattr(group_exchanges, "_exchange", lambda *_: (1e9, False))
+    problem = ro.random_scenario(40, 4, alpha_s=4, alpha_c=40, seed=1).problem("logdet")
+    values = PlanValues(problem, ro.ratt(problem).elements)
+    team = PlanarTeam.of(problem.objective, values.plan)
+    task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=2.0))
+    search = SizeVectorSearch(task, team)
+    assert search.weak.exchanged(search.vectors)
+    assert not task.budget.is_over

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import value_of
+from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
 from ratt_opt.compiling import numba
 
 __all__ = ["Cooling", "State", "anneal"]
@@ -63,13 +63,14 @@ class State(NamedTuple):
 
 @numba.njit(cache=True)
 def _fill(team: Any, links: Any, state: Any) -> None:
-    state.sums[:] = team.prior
-    state.size[:] = 0
+    for g in range(len(state.group)):
+        copy(state.sums[g], team.prior)
+        state.size[g] = 0
     state.cut[0] = 0
     for i in range(len(state.group)):
         state.size[state.group[i]] += 1
         if not state.blind[i]:
-            state.sums[state.group[i]] += team.information[i]
+            add(state.sums[state.group[i]], state.sums[state.group[i]], 1.0, team, i)
         for a in range(links.start[i], links.start[i + 1]):
             if links.robot[a] > i and state.group[links.robot[a]] != state.group[i]:
                 state.cut[0] += UNCUTTABLE if links.fixed[a] else 1
@@ -87,8 +88,8 @@ def _transfer(team: Any, links: Any, state: Any, robot: int, target: int) -> Non
         elif other == target:
             state.cut[0] -= weight
     if not state.blind[robot]:
-        state.sums[home] -= team.information[robot]
-        state.sums[target] += team.information[robot]
+        add(state.sums[home], state.sums[home], -1.0, team, robot)
+        add(state.sums[target], state.sums[target], 1.0, team, robot)
     state.group[robot] = target
     state.size[home] -= 1
     state.size[target] += 1
@@ -96,10 +97,8 @@ def _transfer(team: Any, links: Any, state: Any, robot: int, target: int) -> Non
 
 @numba.njit(cache=True)
 def _flip(team: Any, state: Any, robot: int) -> None:
-    if state.blind[robot]:
-        state.sums[state.group[robot]] += team.information[robot]
-    else:
-        state.sums[state.group[robot]] -= team.information[robot]
+    sums = state.sums[state.group[robot]]
+    add(sums, sums, 1.0 if state.blind[robot] else -1.0, team, robot)
     state.blind[robot] = not state.blind[robot]
 
 
@@ -167,12 +166,14 @@ def anneal(team: Any, links: Any, state: Any, cooling: Any, best: Any, least: fl
     for step in range(cooling.first, cooling.last):
         if state.cut[0] <= cooling.budget and state.value.max() < least:
             least = state.value.max()
-            best[0][:], best[1][:] = state.group, state.blind
+            copy_row(best[0], state.group)
+            copy_row(best[1], state.blind)
         move = _propose(links, state, n_blinded, rng)
         if move[0] < 0:
             continue
         home, target = move[3], move[4]
-        saved[0], saved[1] = state.sums[home], state.sums[target]
+        copy(saved[0], state.sums[home])
+        copy(saved[1], state.sums[target])
         worth[0], worth[1] = state.value[home], state.value[target]
         _apply(team, links, state, move)
         state.value[home] = value_of(team, state.sums[home]) if state.size[home] else 0.0
@@ -183,6 +184,7 @@ def anneal(team: Any, links: Any, state: Any, cooling: Any, best: Any, least: fl
             energy = after
             continue
         _apply(team, links, state, (move[0], move[1], move[2], target, home))
-        state.sums[home], state.sums[target] = saved[0], saved[1]
+        copy(state.sums[home], saved[0])
+        copy(state.sums[target], saved[1])
         state.value[home], state.value[target] = worth[0], worth[1]
     return float(least)

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
-from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size
+from ratt_opt.attackers.weakest_set.exchanges import AT_ONCE, weak_sets_of_size
+from ratt_opt.attackers.weakest_set.linear_descent import descended
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["WeakFamilies", "weakest_of"]
@@ -56,39 +58,47 @@ class WeakFamilies:
             if families and part.stop() is not None:
                 break
             self._budget.check()
-            family = self._settled(sizes)
-            for largest in () if self._budget.is_over else self._weak_largest(sizes):
-                if self._budget.is_over:
+            family = self._settled(sizes, part)
+            for largest in () if part.is_over else self._weak_largest(sizes, part):
+                if part.is_over:
                     break
-                family.around(largest, self._budget)
+                family.around(largest, part)
             families.append(family)
         families.sort(key=attrgetter("value"))
         for family in families[:SHAKEN]:
-            family.shake(SHAKES, self._budget)
+            family.shake(SHAKES, part)
         return sorted(families, key=attrgetter("value"))
 
     def deciding(self, vectors: list[Sizes], largest: int) -> list[GroupExchanges]:
         """A family of the first vectors whose largest group has that size and is likely to be the best one."""
         alone = (sizes for sizes in vectors if sizes[0] == largest and _second(sizes) <= LIKELY * largest)
-        return [self._settled(sizes) for sizes in islice(alone, SHAKEN)]
+        part = self._budget.part(EXCHANGES_SHARE)
+        return [self._settled(sizes, part) for sizes in islice(alone, SHAKEN)]
 
     def start_from(self, families: list[GroupExchanges], sets: Iterable[frozenset[int]]) -> None:
         """Start the families anew from a few largest groups."""
+        part = self._budget.part(EXCHANGES_SHARE)
         for largest, _ in zip(sets, range(WEAK_SETS), strict=False):
             for family in families:
-                family.around(largest, self._budget)
+                family.around(largest, part)
 
-    def _settled(self, sizes: Sizes) -> GroupExchanges:
-        family = GroupExchanges(self._team, sizes, self._must)
-        family.weakest(self._budget)
+    def _settled(self, sizes: Sizes, budget: Budget) -> GroupExchanges:
+        team = self._team
+        family = GroupExchanges(team, sizes, self._must)
+        largest, (n_robots, n_targets) = sizes[0], team.information.shape[:2]
+        if largest * (n_robots - largest) * n_targets > AT_ONCE:
+            weakest = np.argsort(team.single, kind="stable")[:largest]
+            family.around(frozenset(descended(team, weakest).tolist()), budget)
+        if not np.isfinite(family.value):
+            family.weakest(budget)
         return family
 
-    def _weak_largest(self, sizes: Sizes) -> list[frozenset[int]]:
+    def _weak_largest(self, sizes: Sizes, budget: Budget) -> list[frozenset[int]]:
         """Weak sets of the size of a largest group that alone decides what a family is worth."""
         if _second(sizes) > CLEARLY * (largest := sizes[0]):
             return []
         if largest not in self._weak:
-            self._weak[largest] = weak_sets_of_size(self._team, largest, self._budget)[:WEAK_SETS]
+            self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[:WEAK_SETS]
         return self._weak[largest]
 
 

@@ -2,6 +2,6 @@
 
 Open ``branch_and_bound.py`` first: it bounds nodes that fix some robots, and lets ``enumeration.py`` finish
 small families. The bounds are ``weakest_axis.py`` where one axis decides, and else
-``minorant.py`` over the polytopes of ``outer_polytopes.py``. ``exchanges.py`` finds weak sets without a claim;
-``planar_team.py`` has the arrays all of them share.
+``minorant.py`` over the polytopes of ``outer_polytopes.py``. ``exchanges.py`` finds weak sets without a claim, in large
+teams from where ``linear_descent.py`` ends; ``planar_team.py`` has the arrays all of them share.
 """

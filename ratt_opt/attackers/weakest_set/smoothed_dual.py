@@ -185,9 +185,12 @@ class _Ascent:
 @numba.njit(cache=True)
 def _rest(points: Any, patterns: Any, slopes: Any, own: Any) -> Any:
     first, pattern, values, light = points
-    rest = np.empty(len(values))
+    rest, of_pattern = np.empty(len(values)), np.empty(len(patterns))
     for j in range(len(slopes)):
-        of_pattern = (patterns * own[j]).sum(axis=1)
+        for p in range(len(patterns)):
+            of_pattern[p] = 0.0
+            for t in range(patterns.shape[1]):
+                of_pattern[p] += patterns[p, t] * own[j, t]
         a, b, c = slopes[j, 0], slopes[j, 1], slopes[j, 2]
         for v in range(first[j], first[j + 1]):
             rest[v] = values[v] - (a * light[v, 0] + b * light[v, 1] + c * light[v, 2]) - of_pattern[pattern[v]]
@@ -202,7 +205,11 @@ def _smoothed(program: Any, slopes: Any, own: Any, temperature: float, results: 
     gradient, fraction = results
     rest = _rest(points, patterns, slopes, own)
     bound, total = 0.0, 0.0
-    scores = (information * slopes).sum(axis=2).sum(axis=1)
+    scores = np.zeros(len(information))
+    for i in range(len(information)):
+        for j in range(len(slopes)):
+            for t in range(3):
+                scores[i] += information[i, j, t] * slopes[j, t]
     for j in range(len(own)):
         start, stop = first[j], first[j + 1]
         if start < stop:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["WeakSets"]
 
-VALUES = 300_000
-"""Values looked at to prove that no robots of a set are worth less: a tenth of a second."""
+VALUES, QUICK = 300_000, 20_000
+"""Values looked at to prove that no robots of a set are worth less (up to a second or two), and of a larger set."""
 
 
 class WeakSets:
@@ -67,13 +67,13 @@ class WeakSets:
             return False
         for i in self._strongest:
             tick()
-            if not group >> i & 1 and not self._has_weak(group | 1 << i, room + 1):
+            if not group >> i & 1 and not self._has_weak(group | 1 << i, room + 1, QUICK):
                 group |= 1 << i
         self.robots.append(group)
         self.room.append(room)
         return True
 
-    def _has_weak(self, robots: int, size: int) -> bool:
+    def _has_weak(self, robots: int, size: int, values: int = VALUES) -> bool:
         """Whether so many of the robots may be worth less; true also where that is not decided."""
         n_robots = len(self._strongest)
         inside, found = (
@@ -81,7 +81,7 @@ class WeakSets:
             np.zeros(n_robots, np.bool_),
         )
         nobody, spared = np.zeros(n_robots, dtype=np.bool_), robots.bit_count() - size
-        return bool(weak_subset(self._team, nobody, inside, spared, self._threshold, VALUES, found) != ABSENT)
+        return bool(weak_subset(self._team, nobody, inside, spared, self._threshold, values, found) != ABSENT)
 
     def records(self, sets: PlanSets, max_nodes: int) -> list[dict[str, Any]]:
         """The sets with their proofs.

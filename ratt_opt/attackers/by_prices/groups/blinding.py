@@ -9,12 +9,36 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import gather, value_of
+from ratt_opt.attackers.by_prices.groups.compiled import add, copy, gather_seeing, value_of
 from ratt_opt.compiling import numba
 
 __all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "trade", "weak_subset"]
 
 ABSENT, WEAK, UNDECIDED = 0, 1, 2
+
+
+@numba.njit(cache=True)
+def _strongest_first(team: Any, group: Any) -> Any:
+    """The robots of ``group`` (N,) by falling individual value."""
+    members, size = np.empty(len(group), dtype=np.int64), 0
+    for i in range(len(group)):
+        if group[i]:
+            place = size
+            while place > 0 and team.single[members[place - 1]] < team.single[i]:
+                members[place] = members[place - 1]
+                place -= 1
+            members[place] = i
+            size += 1
+    return members[:size]
+
+
+@numba.njit(cache=True)
+def _can_blind(seeing: Any, members: Any, first: int) -> bool:
+    """Whether none of the members from ``first`` on is protected."""
+    possible = True
+    for k in range(first, len(members)):
+        possible = possible and not seeing[members[k]]
+    return possible
 
 
 @numba.njit(cache=True)
@@ -24,24 +48,23 @@ def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: flo
     ``seeing`` : (N,) robots that cannot be blinded; ``limit`` : values looked at before giving up;
     ``found`` : (N,) becomes the blinded robots. The strongest are decided first, blinded before kept.
     """
-    members = np.flatnonzero(group)
-    members = members[np.argsort(-team.single[members])]
+    members = _strongest_first(team, group)
     size, asked = len(members), 0
     sums = np.empty((size + 1, *team.prior.shape))
-    sums[0] = team.prior
+    copy(sums[0], team.prior)
     choice = np.zeros(size + 1, dtype=np.int64)  # 0: nothing tried, 1: blinding tried, 2: keeping tried
     depth, used = 0, 0
     while depth >= 0:
-        if (depth == size or size - depth <= blinded - used) and not seeing[members[depth:]].any():
+        if (depth == size or size - depth <= blinded - used) and _can_blind(seeing, members, depth):
             found[:] = False
-            found[members[:depth]] = choice[:depth] == 1
-            found[members[depth:]] = True
+            for k in range(size):
+                found[members[k]] = k >= depth or choice[k] == 1
             return WEAK
         step = choice[depth] if depth < size else 2
         robot = members[depth] if depth < size else -1
         if step == 0 and used < blinded and not seeing[robot]:
             choice[depth] = 1
-            sums[depth + 1] = sums[depth]
+            copy(sums[depth + 1], sums[depth])
             used += 1
             depth += 1
             if depth <= size:
@@ -51,7 +74,7 @@ def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: flo
             used -= 1
         if step < 2:
             choice[depth] = 2
-            sums[depth + 1] = sums[depth] + team.information[robot]
+            add(sums[depth + 1], sums[depth], 1.0, team, robot)
             asked += 1
             if asked > limit:
                 return UNDECIDED
@@ -69,7 +92,7 @@ def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, s
 
     ``blind`` (N,) and ``sums`` (M, T), the seeing robots' information, are changed in place.
     """
-    value = gather(team, group & ~blind, sums)
+    value = gather_seeing(team, group, blind, sums)
     other = np.empty_like(sums)
     for _ in range(len(group)):  # rounding must not make it exchange equals for ever
         if value < threshold:
@@ -81,24 +104,25 @@ def exchange(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, s
             for j in range(len(group)):
                 if not group[j] or blind[j] or seeing[j]:
                     continue
-                other[:] = sums + team.information[i] - team.information[j]
+                add(other, sums, 1.0, team, i)
+                add(other, other, -1.0, team, j)
                 changed = value_of(team, other)
                 if changed < best:
                     best, leaves, enters = changed, i, j
         if leaves < 0:
             return False
         blind[leaves], blind[enters] = False, True
-        value = gather(team, group & ~blind, sums)
+        value = gather_seeing(team, group, blind, sums)
     return bool(value < threshold)
 
 
 @numba.njit(cache=True)
-def _least(team: Any, sums: Any, allowed: Any, sign: float, other: Any) -> Any:
-    """The allowed robot whose information, added or taken away, leaves the least value: (robot or -1, value)."""
+def _least(team: Any, sums: Any, group: Any, blind: Any, seeing: Any, sign: float, other: Any) -> Any:  # noqa: PLR0917
+    """Who of the group leaves the least value by seeing again (sign 1) or being blinded (-1): (robot or -1, value)."""
     robot, least = -1, np.inf
-    for i in range(len(allowed)):
-        if allowed[i]:
-            other[:] = sums + sign * team.information[i]
+    for i in range(len(group)):
+        if group[i] and blind[i] == (sign > 0) and not (seeing[i] and sign < 0):
+            add(other, sums, sign, team, i)
             value = value_of(team, other)
             if value < least:
                 robot, least = i, value
@@ -108,17 +132,17 @@ def _least(team: Any, sums: Any, allowed: Any, sign: float, other: Any) -> Any:
 @numba.njit(cache=True)
 def trade(team: Any, seeing: Any, group: Any, blind: Any, threshold: float, sums: Any) -> bool:  # noqa: PLR0917
     """:func:`exchange` by one robot at a time: far fewer values to look at, and seldom worse."""
-    value, other = gather(team, group & ~blind, sums), np.empty_like(sums)
+    value, other = gather_seeing(team, group, blind, sums), np.empty_like(sums)
     for _ in range(len(group)):  # rounding must not make it trade equals for ever
         if value < threshold:
             return True
-        leaves, more = _least(team, sums, group & blind, 1.0, other)
+        leaves, more = _least(team, sums, group, blind, seeing, 1.0, other)
         if leaves < 0 or not more < np.inf:
             return False
-        sums += team.information[leaves]
-        enters, least = _least(team, sums, group & ~blind & ~seeing, -1.0, other)
+        add(sums, sums, 1.0, team, leaves)
+        enters, least = _least(team, sums, group, blind, seeing, -1.0, other)
         if enters < 0 or not least < value * (1 - 1e-9):
             return False
         blind[leaves], blind[enters] = False, True
-        value = gather(team, group & ~blind, sums)
+        value = gather_seeing(team, group, blind, sums)
     return bool(value < threshold)

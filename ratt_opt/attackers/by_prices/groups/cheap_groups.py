@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import value_of
+from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS
 from ratt_opt.compiling import numba
 
@@ -85,9 +85,9 @@ def _propose(links: Any, part: Any, first: int, rng: Any) -> Any:
 def _start(team: Any, links: Any, prices: Any, limits: Any, first: int, part: Any, sums: Any) -> float:  # noqa: PLR0917
     """The first robot alone, blinded where it must be."""
     part[:] = OUTSIDE
-    sums[:] = team.prior
+    copy(sums, team.prior)
     if team.single[first] < limits[0]:
-        sums += team.information[first]
+        add(sums, sums, 1.0, team, first)
         return float(_change(links, prices, part, first, SEEING))
     if limits[1] == 0 or links.seeing[first]:
         return NOBODY
@@ -100,14 +100,14 @@ def _is_weak(team: Any, limits: Any, sums: Any, trial: Any, moved: Any) -> bool:
     i, before, after, j, other_before, other_after = moved
     change = int(after == SEEING) - int(before == SEEING)
     other = int(other_after == SEEING) - int(other_before == SEEING) if j >= 0 else 0
-    trial[:] = sums
+    copy(trial, sums)
     if change:
-        trial += change * team.information[i]
+        add(trial, trial, change, team, i)
     if other:
-        trial += other * team.information[j]
+        add(trial, trial, other, team, j)
     if (change > 0 or other > 0) and not value_of(team, trial) < limits[0]:
         return False
-    sums[:] = trial
+    copy(sums, trial)
     return True
 
 
@@ -123,7 +123,7 @@ def cheap_group(  # noqa: PLR0917
     part, sums, trial = np.zeros(len(best), dtype=np.int8), np.empty_like(team.prior), np.empty_like(team.prior)
     cost = _start(team, links, prices, limits, first, part, sums)
     least, blinded = cost, int(part[first] == BLINDED)
-    best[:] = part
+    copy_row(best, part)
     if cost == NOBODY:
         return NOBODY
     for move in range(cooling[0]):
@@ -145,7 +145,7 @@ def cheap_group(  # noqa: PLR0917
             cost, blinded = cost + rise, after
             if cost < least - 1e-9:
                 least = cost
-                best[:] = part
+                copy_row(best, part)
             continue
         part[i] = old
         if j >= 0:

@@ -21,8 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
-from ratt_opt.attackers.by_prices.groups.needs import admit, blind_fewer, knapsack_need, settle
+from ratt_opt.attackers.by_prices.groups.needs import admit, blind_fewer, inside_of, knapsack_need, settle
 from ratt_opt.compiling import numba
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]
@@ -94,13 +95,13 @@ class Stack(NamedTuple):
 
 @numba.njit(cache=True)
 def _copy(stack: Any, source: int, target: int) -> None:
-    stack.side[target] = stack.side[source]
-    stack.into[target] = stack.into[source]
-    stack.out[target] = stack.out[source]
-    stack.along[target] = stack.along[source]
-    stack.blind[target] = stack.blind[source]
-    stack.need[target] = stack.need[source]
-    stack.bound[target] = stack.bound[source]
+    copy(stack.into[target], stack.into[source])
+    copy(stack.out[target], stack.out[source])
+    copy(stack.along[target], stack.along[source])
+    copy_row(stack.side[target], stack.side[source])
+    copy_row(stack.blind[target], stack.blind[source])
+    copy_row(stack.need[target], stack.need[source])
+    copy_row(stack.bound[target], stack.bound[source])
 
 
 @numba.njit(cache=True)
@@ -173,7 +174,8 @@ def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed:
     """Add the finished group of the node just closed where its reduced cost is within the limit."""
     node = stack.position[1]
     groups, blinds, needs, costs = listed
-    asked = knapsack_need(links, prices, stack.side[node] == 1)
+    group = inside_of(stack, node)
+    asked = knapsack_need(links, prices, group)
     stack.need[node, 0] = max(stack.need[node, 0], min(asked, stack.need[node, 1]))
     if _cost(links, prices, stack.side[node], stack.need[node, 0]) > question.limit:
         return
@@ -182,7 +184,9 @@ def _list(team: Any, links: Any, prices: Any, question: Any, stack: Any, listed:
     cost = _cost(links, prices, stack.side[node], stack.need[node, 0])
     if cost <= question.limit and stack.need[node, 0] <= question.budget:
         row = stack.position[3]
-        groups[row], blinds[row], needs[row] = stack.side[node] == 1, stack.blind[node], stack.need[node]
+        copy_row(groups[row], group)
+        copy_row(blinds[row], stack.blind[node])
+        copy_row(needs[row], stack.need[node])
         costs[row] = cost
         stack.position[3] += 1
 
@@ -220,7 +224,8 @@ def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: A
         joins = admit(team, links, question, stack, node + 1, robot, sums)
         joins = joins and _least(links, prices, question, stack, node + 1, work) <= question.limit
         stack.side[node, robot] = 2
-        stack.out[node, :, robot] = ALWAYS
+        for kind in range(stack.out.shape[1]):
+            stack.out[node, kind, robot] = ALWAYS
         stays = _least(links, prices, question, stack, node, work) <= question.limit
         if joins and not stays:
             _copy(stack, node + 1, node)

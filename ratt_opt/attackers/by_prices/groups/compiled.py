@@ -1,7 +1,8 @@
 """Values of groups of robots in compiled code, for the registered criteria and targets of any dimension.
 
 Imported only where compiled loops are used. Symmetric matrices are packed by rows of the lower triangle, so that
-planar ones are the triples of ``setfunctions/criteria/compiled.py``.
+planar ones are the triples of ``setfunctions/criteria/compiled.py``. Sums are written element by element: expressions
+of whole arrays and their errors take several times as long to compile.
 """
 
 from __future__ import annotations
@@ -13,7 +14,30 @@ import numpy as np
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, TRACE, team_criterion
 
-__all__ = ["gather", "value_of"]
+__all__ = ["add", "copy", "copy_row", "gather", "gather_seeing", "value_of"]
+
+
+@numba.njit(cache=True)
+def copy(target: Any, source: Any) -> None:
+    """``target[:] = source`` for two axes."""
+    for j in range(target.shape[0]):
+        for k in range(target.shape[1]):
+            target[j, k] = source[j, k]
+
+
+@numba.njit(cache=True)
+def copy_row(target: Any, source: Any) -> None:
+    """``target[:] = source`` for one axis."""
+    for i in range(target.shape[0]):
+        target[i] = source[i]
+
+
+@numba.njit(cache=True)
+def add(target: Any, sums: Any, times: float, team: Any, robot: int) -> None:
+    """``target[:] = sums + times * (the robot's information)``, all (M, T)."""
+    for j in range(target.shape[0]):
+        for k in range(target.shape[1]):
+            target[j, k] = sums[j, k] + times * team.information[robot, j, k]
 
 
 @numba.njit(cache=True)
@@ -62,7 +86,9 @@ def _criterion(code: int, weights: Any, matrices: Any) -> float:
             continue
         _invert(factor, inverse)  # L^-1 = inverse' inverse
         if code == TRACE:
-            total += weights[j] * (inverse * inverse).sum()
+            for row in inverse:
+                for entry in row:
+                    total += weights[j] * entry * entry
         else:
             total = max(total, weights[j] * np.linalg.eigvalsh(inverse.T @ inverse)[d - 1])
     return total
@@ -77,8 +103,18 @@ def value_of(team: Any, sums: Any) -> float:
 @numba.njit(cache=True)
 def gather(team: Any, robots: Any, sums: Any) -> float:
     """Fill ``sums`` (M, T) with the information of the ``robots`` (N,) marked true; returns their value."""
-    sums[:] = team.prior
+    copy(sums, team.prior)
     for i in range(len(robots)):
         if robots[i]:
-            sums += team.information[i]
+            add(sums, sums, 1.0, team, i)
+    return float(value_of(team, sums))
+
+
+@numba.njit(cache=True)
+def gather_seeing(team: Any, group: Any, blind: Any, sums: Any) -> float:
+    """:func:`gather` of the robots of ``group`` that are not ``blind``."""
+    copy(sums, team.prior)
+    for i in range(len(group)):
+        if group[i] and not blind[i]:
+            add(sums, sums, 1.0, team, i)
     return float(value_of(team, sums))

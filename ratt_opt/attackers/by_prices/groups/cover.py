@@ -8,13 +8,23 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from ratt_opt.compiling import numba
 
 __all__ = ["next_cover"]
 
 FINISHED, PAUSED, FOUND = 0, 1, 2
+
+
+@numba.njit(cache=True)
+def _fits(covered: Any, group: Any, spent: Any, cost: Any, budgets: Any) -> bool:
+    """Whether the group is disjoint from what is covered, and its costs are within what is left."""
+    for b in range(len(budgets)):
+        if spent[b] + cost[b] > budgets[b]:
+            return False
+    disjoint = True
+    for i in range(len(group)):
+        disjoint = disjoint and not (covered[i] and group[i])
+    return disjoint
 
 
 @numba.njit(cache=True)
@@ -42,7 +52,7 @@ def next_cover(groups: Any, costs: Any, budgets: Any, state: Any, nodes: int) ->
         chosen = -1
         while k < first[lowest + 1]:
             nodes -= 1
-            if np.all(spent[d] + costs[k] <= budgets) and not np.any(covered[d] & groups[k]):
+            if _fits(covered[d], groups[k], spent[d], costs[k], budgets):
                 chosen = k
                 break
             k += 1
@@ -50,8 +60,10 @@ def next_cover(groups: Any, costs: Any, budgets: Any, state: Any, nodes: int) ->
         if chosen < 0:
             depth[0] = d - 1
             continue
-        covered[d + 1] = covered[d] | groups[chosen]
-        spent[d + 1] = spent[d] + costs[chosen]
+        for i in range(n_robots):
+            covered[d + 1, i] = covered[d, i] or groups[chosen, i]
+        for b in range(len(budgets)):
+            spent[d + 1, b] = spent[d, b] + costs[chosen, b]
         position[d + 1] = -1
         depth[0] = d + 1
         if nodes <= 0:

@@ -106,7 +106,8 @@ def augment(links: Any, flow: Any, bound: float, limit: float, work: Any) -> flo
     level, arc, path = work
     into = flow[0]
     while bound <= limit and _levels(links, flow, level, path):
-        arc[:] = links.start[:-1]
+        for i in range(len(into)):
+            arc[i] = links.start[i]
         for source in range(len(into)):
             while into[source] > EMPTY and bound <= limit:
                 amount = _push(links, flow, source, level, arc, path)

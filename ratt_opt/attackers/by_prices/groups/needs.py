@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.blinding import UNDECIDED, WEAK, exchange, trade, weak_subset
-from ratt_opt.attackers.by_prices.groups.compiled import gather
+from ratt_opt.attackers.by_prices.groups.compiled import copy_row, gather_seeing
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS
 from ratt_opt.compiling import numba
 
-__all__ = ["admit", "blind_fewer", "knapsack_need", "settle"]
+__all__ = ["admit", "blind_fewer", "inside_of", "knapsack_need", "settle"]
 
 SMALL = 40
 """Robots up to which what a group needs is decided at every node. Measured at 24 robots: with 12 instead, a
@@ -22,16 +22,25 @@ refutation of 17,000 nodes takes more than 220,000."""
 
 
 @numba.njit(cache=True)
+def inside_of(stack: Any, node: int) -> Any:
+    """(N,) whether each robot is inside at a node."""
+    group = np.empty(stack.side.shape[1], dtype=np.bool_)
+    for i in range(len(group)):
+        group[i] = stack.side[node, i] == 1
+    return group
+
+
+@numba.njit(cache=True)
 def settle(team: Any, links: Any, question: Any, stack: Any, node: int, values: int) -> None:  # noqa: PLR0917
     """Close the gap between the least and the found number of blinded robots as far as ``values`` reach."""
-    group = stack.side[node] == 1
+    group = inside_of(stack, node)
     found = np.zeros(len(group), dtype=np.bool_)
     while stack.need[node, 0] < stack.need[node, 1]:
         answer = weak_subset(team, links.seeing, group, stack.need[node, 0], question.threshold, values, found)
         if answer == UNDECIDED:
             return
         if answer == WEAK:
-            stack.blind[node] = found
+            copy_row(stack.blind[node], found)
             stack.need[node, 1] = stack.need[node, 0]
         else:
             stack.need[node, 0] += 1
@@ -41,15 +50,16 @@ def settle(team: Any, links: Any, question: Any, stack: Any, node: int, values: 
 def admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
     """Put a robot inside and update what the group needs; false where no blinding suffices."""
     stack.side[node, robot] = 1
-    stack.into[node, :, robot] = ALWAYS
-    group, blind = stack.side[node] == 1, stack.blind[node]
-    if gather(team, group & ~blind, sums) < question.threshold:
+    for kind in range(stack.into.shape[1]):
+        stack.into[node, kind, robot] = ALWAYS
+    group, blind = inside_of(stack, node), stack.blind[node]
+    if gather_seeing(team, group, blind, sums) < question.threshold:
         return True
     small = group.sum() <= SMALL
     if small and stack.need[node, 1] > 0:
         other = blind.copy()
         if trade(team, links.seeing, group, other, question.threshold, sums):
-            blind[:] = other
+            copy_row(blind, other)
             return True
     if not _blind_more(team, links, question, stack, node, robot, sums):
         return False
@@ -61,7 +71,7 @@ def admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: in
 @numba.njit(cache=True)
 def _blind_more(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
     """Blind the new robot, or the strongest ones where it is protected, until the group is below the threshold."""
-    group, blind = stack.side[node] == 1, stack.blind[node]
+    group, blind = inside_of(stack, node), stack.blind[node]
     while True:
         chosen = robot if not (blind[robot] or links.seeing[robot]) else -1
         if chosen < 0:
@@ -73,14 +83,14 @@ def _blind_more(team: Any, links: Any, question: Any, stack: Any, node: int, rob
             return False
         blind[chosen] = True
         stack.need[node, 1] += 1
-        if gather(team, group & ~blind, sums) < question.threshold:
+        if gather_seeing(team, group, blind, sums) < question.threshold:
             return True
 
 
 @numba.njit(cache=True)
 def blind_fewer(team: Any, links: Any, question: Any, stack: Any, node: int, sums: Any) -> None:  # noqa: PLR0917
     """Let blinded robots see again as long as exchanges make up for it."""
-    group = stack.side[node] == 1
+    group = inside_of(stack, node)
     while stack.need[node, 1] > stack.need[node, 0]:
         other, weakest = stack.blind[node].copy(), -1
         for i in range(len(group)):
@@ -89,7 +99,7 @@ def blind_fewer(team: Any, links: Any, question: Any, stack: Any, node: int, sum
         other[weakest] = False
         if not exchange(team, links.seeing, group, other, question.threshold, sums):
             return
-        stack.blind[node] = other
+        copy_row(stack.blind[node], other)
         stack.need[node, 1] -= 1
 
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import value_of
+from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
 from ratt_opt.compiling import numba
 
@@ -81,10 +81,12 @@ class SeeingStack(NamedTuple):
 @numba.njit(cache=True)
 def _begin(team: Any, links: Any, prices: Any, flows: Any, stack: Any) -> None:
     """The root: every robot open."""
-    stack.part[0], stack.sums[0], stack.room[0], stack.grown[0] = OPEN, team.prior, int(prices.capacity), True
+    copy(stack.sums[0], team.prior)
+    stack.part[0], stack.room[0], stack.grown[0] = OPEN, int(prices.capacity), True
     cost = np.empty(len(prices.robot))
     for kind in range(len(flows.share)):
-        cost[:] = flows.share[kind] * flows.blinded[kind] - prices.robot
+        for i in range(len(cost)):
+            cost[i] = flows.share[kind] * flows.blinded[kind] - prices.robot[i]
         stack.bound[0, kind] = open_flow(links, cost, (stack.into[0, kind], stack.out[0, kind], stack.along[0, kind]))
     stack.position[0] = 0
 
@@ -99,6 +101,21 @@ def _close(links: Any, flows: Any, stack: Any, node: int, robot: int) -> None:
 
 
 @numba.njit(cache=True)
+def _mean_of_least(values: Any, count: int) -> float:
+    """Mean of the ``count`` least; the values are sorted in place."""
+    total = 0.0
+    for k in range(1, len(values)):
+        value, place = values[k], k
+        while place > 0 and values[place - 1] > value:
+            values[place] = values[place - 1]
+            place -= 1
+        values[place] = value
+    for k in range(count):
+        total += values[k]
+    return total / count
+
+
+@numba.njit(cache=True)
 def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node: int) -> int:  # noqa: PLR0917
     """Close the robots that can no longer see, and bound the room; returns how many are open."""
     part, sums, trial = stack.part[node], stack.sums[node], np.empty_like(team.prior)
@@ -107,7 +124,7 @@ def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node:
         if part[i] != OPEN:
             continue
         if stack.grown[node]:
-            trial[:] = sums + team.information[i]
+            add(trial, sums, 1.0, team, i)
             stack.worth[node, i] = value_of(team, trial)
         if stack.worth[node, i] < threshold and stack.room[node] > 0:
             n_open += 1
@@ -120,11 +137,10 @@ def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node:
         k = 0
         for i in range(len(part)):
             if part[i] == OPEN:
-                trial[:] = sums + stack.room[node] * team.information[i]
+                add(trial, sums, stack.room[node], team, i)
                 worths[k] = value_of(team, trial)
                 k += 1
-        worths.sort()
-        if worths[: stack.room[node]].mean() < threshold * (1 + SURE):
+        if _mean_of_least(worths, stack.room[node]) < threshold * (1 + SURE):
             break
         stack.room[node] -= 1
     return n_open
@@ -134,7 +150,9 @@ def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node:
 def _bounds(links: Any, prices: Any, flows: Any, question: Any, stack: Any, sides: Any, work: Any) -> float:  # noqa: PLR0917
     """Reduced cost that no group of the last node falls below; ``sides`` (K, N) the robots inside each minimum cut."""
     node, best = stack.position[0], -np.inf
-    seeing = int((stack.part[node] == SEEING).sum())
+    seeing = 0
+    for i in range(stack.part.shape[1]):
+        seeing += int(stack.part[node, i] == SEEING)
     for kind in range(len(flows.share)):
         flow = (stack.into[node, kind], stack.out[node, kind], stack.along[node, kind])
         paid = -flows.share[kind] * flows.blinded[kind] * (seeing + stack.room[node])
@@ -144,7 +162,8 @@ def _bounds(links: Any, prices: Any, flows: Any, question: Any, stack: Any, side
         best = max(best, bound + paid)
         if best > question.limit:
             break
-        sides[kind] = work[0] >= 0
+        for i in range(len(work[0])):
+            sides[kind, i] = work[0][i] >= 0
     return best
 
 
@@ -168,24 +187,36 @@ def _branch(stack: Any, sides: Any, budget: int) -> int:
 
 
 @numba.njit(cache=True)
+def _copy(stack: Any, node: int, child: int) -> None:
+    copy(stack.into[child], stack.into[node])
+    copy(stack.out[child], stack.out[node])
+    copy(stack.along[child], stack.along[node])
+    copy(stack.sums[child], stack.sums[node])
+    copy_row(stack.part[child], stack.part[node])
+    copy_row(stack.worth[child], stack.worth[node])
+    copy_row(stack.bound[child], stack.bound[node])
+    stack.room[child] = stack.room[node]
+
+
+@numba.njit(cache=True)
 def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
     """Two nodes instead of the last: the robot sees (looked at first), or not; or it is blinded, or outside."""
     node = stack.position[0]
     child = node + 1
-    stack.part[child], stack.into[child], stack.out[child] = stack.part[node], stack.into[node], stack.out[node]
-    stack.along[child], stack.bound[child], stack.worth[child] = stack.along[node], stack.bound[node], stack.worth[node]
-    stack.sums[child], stack.room[child] = stack.sums[node], stack.room[node]
-    stack.into[child, :, robot] = ALWAYS
+    _copy(stack, node, child)
+    for kind in range(stack.into.shape[1]):
+        stack.into[child, kind, robot] = ALWAYS
     sees = stack.part[node, robot] == OPEN
     stack.grown[child], stack.grown[node] = sees, False
     if sees:
-        stack.sums[child] += team.information[robot]
+        add(stack.sums[child], stack.sums[child], 1.0, team, robot)
         stack.room[child] -= 1
         stack.part[child, robot] = SEEING
         _close(links, flows, stack, node, robot)
     else:
         stack.part[child, robot], stack.part[node, robot] = BLINDED, OUTSIDE
-        stack.out[node, :, robot] = ALWAYS
+        for kind in range(stack.out.shape[1]):
+            stack.out[node, kind, robot] = ALWAYS
     stack.position[0] = child
 
 
@@ -219,10 +250,11 @@ def search_seeing_sets(  # noqa: PLR0917
         if robot >= 0:
             _descend(team, links, flows, stack, robot)
             continue
-        inside = sides[len(sides) - 1]
-        blinded = inside & (stack.part[node] != SEEING)
-        if blinded.sum() <= question.budget:
-            found[0][position[2]], found[1][position[2]] = inside, blinded
-            position[2] += 1
+        blinded = 0
+        for i in range(n_robots):
+            inside = sides[len(sides) - 1, i]
+            found[0][position[2], i], found[1][position[2], i] = inside, inside and stack.part[node, i] != SEEING
+            blinded += int(found[1][position[2], i])
+        position[2] += int(blinded <= question.budget)
         position[0] -= 1
     return PAUSED if position[0] >= 0 else FINISHED
