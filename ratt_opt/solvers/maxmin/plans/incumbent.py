@@ -177,7 +177,8 @@ class Incumbent:
         self.improve(max(plans, key=self.pool.plan_value))
         for plan in plans:
             self.offer(plan)
-        self.proved.attack(self.candidates.best, self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF))
+        if not self.is_proved and not np.array_equal(self.candidates.best, plans[0]):
+            self.proved.attack(self.candidates.best, self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF))
 
     def offer(self, plan: IntArray) -> bool:
         """Attack a plan that is better on the known outcomes; return whether it became the best."""
