@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_size import group_exchanges, low_lists, size_vector_search, vector_search, weak_families
+from ratt_opt.attackers.by_size import (
+    group_exchanges,
+    low_lists,
+    packing,
+    size_vector_search,
+    vector_search,
+    weak_families,
+)
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
@@ -57,16 +64,26 @@ def only_branch(monkeypatch):
     monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
 
 
+def pack_again(monkeypatch):
+    """The same, and no list for the other groups either: what is packed around a largest one is given up at first."""
+    only_branch(monkeypatch)
+    monkeypatch.setattr(packing, "LONGEST_PACKING", -1)
+    monkeypatch.setattr(size_vector_search, "FIRST_EFFORT", 3)
+    monkeypatch.setattr(size_vector_search, "MORE_EFFORT", 4)
+
+
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("way", ["at once", "lists", "divided", "branches"])
+@pytest.mark.parametrize("way", ["at once", "lists", "divided", "branches", "packed"])
 def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
     """By one list; by lists and a search for disjoint sets; by divided nodes and bounds alone; by branches with hardly
-    any list."""
+    any list; by packing the largest of the other groups first."""
     if way == "lists":
         monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", -1)
     if way == "branches":
         only_branch(monkeypatch)
+    if way == "packed":
+        pack_again(monkeypatch)
     if way == "divided":
         monkeypatch.setattr(vector_search, "LOOKS", 0)
         monkeypatch.setattr(vector_search, "FEW_CHOICES", seed % 3)
@@ -110,10 +127,10 @@ def test_many_equal_groups_close(name, blinded):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize("branch", [False, True])
-def test_the_bracket_is_valid_at_every_node_count(name, seed, branch, monkeypatch):
-    if branch:
-        only_branch(monkeypatch)
+@pytest.mark.parametrize("limits", [None, only_branch, pack_again])
+def test_the_bracket_is_valid_at_every_node_count(name, seed, limits, monkeypatch):
+    if limits is not None:
+        limits(monkeypatch)
     monkeypatch.setattr(low_lists, "NODES_OF_A_LOOK", 3)
     problem, elements = team_problem(seed, 8, name)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,8 @@ import numpy as np
 
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
+from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
+from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Packer", "Packing"]
 
 LONGEST_PACKING = 3_000_000
-"""Sets of the largest size to pack that are gone through; a packing question of more is left open."""
+"""Sets of the largest size to pack that are listed; a packing question of more takes the effort that is given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +40,10 @@ class Packer:
     must: frozenset[int]
     budget: Budget
 
-    def pack(self, available: frozenset[int], sizes: Sizes, threshold: float) -> Packing:
+    def pack(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int = 0) -> Packing:
         """Find disjoint groups of these sizes among ``available``, each worth less than ``threshold``.
 
-        Weakest robots first; exact unless the search grows beyond ``LONGEST_PACKING`` nodes.
+        Weakest robots first; exact where the sets of the largest size are listed, or ``effort`` nodes suffice.
         """
         weak = frozenset(i for i in available if self.team.value([i]) < threshold)
         missing = self.must & available
@@ -52,7 +54,7 @@ class Packer:
         # Robots on their own are all weak enough here, so only larger groups are searched for.
         if quick is not None or not sizes or sizes[0] == 1:
             return Packing(quick)
-        return self._search(weak, sizes, threshold)
+        return self._search(weak, sizes, threshold, effort)
 
     def _weakest(self, available: frozenset[int], sizes: Sizes, threshold: float) -> tuple[frozenset[int], ...] | None:
         """The weakest robots in order, the largest group first."""
@@ -66,11 +68,31 @@ class Packer:
             groups.append(group)
         return tuple(groups)
 
-    def _search(self, available: frozenset[int], sizes: Sizes, threshold: float) -> Packing:
+    def _search(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int) -> Packing:
         if len(available) > MOST_ROBOTS or comb(len(available), sizes[0]) > LONGEST_PACKING:
-            return Packing(None, decided=False)
+            return self._largest_first(available, sizes, threshold, effort) if effort else Packing(None, decided=False)
         lists = LowLists(self.team, np.array(sorted(available, key=lambda i: (-self.team.single[i], i))))
         must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.must)
         n_blinded = len(available) - sum(sizes)
         search = VectorSearch(lists, sizes, n_blinded=n_blinded, must=must, threshold=threshold)
         return Packing(next(search.run(self.budget), None), not search.is_open)
+
+    def _largest_first(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int) -> Packing:
+        """Each weak set of the largest size, and the other groups from what it leaves."""
+        part = self.budget.part(max_nodes=self.budget.nodes_left(effort))
+        others, decided = replace(self, budget=part), True
+        outside = frozenset(range(len(self.team.single))) - available
+        try:
+            for found in WeakestSetSearch(self.team, sizes[0], threshold, outside=outside).run(part):
+                if found is None:
+                    continue
+                packing = others.pack(available - found, sizes[1:], threshold, effort)
+                if packing.groups is not None:
+                    return Packing((found, *packing.groups))
+                decided = decided and packing.decided
+        except OutOfBudget:
+            self.budget.check()
+            return Packing(None, decided=False)
+        finally:
+            self.budget.nodes += part.nodes
+        return Packing(None, decided)

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from itertools import islice
 from math import comb
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +56,10 @@ MAYBE_SHORT = 2 * 10**8
 Measured on RATT's plans at the paper's budgets: 2 ms instead of 6.5 at 20 robots, 13 instead of 34 at 30; at other
 budgets of 30 robots 44 instead of 56."""
 
+FIRST_EFFORT, MORE_EFFORT, LAST_EFFORT = 10**5, 10, 10**7
+"""Partial sets looked at to pack the other groups around a largest one (a tenth of a second or less), how many times as
+many the next time, and the last time where there is no limit of time or nodes."""
+
 LISTED_WHOLE = 34
 """Up to so many robots, sets of any size are listed."""
 
@@ -79,8 +83,10 @@ class SizeVectorSearch:
         self.packer = Packer(team, self.threat.protected_robots, task.budget)
         self.bounds: dict[Sizes, float] = {}
         """What the families of each vector that is open are worth at least."""
-        self.left_open = np.inf
-        """Least value of a set whose packing question was given up; the proof cannot rise above it."""
+        self.left_open: list[tuple[float, frozenset[int]]] = []
+        """Sets whose packing question was given up, with their values."""
+        self.least_open = np.inf
+        """The least of these values; the proof cannot rise above it."""
         self.weakest = np.inf
         """Least value of any set found below the goal of its time."""
 
@@ -214,8 +220,8 @@ class SizeVectorSearch:
             floor = min(self.weakest, bracket.goal)
             if floor >= bracket.goal:
                 break
-        bracket.raise_lower(min(bracket.goal, self.left_open))
-        return Stop.CLOSED if bracket.is_closed else Stop.NODES
+        bracket.raise_lower(min(bracket.goal, self.least_open))
+        return self._pack_again()
 
     def _search(self, size: int, floor: float) -> None:
         """Offer every set of this size below the goal as a largest group."""
@@ -224,22 +230,37 @@ class SizeVectorSearch:
             if found is not None:
                 self._offer(found)
                 search.threshold = self.bracket.goal
-            self.bracket.raise_lower(min(search.lower, self.bracket.goal, self.left_open, self.weakest))
+            self.bracket.raise_lower(min(search.lower, self.bracket.goal, self.least_open, self.weakest))
 
-    def _offer(self, largest: frozenset[int]) -> None:
+    def _pack_again(self) -> Stop:
+        """Decide what was given up, the weakest first, with more and more effort."""
+        bracket, budget = self.bracket, self.task.budget
+        effort, has_limit = FIRST_EFFORT, budget.max_nodes is not None or np.isfinite(budget.seconds_left)
+        while not bracket.is_closed and self.left_open and (has_limit or effort <= LAST_EFFORT):
+            again, self.left_open, self.least_open = sorted(self.left_open, key=itemgetter(0)), [], np.inf
+            for k, (_, largest) in enumerate(again):
+                self._offer(largest, effort)
+                following = again[k + 1][0] if k + 1 < len(again) else np.inf
+                bracket.raise_lower(min(bracket.goal, self.least_open, following))
+            effort *= MORE_EFFORT
+        return Stop.CLOSED if bracket.is_closed else Stop.HEURISTIC
+
+    def _offer(self, largest: frozenset[int], effort: int = 0) -> None:
         """Make attacks of a largest group, or learn that it has none below the goal."""
         value = self.team.value(largest)
         self.weakest = min(self.weakest, value)
-        others = frozenset(range(len(self.team.single))) - largest
+        others, is_open = frozenset(range(len(self.team.single))) - largest, False
         for vector in self.vectors:
             while vector[0] == len(largest) and value < self.bracket.goal:
-                packing = self.packer.pack(others, vector[1:], self.bracket.goal)
+                packing = self.packer.pack(others, vector[1:], self.bracket.goal, effort)
                 if packing.groups is None:
-                    if not packing.decided:
-                        self.left_open = min(self.left_open, value)
+                    is_open = is_open or not packing.decided
                     break
                 if not self._accept((largest, *packing.groups)):
                     break
+        if is_open:
+            self.left_open.append((value, largest))
+            self.least_open = min(self.least_open, value)
 
     def _weakest_of_forced_size(self) -> Stop:
         """Too many vectors: some group has the forced size at least, so the weakest set of that size is a bound."""
