@@ -122,6 +122,36 @@ def sweep_data(tmp_path, seeds, share):
     return false
 
 
+def refused(lie, part, rng, share, path):
+    """Mutate a part of a file whose claim is false; returns how many mutants, of which none is accepted."""
+    count = 0
+    for at, value in list(places(part)):
+        for new in variants(value, rng):
+            if new != value and rng.random() <= share:
+                count += 1
+                assert not accepted(changed(lie, at, new), path), (at, value, new)
+    return count
+
+
+def refused_lower_ends(proofs, rng, share, path):
+    """Mutate proofs of worst cases, of which a little more is claimed; returns how many mutants.
+
+    ``proofs`` : problem, plan, worst case, and the lower proof of a little less, or ``None``
+    """
+    count = 0
+    for problem, plan, worst, part in proofs:
+        if part is None:
+            continue
+        document = certified(problem, path)[1] | {"plan": [int(e) for e in plan], "lower": part}
+        document["claim"] = {"lower": worst * (1 - 2e-7), "upper": max(document["claim"]["upper"], worst)}
+        assert accepted(document, path)
+        lie = changed(document, ("claim", "lower"), worst * (1 + 1e-5))
+        lie["claim"]["upper"] = max(lie["claim"]["upper"], 2 * worst)
+        assert is_false(lie)
+        count += refused(lie, {"lower": part}, rng, share, path)
+    return count
+
+
 def sweep_proofs(tmp_path, seeds, share):
     """Make the claim false by little, then mutate the proofs so that they might hide it."""
     false = 0
@@ -133,11 +163,7 @@ def sweep_proofs(tmp_path, seeds, share):
             lie["claim"][other] = 0.0 if other == "lower" else claim["upper"] * 2
             assert is_false(lie)
             part = {name: document[name] for name in ("prior_eigenvalue", side)}
-            for at, value in list(places(part)):
-                for new in variants(value, rng):
-                    if new != value and rng.random() <= share:
-                        false += 1
-                        assert not accepted(changed(lie, at, new), tmp_path / "mutant.json"), (at, value, new)
+            false += refused(lie, part, rng, share, tmp_path / "mutant.json")
     return false
 
 
