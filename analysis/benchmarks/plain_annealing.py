@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import gather
+from ratt_opt.attackers.by_prices.groups.compiled import gather_seeing
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.problem import Attack
 
@@ -29,7 +29,7 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
     best, best_group, best_blind = np.inf, group.copy(), blind.copy()
     values, cut = np.zeros(n_robots), 0
     for g in range(n_robots):
-        values[g] = gather(team, (group == g) & ~blind, sums)
+        values[g] = gather_seeing(team, group == g, blind, sums)
     energy = values.max()
     for move in range(MOVES):
         i, j = int(rng.random() * n_robots), int(rng.random() * n_robots)
@@ -48,8 +48,8 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
                 continue
             group[i] = target
         old = values[home], values[target]
-        values[home] = gather(team, (group == home) & ~blind, sums)
-        values[target] = gather(team, (group == target) & ~blind, sums)
+        values[home] = gather_seeing(team, group == home, blind, sums)
+        values[target] = gather_seeing(team, group == target, blind, sums)
         after, temperature = values.max(), heat[0] * (heat[1] / heat[0]) ** (move / MOVES)
         if after <= energy or rng.random() < np.exp((energy - after) / temperature):
             energy, cut = after, cut + change

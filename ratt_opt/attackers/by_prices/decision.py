@@ -100,12 +100,12 @@ class ThresholdDecision:
 
     def learn(self, partition: Partition) -> None:
         """Add the groups of an attack to the program."""
-        from ratt_opt.attackers.by_prices.groups.compiled import gather
+        from ratt_opt.attackers.by_prices.groups.compiled import gather_seeing
 
         sums = np.empty_like(self.team.prior)
         for label in np.unique(partition.group):
             robots = partition.group == label
-            value = float(gather(self.team, robots & ~partition.blind, sums))
+            value = float(gather_seeing(self.team, robots, partition.blind, sums))
             self.prices.add([KnownGroup(robots=robots, need=int((robots & partition.blind).sum()), value=value)])
 
     def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:

@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
-from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
+from ratt_opt.attackers.by_prices.groups.compiled import copy_row
+from ratt_opt.attackers.by_prices.groups.flow import always, augment, copy_flows, open_flow
 from ratt_opt.attackers.by_prices.groups.needs import admit, blind_fewer, inside_of, knapsack_need, settle
 from ratt_opt.compiling import numba
 
@@ -95,13 +95,10 @@ class Stack(NamedTuple):
 
 @numba.njit(cache=True)
 def _copy(stack: Any, source: int, target: int) -> None:
-    copy(stack.into[target], stack.into[source])
-    copy(stack.out[target], stack.out[source])
-    copy(stack.along[target], stack.along[source])
+    copy_flows(stack, source, target)
     copy_row(stack.side[target], stack.side[source])
     copy_row(stack.blind[target], stack.blind[source])
     copy_row(stack.need[target], stack.need[source])
-    copy_row(stack.bound[target], stack.bound[source])
 
 
 @numba.njit(cache=True)
@@ -133,9 +130,9 @@ def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: 
             cost[i] = share * held - prices.robot[i]
         flow = (stack.into[node, kind], stack.out[node, kind], stack.along[node, kind])
         stack.bound[node, kind] = open_flow(links, cost, flow)
-        for k in range(place):
-            stack.side[node, question.order[k]] = 2
-            stack.out[node, kind, question.order[k]] = ALWAYS
+    for k in range(place):
+        stack.side[node, question.order[k]] = 2
+        always(stack.out[node], question.order[k])
     if not admit(team, links, question, stack, node, question.order[place], sums):
         return False
     return bool(_least(links, prices, question, stack, node, work) <= question.limit)
@@ -224,8 +221,7 @@ def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: A
         joins = admit(team, links, question, stack, node + 1, robot, sums)
         joins = joins and _least(links, prices, question, stack, node + 1, work) <= question.limit
         stack.side[node, robot] = 2
-        for kind in range(stack.out.shape[1]):
-            stack.out[node, kind, robot] = ALWAYS
+        always(stack.out[node], robot)
         stays = _least(links, prices, question, stack, node, work) <= question.limit
         if joins and not stays:
             _copy(stack, node + 1, node)

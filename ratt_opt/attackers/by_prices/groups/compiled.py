@@ -14,7 +14,7 @@ import numpy as np
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, TRACE, team_criterion
 
-__all__ = ["add", "copy", "copy_row", "gather", "gather_seeing", "value_of"]
+__all__ = ["add", "copy", "copy_row", "gather_seeing", "value_of"]
 
 
 @numba.njit(cache=True)
@@ -101,18 +101,8 @@ def value_of(team: Any, sums: Any) -> float:
 
 
 @numba.njit(cache=True)
-def gather(team: Any, robots: Any, sums: Any) -> float:
-    """Fill ``sums`` (M, T) with the information of the ``robots`` (N,) marked true; returns their value."""
-    copy(sums, team.prior)
-    for i in range(len(robots)):
-        if robots[i]:
-            add(sums, sums, 1.0, team, i)
-    return float(value_of(team, sums))
-
-
-@numba.njit(cache=True)
 def gather_seeing(team: Any, group: Any, blind: Any, sums: Any) -> float:
-    """:func:`gather` of the robots of ``group`` that are not ``blind``."""
+    """Fill ``sums`` (M, T) with the information of those of ``group`` (N,) not ``blind`` (N,); returns their value."""
     copy(sums, team.prior)
     for i in range(len(group)):
         if group[i] and not blind[i]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.blinding import UNDECIDED, WEAK, exchange, trade, weak_subset
 from ratt_opt.attackers.by_prices.groups.compiled import copy_row, gather_seeing
-from ratt_opt.attackers.by_prices.groups.flow import ALWAYS
+from ratt_opt.attackers.by_prices.groups.flow import always
 from ratt_opt.compiling import numba
 
 __all__ = ["admit", "blind_fewer", "inside_of", "knapsack_need", "settle"]
@@ -50,8 +50,7 @@ def settle(team: Any, links: Any, question: Any, stack: Any, node: int, values: 
 def admit(team: Any, links: Any, question: Any, stack: Any, node: int, robot: int, sums: Any) -> bool:  # noqa: PLR0917
     """Put a robot inside and update what the group needs; false where no blinding suffices."""
     stack.side[node, robot] = 1
-    for kind in range(stack.into.shape[1]):
-        stack.into[node, kind, robot] = ALWAYS
+    always(stack.into[node], robot)
     group, blind = inside_of(stack, node), stack.blind[node]
     if gather_seeing(team, group, blind, sums) < question.threshold:
         return True

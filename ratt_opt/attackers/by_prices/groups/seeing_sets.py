@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
-from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
+from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, always, augment, copy_flows, open_flow
 from ratt_opt.compiling import numba
 
 __all__ = ["Flows", "SeeingStack", "search_seeing_sets"]
@@ -188,13 +188,10 @@ def _branch(stack: Any, sides: Any, budget: int) -> int:
 
 @numba.njit(cache=True)
 def _copy(stack: Any, node: int, child: int) -> None:
-    copy(stack.into[child], stack.into[node])
-    copy(stack.out[child], stack.out[node])
-    copy(stack.along[child], stack.along[node])
+    copy_flows(stack, node, child)
     copy(stack.sums[child], stack.sums[node])
     copy_row(stack.part[child], stack.part[node])
     copy_row(stack.worth[child], stack.worth[node])
-    copy_row(stack.bound[child], stack.bound[node])
     stack.room[child] = stack.room[node]
 
 
@@ -204,8 +201,7 @@ def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
     node = stack.position[0]
     child = node + 1
     _copy(stack, node, child)
-    for kind in range(stack.into.shape[1]):
-        stack.into[child, kind, robot] = ALWAYS
+    always(stack.into[child], robot)
     sees = stack.part[node, robot] == OPEN
     stack.grown[child], stack.grown[node] = sees, False
     if sees:
@@ -215,8 +211,7 @@ def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
         _close(links, flows, stack, node, robot)
     else:
         stack.part[child, robot], stack.part[node, robot] = BLINDED, OUTSIDE
-        for kind in range(stack.out.shape[1]):
-            stack.out[node, kind, robot] = ALWAYS
+        always(stack.out[node], robot)
     stack.position[0] = child
 
 
