@@ -25,8 +25,8 @@ from ratt_opt import (
     verify_certificate,
 )
 from ratt_opt.certificates.lower import lower_proof
-from ratt_opt.certificates.verifier.forced_size import is_forced
 from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.write import _prior_range, certify, problem_document
 from ratt_opt.graph.survivor_sizes import forced_group_size
