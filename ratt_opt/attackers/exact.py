@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
+from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound, unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
@@ -204,6 +204,8 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
+    if not is_brief:
+        least = possible_sizes_bound(task, team, least)
     return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
 
 
