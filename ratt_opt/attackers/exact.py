@@ -190,7 +190,7 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
-    if not is_brief:
+    if not is_brief or math.isfinite(task.budget.seconds_left):
         least = possible_sizes_bound(task, team, least)
     return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
 

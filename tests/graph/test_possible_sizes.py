@@ -48,7 +48,7 @@ def _is_merger(sizes: tuple[int, ...], finer: tuple[int, ...]) -> bool:
 @pytest.mark.parametrize("seed", range(4))
 def test_no_group_scores_more_than_its_bound(density: float, seed: int) -> None:
     graph = _graph(8, density, seed)
-    most = link_scores(graph, 3, Budget()).most
+    most = link_scores(graph, len(graph.links), Budget()).most
     for size in range(9):
         for k, share in enumerate(SHARES):
             scores = [_score(graph, frozenset(group), share) for group in combinations(range(8), size)]
@@ -116,7 +116,7 @@ def test_what_is_known_of_the_largest_group_counts() -> None:
 
 
 def test_too_many_vectors_are_none() -> None:
-    scores = LinkScores(np.zeros((1, 13)), np.zeros(1))
+    scores = LinkScores(np.zeros((1, 13)), np.zeros(1), np.zeros(1))
     assert PossibleSizes(scores, 0).vectors(Budget(), 5) == [(1,) * 12]
-    tight = LinkScores(np.array([[s * (s - 1.0) for s in range(31)]]), np.array([200.0]))
+    tight = LinkScores(np.array([[s * (s - 1.0) for s in range(31)]]), np.array([200.0]), np.zeros(1))
     assert PossibleSizes(tight, 0).vectors(Budget(), 2) is None

@@ -10,6 +10,7 @@ from dataclasses import replace
 from math import comb
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.by_size.largest_groups import largest_groups_bound
 from ratt_opt.attackers.by_size.size_vector_search import MOST_VECTORS, SizeVectorSearch
 from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.budget import OutOfBudget
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["possible_sizes_bound", "unprotected_bound"]
 
-SIZES_SHARE, SIZES_NODES = 0.1, 50_000
+SIZES_SHARE, SIZES_NODES = 0.2, 50_000
 """Of the seconds left, and at most so many nodes, for groups of possible sizes. Not measured."""
 
 LARGEST = 100
@@ -61,7 +62,9 @@ def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int) 
         return possible.forced
     if team is not None:
         with suppress(OutOfBudget):
-            _sizes_bound(replace(task, budget=part), team, vectors)
+            within = replace(task, budget=part)
+            _sizes_bound(within, team, vectors)
+            largest_groups_bound(within, team, possible)
         budget.nodes += part.nodes
     return vectors[0][0]
 
