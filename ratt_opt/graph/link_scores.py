@@ -5,10 +5,12 @@ A group ``g`` with ``e(g)`` links inside and degrees ``d`` (in the whole graph) 
     2 e(g) - (1 - w) sum of d over g:
 
 twice the links inside for ``w = 1``, minus the links it cuts for ``w = 0``. Over the groups of a partition the scores
-add up to ``2 (w |links| - cut)``, so a partition within the budget scores at least ``2 (w |links| - alpha_c)``; and no group
-cuts more than ``alpha_c`` links. What a group of ``s`` robots scores at most is bounded by Lagrangian duality: ``x_i^2 = x_i`` for members, with a multiplier
-``u_i`` each, and the sum ``s`` of all, which leaves a quadratic form on a sphere, whose largest value eigenvalues give.
-Any multipliers are valid; descent improves them. This is the bound of a semidefinite relaxation.
+add up to ``2 (w |links| - cut)``, so a partition within the budget scores at least ``2 (w |links| - alpha_c)``; and no
+group cuts more than ``alpha_c`` links.
+
+What a group of ``s`` robots scores at most is bounded by Lagrangian duality: ``x_i^2 = x_i`` for members, with a
+multiplier ``u_i`` each, and the sum ``s`` of all, which leaves a quadratic form on a sphere, whose largest value
+eigenvalues give. Any multipliers are valid; descent improves them. This is the bound of a semidefinite relaxation.
 
 Source: for the relaxation, Poljak, Rendl and Wolkowicz, Journal of Global Optimization 7 (1995); for the largest value
 of a quadratic form on a sphere, More and Sorensen, SIAM Journal on Scientific and Statistical Computing 4 (1983).
@@ -37,6 +39,9 @@ STEPS = 6
 """Steps of the descent for each size, from the multipliers of the size before. Measured on twelve threats of 30 and 50
 robots (dense, disks of mean degree 12, hubs): with 3 the vectors of dense graphs are coarser, with 12 only those of
 disks and hubs are a little finer; 6 take a quarter of a second at 30 robots, one at 50."""
+
+NODES = 100
+"""To decide whether a set of robots may be in a group that scores enough: about a tenth of a second. Not measured."""
 
 MARGIN, ROUNDING = 1e-6, 1e-11
 """Relative and absolute, and of the largest multiplier for each robot, added to bounds before they are rounded down:
@@ -100,21 +105,51 @@ class _MostScores:
             self._left.pop()
         return np.array(self._most)
 
+    def branch(self, node: tuple[BoolArray, BoolArray], joining: int, needed: FloatArray) -> int | None:
+        """``None`` where robots inside with ``joining`` undecided ones (N,) never score so much, else one to decide."""
+        inside, undecided = node
+        starts = self.multipliers[:, int(inside.sum()) + joining][:, undecided]
+        unclear = np.zeros(len(starts[0]))
+        for relaxed, start, least in zip(self.relaxed, starts, needed, strict=True):
+            fixed, others = relaxed.around(inside, undecided)
+            if joining in {0, len(start)}:
+                bound = float(others.adjacent.sum() - others.charge.sum()) * bool(joining)
+            else:
+                bound, unclear = others.bound(start, joining)
+                bound += others.rounding(start)
+                if _rounded(fixed + bound) >= least:
+                    bound = min(bound, others.descend(joining, start)[0])
+            if _rounded(fixed + bound) < least:
+                return None
+        return int(np.flatnonzero(undecided)[unclear.argmax()]) if len(unclear) else -1
 
-def can_score(graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray) -> bool:
-    """Whether these robots (N,) and ``joining`` others may score so much (K,); ``False`` is proved."""
-    known = _most_scores(graph)
-    starts = known.multipliers[:, int(members.sum()) + joining][:, ~members]
-    for relaxed, start, least in zip(known.relaxed, starts, needed, strict=True):
-        fixed, others = relaxed.around(members)
-        if joining in {0, len(start)}:
-            most = fixed + float(others.adjacent.sum() - others.charge.sum()) * bool(joining)
-        else:
-            most = fixed + others.bound(start, joining)[0] + others.rounding(start)
-            if _rounded(most) >= least:
-                most = fixed + others.descend(joining, start)[0]
-        if _rounded(most) < least:
+
+def can_score(graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget) -> bool:
+    """Whether these robots (N,) and ``joining`` others may score so much (K,); ``False`` is proved.
+
+    Others are taken or left one by one, a node each in ``budget``, at most ``NODES`` of them.
+
+    Raises
+    ------
+    OutOfBudget : the budget is spent.
+    """
+    known, size = _most_scores(graph), int(members.sum()) + joining
+    nodes = [(members, ~members)]
+    for _ in range(NODES):
+        if not nodes:
             return False
+        budget.spend()
+        inside, undecided = nodes.pop()
+        left = size - int(inside.sum())
+        if left > undecided.sum():
+            continue
+        robot = known.branch((inside, undecided), left, needed)
+        if robot is None:
+            continue
+        if left == 0:
+            return True
+        one = np.arange(graph.n_robots) == robot
+        nodes += [(inside, undecided & ~one), (inside | one, undecided & ~one)]
     return True
 
 
@@ -144,12 +179,11 @@ class _Relaxed:
         object.__setattr__(self, "across", across)
         object.__setattr__(self, "inner", across.T @ self.adjacent @ across)
 
-    def around(self, members: BoolArray) -> tuple[float, _Relaxed]:
-        """What these robots (N,) score alone, and what the others add to it."""
+    def around(self, members: BoolArray, others: BoolArray) -> tuple[float, _Relaxed]:
+        """What these robots (N,) score alone, and what some of the others (N,) add to it."""
         ties = self.adjacent[:, members].sum(axis=1)
         alone = float(ties[members].sum() - self.charge[members].sum())
-        others = self.adjacent[np.ix_(~members, ~members)]
-        return alone, _Relaxed(others, self.charge[~members] - 2.0 * ties[~members])
+        return alone, _Relaxed(self.adjacent[np.ix_(others, others)], self.charge[others] - 2.0 * ties[others])
 
     @staticmethod
     def rounding(multipliers: FloatArray) -> float:

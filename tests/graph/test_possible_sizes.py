@@ -6,9 +6,9 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.link_scores import SHARES, LinkScores, link_scores
+from ratt_opt.graph.link_scores import SHARES, LinkScores, can_score, link_scores
 from ratt_opt.graph.possible_sizes import PossibleSizes
 
 
@@ -69,6 +69,29 @@ def test_bounds_without_time_hold() -> None:
     quick, thorough = link_scores(graph, 3, Budget(time_limit=0)), link_scores(graph, 3, Budget())
     assert (quick.most >= thorough.most).all()
     assert (quick.most > thorough.most).any()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_whether_a_set_can_score_is_decided_exactly(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    graph = _graph(9, 0.6, seed)
+    link_scores(graph, 3, Budget())
+    for joining in (0, 1, 3):
+        members = rng.permutation(9) < 3
+        inside, others = set(np.flatnonzero(members).tolist()), np.flatnonzero(~members).tolist()
+        groups = [frozenset(inside.union(more)) for more in combinations(others, joining)]
+        for k, share in enumerate(SHARES):
+            needed = np.full(len(SHARES), -np.inf)
+            needed[k] = max(_score(graph, group, share) for group in groups)
+            assert can_score(graph, members, joining, needed, Budget())
+            needed[k] += 0.5
+            assert not can_score(graph, members, joining, needed, Budget())
+
+
+def test_a_set_is_not_ruled_out_by_a_spent_budget() -> None:
+    graph = _graph(9, 0.6, 0)
+    with pytest.raises(OutOfBudget):
+        can_score(graph, np.arange(9) < 3, 2, np.zeros(len(SHARES)), Budget(max_nodes=0))
 
 
 @pytest.mark.parametrize("n_blinded", [0, 1, 2])

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["largest_groups_bound"]
 
+MOST_SETS = 20_000
+"""Sets to ask about: ten thousand take some seconds."""
+
 
 def largest_groups_bound(task: AttackTask, team: PlanarTeam, possible: PossibleSizes) -> None:
     """Raise the lower bound; relies on a non-decreasing objective.
@@ -39,9 +42,8 @@ def largest_groups_bound(task: AttackTask, team: PlanarTeam, possible: PossibleS
     joining = {size: possible.largest(size) for size in {len(robots) for _, robots in sets}}
     for value, robots in sorted(sets, key=itemgetter(0)):
         bracket.raise_lower(min(value, bracket.goal))
-        budget.spend()
         members = np.isin(np.arange(n_robots), list(robots))
-        if any(can_score(graph, members, inside, needed) for inside, needed in joining[len(robots)]):
+        if any(can_score(graph, members, inside, needed, budget) for inside, needed in joining[len(robots)]):
             return
     bracket.raise_lower(bracket.goal)
 
@@ -65,7 +67,3 @@ def _weak_sets(
             return None
         sets.extend(zip(low.values.tolist(), map(lists.robots, low.masks.tolist()), strict=True))
     return sets
-
-
-MOST_SETS = 200_000
-"""Sets to ask about: some ten thousand take a few seconds."""
