@@ -83,8 +83,8 @@ def worst_case_attack(
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
       (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; not where
       another search asks without a limit of time), and prices that no weak group pays (``by_prices``; a node is a
-      branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take hours to close (of
-      another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing objective, as
+      branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take hours to close
+      (of another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing objective, as
       above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
