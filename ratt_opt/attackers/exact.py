@@ -203,7 +203,9 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
         return forced_group_bound(task, team, least)
     if not is_brief or math.isfinite(task.budget.seconds_left):
         least = possible_sizes_bound(task, team, least)
-    return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
+    if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+        return Stop.CLOSED
+    return prices.run()
 
 
 def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
