@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import CommunicationGraph
 
-__all__ = ["SHARES", "LinkScores", "can_score", "link_scores"]
+__all__ = ["SHARES", "LinkScores", "link_scores", "scoring_group"]
 
 SHARES = (1.0, 0.5, 0.0)
 """Shares ``w``: links inside, links cut, and one between, whose scores are multiples of a half too."""
@@ -124,10 +124,13 @@ class _MostScores:
         return int(np.flatnonzero(undecided)[unclear.argmax()]) if len(unclear) else -1
 
 
-def can_score(graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget) -> bool:
-    """Whether these robots (N,) and ``joining`` others may score so much (K,); ``False`` is proved.
+def scoring_group(
+    graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget
+) -> BoolArray | None:
+    """These robots (N,) and ``joining`` others that score so much (K,); ``None`` where it is proved that none do.
 
-    Others are taken or left one by one, a node each in ``budget``, at most ``NODES`` of them.
+    Others are taken or left one by one, a node each in ``budget``; after ``NODES`` of them ``members`` are returned,
+    and nothing is known.
 
     Raises
     ------
@@ -137,7 +140,7 @@ def can_score(graph: CommunicationGraph, members: BoolArray, joining: int, neede
     nodes = [(members, ~members)]
     for _ in range(NODES):
         if not nodes:
-            return False
+            return None
         budget.spend()
         inside, undecided = nodes.pop()
         left = size - int(inside.sum())
@@ -147,10 +150,10 @@ def can_score(graph: CommunicationGraph, members: BoolArray, joining: int, neede
         if robot is None:
             continue
         if left == 0:
-            return True
+            return inside
         one = np.arange(graph.n_robots) == robot
         nodes += [(inside, undecided & ~one), (inside | one, undecided & ~one)]
-    return True
+    return members
 
 
 def _rounded(bound: float) -> float:

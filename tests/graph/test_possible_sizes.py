@@ -8,7 +8,7 @@ import pytest
 
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.link_scores import SHARES, LinkScores, can_score, link_scores
+from ratt_opt.graph.link_scores import SHARES, LinkScores, link_scores, scoring_group
 from ratt_opt.graph.possible_sizes import PossibleSizes
 
 
@@ -83,15 +83,20 @@ def test_whether_a_set_can_score_is_decided_exactly(seed: int) -> None:
         for k, share in enumerate(SHARES):
             needed = np.full(len(SHARES), -np.inf)
             needed[k] = max(_score(graph, group, share) for group in groups)
-            assert can_score(graph, members, joining, needed, Budget())
+            found = scoring_group(graph, members, joining, needed, Budget())
+            assert found is not None
+            assert (_score(graph, frozenset(np.flatnonzero(found).tolist()), share), found.sum()) == (
+                needed[k],
+                3 + joining,
+            )
             needed[k] += 0.5
-            assert not can_score(graph, members, joining, needed, Budget())
+            assert scoring_group(graph, members, joining, needed, Budget()) is None
 
 
 def test_a_set_is_not_ruled_out_by_a_spent_budget() -> None:
     graph = _graph(9, 0.6, 0)
     with pytest.raises(OutOfBudget):
-        can_score(graph, np.arange(9) < 3, 2, np.zeros(len(SHARES)), Budget(max_nodes=0))
+        scoring_group(graph, np.arange(9) < 3, 2, np.zeros(len(SHARES)), Budget(max_nodes=0))
 
 
 @pytest.mark.parametrize("n_blinded", [0, 1, 2])

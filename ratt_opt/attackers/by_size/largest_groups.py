@@ -2,7 +2,8 @@
 
 Where the weakest sets of the sizes that a largest group may have are few below an attack, each is asked whether it and
 some blinded robots can score what the other groups leave to be scored (``graph/link_scores.py``), weakest first. The
-best group is worth at least the largest one, so the first that cannot be ruled out bounds every attack.
+best group is worth at least the largest one, so the first that cannot be ruled out bounds every attack. Where the
+others together are worth less, it is an attack's, and the bracket closes.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ import numpy as np
 
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.vector_search import LowLists
-from ratt_opt.graph.link_scores import can_score
+from ratt_opt.graph.link_scores import scoring_group
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackTask
@@ -43,9 +45,27 @@ def largest_groups_bound(task: AttackTask, team: PlanarTeam, possible: PossibleS
     for value, robots in sorted(sets, key=itemgetter(0)):
         bracket.raise_lower(min(value, bracket.goal))
         members = np.isin(np.arange(n_robots), list(robots))
-        if any(can_score(graph, members, inside, needed, budget) for inside, needed in joining[len(robots)]):
-            return
+        for inside, needed in joining[len(robots)]:
+            group = scoring_group(graph, members, inside, needed, budget)
+            if group is not None:
+                _offer(task, robots, frozenset(np.flatnonzero(group).tolist()))
+                bracket.raise_lower(min(value, bracket.goal))
+                return
     bracket.raise_lower(bracket.goal)
+
+
+def _offer(task: AttackTask, seeing: frozenset[int], group: frozenset[int]) -> None:
+    """Offer the attack that separates a group from the others and blinds those in it that are not ``seeing``.
+
+    What is left of the budget blinds the strongest others.
+    """
+    problem, threat = task.problem, task.problem.threat
+    single, blinded = task.values.singletons(), group - seeing
+    others = sorted(frozenset(range(problem.n_robots)) - group - threat.protected_robots, key=lambda i: -single[i])
+    blinded |= frozenset(others[: threat.n_blinded - len(blinded)])
+    cut = problem.communication.links_between([group, frozenset(range(problem.n_robots)) - group])
+    if len(cut) <= threat.alpha_c and not (cut & threat.protected_links or blinded & threat.protected_robots):
+        task.offer(Attack(blinded, frozenset(cut)))
 
 
 def _weak_sets(
