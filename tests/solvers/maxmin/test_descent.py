@@ -72,7 +72,7 @@ def test_plans_that_turn_out_worse_than_a_floor_are_searched_below_it(
 def test_an_optimum_of_nothing_ends() -> None:
     problem = random_scenario(5, 3, alpha_s=4, alpha_c=3, seed=2).problem()
     nothing = replace(
-        problem, objective=problem.objective.with_information(0 * problem.information_objective.information)
+        problem, objective=problem.information_objective.with_information(0 * problem.information_objective.information)
     )
     found = solve_maxmin(nothing)
     assert found.upper == pytest.approx(0, abs=1e-9)
