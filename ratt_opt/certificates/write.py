@@ -42,7 +42,9 @@ __all__ = [
 
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
 """How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
-LARGEST_SHAVE = SHAVES[-1]
+
+LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
+"""The largest shave is at least so many times what the objective's values are off by."""
 LOWER_SHARE = 0.4
 """Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
 
@@ -252,7 +254,9 @@ def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterato
 
     Where none is found for ``lower``, for what is proved some hundredths below.
     """
-    scale = max(abs(lower), abs(problem.objective(elements)))
+    # Values far below the prior's criterion are differences of larger numbers: no share of them covers their rounding.
+    rounding = ROUNDINGS * problem.information_objective.rounding / LARGEST_SHAVE
+    scale = max(abs(lower), abs(problem.objective(elements)), rounding)
     proved, below = lower, LARGEST_SHAVE * scale / 10
     with limited(LOWER_SHARE * seconds_left()):
         part = lower_proof(problem, elements, lower - below)

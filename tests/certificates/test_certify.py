@@ -77,6 +77,25 @@ def test_an_open_bracket_is_certified_as_open(kind, max_nodes, tmp_path):
     assert verified.lower <= exhaustive_optimum(problem).lower <= verified.upper * (1 + 1e-12)
 
 
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("digits", [10, 7, 4])
+def test_lower_ends_far_below_the_prior_s_criterion_are_proved(kind, digits, tmp_path):
+    """Such values are differences of larger numbers, and off by more than a share of themselves."""
+    for seed in range(4):
+        rng = np.random.default_rng([24, seed])
+        prior, information = information_data(rng, 6, 2, int(rng.integers(1, 4)))
+        information[:, 1] = 0.0
+        objective = OBJECTIVES[kind](prior, information * 10.0**-digits)
+        budgets = int(rng.integers(0, 4)), int(rng.integers(0, 4))
+        problem = Problem(objective, np.repeat(np.arange(3), 2), None, *budgets)
+        written = certify(problem, solve_maxmin(problem), tmp_path / "c.json")
+        value, slack = exhaustive_optimum(problem).lower, 64 * objective.rounding
+        assert written.verified.lower_proved
+        assert written.verified.lower <= value * (1 + 1e-9) + slack
+        assert written.verified.upper >= value * (1 - 1e-9) - slack
+        assert written.verified.upper - written.verified.lower <= 1e-8 * value + slack
+
+
 def test_the_paper_s_size(tmp_path):
     problem = random_scenario(10, 15, alpha_s=6, alpha_c=22, seed=1).problem("trace")
     written = certify(problem, solve_maxmin(problem), tmp_path / "c.json")

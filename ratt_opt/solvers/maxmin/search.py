@@ -20,7 +20,7 @@ from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups, SmallTables
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
-from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, nodes_below, upper_proof
+from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
 from ratt_opt.stopping import Stop
@@ -91,6 +91,8 @@ class BranchAndBound:
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
         self.node_attacks = known.node_attacks
+        self._is_part = roots is not None
+        """Whether another search looks after winners decided for all plans: it queues what is open in the proofs."""
         self.roots = [self._first_node()] if roots is None else roots
         for root in self.roots:
             self.frontier.push(root)
@@ -109,10 +111,7 @@ class BranchAndBound:
 
     def proof(self, number: int = 0) -> UpperProof:
         """The proof of the bound below one of the roots: winners decided for all plans, then the tree."""
-        below = self.roots[number]
-        used = {k for node in nodes_below(below) if node.split is None for k in node.leaf.cuts}
-        root = self.winners.above(below, {int(self.cuts.outcomes[k]) for k in used})
-        return upper_proof(root, self.pool.attack, self.cuts.record)
+        return upper_proof(self.winners.above(self.roots[number]), self.pool.attack, self.cuts.record)
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
@@ -127,11 +126,10 @@ class BranchAndBound:
 
     def is_finished(self) -> bool:
         """Whether every open node closes, and everything that was closed still does."""
-        if not self.frontier.is_closed:
-            return False
-        reopened = self.frontier.reopen()
-        self.winners.reconsider()
-        return not reopened
+        lost = self.winners.reconsider()
+        for outcome in () if self._is_part else lost:
+            self.winners.reopen(outcome, self.roots[0], self.frontier)
+        return self.frontier.is_closed and not self.frontier.reopen()
 
     def explore_next(self, turns: Turns) -> Stop | None:
         """Bound the open node of largest bound, then close it or divide it; why to stop where it is neither."""
