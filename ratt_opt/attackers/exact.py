@@ -70,6 +70,7 @@ def worst_case_attack(
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     aim: float = -math.inf,
+    known: Attack | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -106,11 +107,12 @@ def worst_case_attack(
     max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
     aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
+    known : an attack to begin with; the one found is no better for the team
 
     Raises
     ------
-    InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, or
-        ``aim`` is no number.
+    InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, ``aim``
+        is no number, or ``known`` is not within the budgets.
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
@@ -126,6 +128,8 @@ def worst_case_attack(
             values.objective = asked.objective
         first = bounded_rational_attack(asked, values.plan)
         bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding, aim)
+        if known is not None:
+            bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
         bracket.check_aim()
         values.evaluations = first.evaluations
         stop = _search(AttackTask(asked, values, bracket, own), is_brief=budget is not None or max_nodes is not None)
