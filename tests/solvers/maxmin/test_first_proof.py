@@ -91,7 +91,7 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     search.candidates.add(best)
     attacked = []
 
-    def attack(_: Adversary, plan: IntArray, _budget: Budget) -> AttackResult:
+    def attack(_: Adversary, plan: IntArray, _budget: Budget, _aim: float) -> AttackResult:
         is_first = np.array_equal(plan, first)
         attacked.append(is_first)
         share = 0.95 + 0.01 * len(attacked) if is_first else share_of_best

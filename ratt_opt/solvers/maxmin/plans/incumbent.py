@@ -126,11 +126,13 @@ class ProvedPlan:
     def attack(self, plan: IntArray, budget: Budget) -> None:
         """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
 
+        An attack that leaves it no more than that ends it: what a plan of no use keeps need not be proved.
+
         Raises ``OutOfBudget`` : the user interrupted the attack; what it had proved counts.
         """
-        result = self.adversary.attack(plan, budget)
+        result = self.adversary.attack(plan, budget, self.lower)
         self._keep(plan, result)
-        if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
+        if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             self.unproved_stop = result.stop
         self.adversary.heed(result)
 
