@@ -70,6 +70,7 @@ def worst_case_attack(
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     aim: float = -math.inf,
+    known: Attack | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -84,10 +85,11 @@ def worst_case_attack(
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
-      (``tree_bound.py``), and prices that no weak group pays (``by_prices``; a node is a branch on one robot), until
-      closed or out of the budget: give one, as graphs of 50 robots can take hours to close (of another search's budget
-      that limits nothing, half a million nodes). Relies on a non-decreasing objective, as above; targets of any
-      dimension. Compiling takes about a minute once per machine.
+      (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; not where
+      another search asks without a limit of time), and prices that no weak group pays (``by_prices``; a node is a
+      branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take hours to close
+      (of another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing objective, as
+      above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
@@ -105,11 +107,12 @@ def worst_case_attack(
     max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
     aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
+    known : an attack to begin with; the one found is no better for the team
 
     Raises
     ------
-    InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, or
-        ``aim`` is no number.
+    InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, ``aim``
+        is no number, or ``known`` is not within the budgets.
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
@@ -125,6 +128,8 @@ def worst_case_attack(
             values.objective = asked.objective
         first = bounded_rational_attack(asked, values.plan)
         bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding, aim)
+        if known is not None:
+            bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
         bracket.check_aim()
         values.evaluations = first.evaluations
         stop = _search(AttackTask(asked, values, bracket, own), is_brief=budget is not None or max_nodes is not None)
@@ -200,9 +205,11 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
-    if not is_brief:
+    if not is_brief or math.isfinite(task.budget.seconds_left):
         least = possible_sizes_bound(task, team, least)
-    return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
+    if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+        return Stop.CLOSED
+    return prices.run()
 
 
 def _by_trees(task: AttackTask, *, is_brief: bool) -> int:

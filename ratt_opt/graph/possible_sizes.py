@@ -30,7 +30,7 @@ class PossibleSizes:
     """
 
     def __init__(self, scores: LinkScores, n_blinded: int, least: int = 0) -> None:
-        self._most, self._need = scores.most, scores.need
+        self._scores, self._most, self._need = scores, scores.most, scores.need
         self._n_blinded, self.n_seeing = n_blinded, scores.most.shape[1] - 1 - n_blinded
         self._least = least
         self._apart = self._add(self._nobody(), 0)
@@ -74,6 +74,20 @@ class PossibleSizes:
         nobody = self._nobody()
         sizes = range(self._least, self.n_seeing + 1)
         return next(k for k in sizes if self._is_possible(nobody, self._best[k].get(self.n_seeing, nobody - np.inf)))
+
+    def largest(self, size: int) -> list[tuple[int, FloatArray]]:
+        """What a largest group of ``size`` seeing robots must score (K,), with so many blinded ones inside.
+
+        Only for those numbers of blinded robots with which groups of that many robots may score it.
+        """
+        rest = self._best[size].get(self.n_seeing - size)
+        if rest is None:
+            return []
+        needs = [
+            (inside, np.maximum(self._need - rest[:, self._n_blinded - inside], self._scores.least))
+            for inside in range(self._n_blinded + 1)
+        ]
+        return [(inside, need) for inside, need in needs if (self._most[:, size + inside] >= need).all()]
 
     def vectors(self, budget: Budget, at_most: int) -> list[Sizes] | None:
         """Possible vectors of which every other possible one is a merger; ``None`` where they are too many.

@@ -135,6 +135,20 @@ def test_an_attack_that_meets_the_aim_ends_the_search(family, n_robots):
         worst_case_attack(problem, plan, aim=np.nan)
 
 
+@pytest.mark.parametrize("n_robots", [8, 21])
+def test_no_result_is_better_for_the_team_than_a_known_attack(n_robots):
+    problem = ro.network_scenario("disk-6", n_robots, 5, alpha_s=2, alpha_c=6, seed=1).problem()
+    plan = ro.ratt(problem).elements
+    worst = worst_case_attack(problem, plan)
+    for seed in range(3):
+        known = ro.random_attack(problem, plan, seed=seed).attack
+        result = worst_case_attack(problem, plan, known=known, max_nodes=0)
+        assert result.lower <= worst.upper <= result.upper <= problem.team_value(plan, known)
+    assert worst_case_attack(problem, plan, known=worst.attack, max_nodes=0).upper == worst.upper
+    with pytest.raises(InputError, match="attack robot"):
+        worst_case_attack(problem, plan, known=ro.Attack(frozenset({n_robots})))
+
+
 @pytest.mark.parametrize("n_robots", [5, 14])
 def test_results_are_plain_values(n_robots):
     rng = np.random.default_rng(1)

@@ -6,9 +6,9 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.link_scores import SHARES, LinkScores, link_scores
+from ratt_opt.graph.link_scores import SHARES, LinkScores, link_scores, scoring_group
 from ratt_opt.graph.possible_sizes import PossibleSizes
 
 
@@ -48,7 +48,7 @@ def _is_merger(sizes: tuple[int, ...], finer: tuple[int, ...]) -> bool:
 @pytest.mark.parametrize("seed", range(4))
 def test_no_group_scores_more_than_its_bound(density: float, seed: int) -> None:
     graph = _graph(8, density, seed)
-    most = link_scores(graph, 3, Budget()).most
+    most = link_scores(graph, len(graph.links), Budget()).most
     for size in range(9):
         for k, share in enumerate(SHARES):
             scores = [_score(graph, frozenset(group), share) for group in combinations(range(8), size)]
@@ -69,6 +69,34 @@ def test_bounds_without_time_hold() -> None:
     quick, thorough = link_scores(graph, 3, Budget(time_limit=0)), link_scores(graph, 3, Budget())
     assert (quick.most >= thorough.most).all()
     assert (quick.most > thorough.most).any()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_whether_a_set_can_score_is_decided_exactly(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    graph = _graph(9, 0.6, seed)
+    link_scores(graph, 3, Budget())
+    for joining in (0, 1, 3):
+        members = rng.permutation(9) < 3
+        inside, others = set(np.flatnonzero(members).tolist()), np.flatnonzero(~members).tolist()
+        groups = [frozenset(inside.union(more)) for more in combinations(others, joining)]
+        for k, share in enumerate(SHARES):
+            needed = np.full(len(SHARES), -np.inf)
+            needed[k] = max(_score(graph, group, share) for group in groups)
+            found = scoring_group(graph, members, joining, needed, Budget())
+            assert found is not None
+            assert (_score(graph, frozenset(np.flatnonzero(found).tolist()), share), found.sum()) == (
+                needed[k],
+                3 + joining,
+            )
+            needed[k] += 0.5
+            assert scoring_group(graph, members, joining, needed, Budget()) is None
+
+
+def test_a_set_is_not_ruled_out_by_a_spent_budget() -> None:
+    graph = _graph(9, 0.6, 0)
+    with pytest.raises(OutOfBudget):
+        scoring_group(graph, np.arange(9) < 3, 2, np.zeros(len(SHARES)), Budget(max_nodes=0))
 
 
 @pytest.mark.parametrize("n_blinded", [0, 1, 2])
@@ -116,7 +144,7 @@ def test_what_is_known_of_the_largest_group_counts() -> None:
 
 
 def test_too_many_vectors_are_none() -> None:
-    scores = LinkScores(np.zeros((1, 13)), np.zeros(1))
+    scores = LinkScores(np.zeros((1, 13)), np.zeros(1), np.zeros(1))
     assert PossibleSizes(scores, 0).vectors(Budget(), 5) == [(1,) * 12]
-    tight = LinkScores(np.array([[s * (s - 1.0) for s in range(31)]]), np.array([200.0]))
+    tight = LinkScores(np.array([[s * (s - 1.0) for s in range(31)]]), np.array([200.0]), np.zeros(1))
     assert PossibleSizes(tight, 0).vectors(Budget(), 2) is None

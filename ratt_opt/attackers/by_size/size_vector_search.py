@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["MOST_VECTORS", "SizeVectorSearch"]
+__all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
