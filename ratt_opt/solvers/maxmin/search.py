@@ -82,7 +82,7 @@ class BranchAndBound:
     """The search of one tree; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
     def __init__(self, known: Known, roots: list[TreeNode] | None = None) -> None:
-        self.known, self.task, self.pool, self.pairs = known, known.task, known.incumbent.pool, known.pairs
+        self.task, self.pool, self.pairs = known.task, known.incumbent.pool, known.pairs
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
         self.frontier = Frontier(self.rule)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
