@@ -151,17 +151,18 @@ class ThresholdDecision:
     def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
         """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
 
-        The prices furthest below what known groups cost prune best, once the groups that pay them are known: they soon
-        are. Where they do not end, others may: all in turn, and ever longer.
+        Prices with dear blinded robots mostly prune best, or those furthest below what known groups cost, once the
+        groups that pay them are known: they soon are. Where they do not end, others may: all in turn, and ever longer.
         """
         links, asked = self.threat.alpha_c + MARGIN, (threshold, size, -TOLERANCE)
-        while (slackest := self.prices.slackest(threshold, links, budget.seconds_left)) is not None:
-            budget.check()
-            answer = self._answered(slackest, asked, budget)
-            if answer is None:
-                break
-            if answer is not Threshold.REACHED:
-                return Answer(verdict=answer, prices=slackest)
+        for choose in (self.prices.dearest, self.prices.slackest):
+            while (chosen := choose(threshold, links, budget.seconds_left)) is not None:
+                budget.check()
+                answer = self._answered(chosen, asked, budget)
+                if answer is None:
+                    break
+                if answer is not Threshold.REACHED:
+                    return Answer(verdict=answer, prices=chosen)
         found = self._settled(threshold, budget)
         if found.links <= links:
             return None
