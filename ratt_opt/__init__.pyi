@@ -107,11 +107,8 @@ from .bounds.relaxation import (
 )
 
 # == Certificates
-from .certificates.write import (
-    certify as certify,
-    Certificate as Certificate,
-    problem_document as problem_document,
-)
+from .certificates.write import certify as certify, problem_document as problem_document
+from .certificates.certification import Certificate as Certificate
 from .certificates.verifier.verify import verify_certificate as verify_certificate
 from .certificates.verifier.verified import Verified as Verified
 

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.size_vector_search import unprotected_bound
+from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound, unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
-from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, PlanValues
+from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, MeetsAim, PlanValues
 from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.errors import InputError
 from ratt_opt.graph.largest_group.spreading import forced_size
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
@@ -67,6 +69,8 @@ def worst_case_attack(
     time_limit: float | None = None,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    aim: float = -math.inf,
+    known: Attack | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -81,10 +85,11 @@ def worst_case_attack(
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
-      (``tree_bound.py``), and prices that no weak group pays (``by_prices``; a node is a branch on one robot), until
-      closed or out of the budget: give one, as graphs of 50 robots can take hours to close (of another search's budget
-      that limits nothing, half a million nodes). Relies on a non-decreasing objective, as above; targets of any
-      dimension. Compiling takes about a minute once per machine.
+      (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; not where
+      another search asks without a limit of time), and prices that no weak group pays (``by_prices``; a node is a
+      branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take hours to close
+      (of another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing objective, as
+      above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
@@ -101,14 +106,19 @@ def worst_case_attack(
     max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
     max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
+    aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
+    known : an attack to begin with; the one found is no better for the team
 
     Raises
     ------
-    InputError : an element is not its robot's, ``elements`` has the wrong shape, or a budget is not a number >= 0.
+    InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, ``aim``
+        is no number, or ``known`` is not within the budgets.
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
     own = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
+    if isinstance(aim, bool) or not isinstance(aim, Real) or math.isnan(aim):
+        raise InputError("aim", "must be a number", aim)
     values = PlanValues(problem, elements)
     bracket = None
     try:
@@ -117,11 +127,16 @@ def worst_case_attack(
             asked = metered_problem(problem, own)
             values.objective = asked.objective
         first = bounded_rational_attack(asked, values.plan)
-        bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
+        bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding, aim)
+        if known is not None:
+            bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
+        bracket.check_aim()
         values.evaluations = first.evaluations
         stop = _search(AttackTask(asked, values, bracket, own), is_brief=budget is not None or max_nodes is not None)
     except OutOfBudget as out:
         stop = out.stop
+    except MeetsAim:
+        stop = Stop.GAP
     except KeyboardInterrupt:
         stop = own.interrupt()
     if bracket is None:  # what no attack at all gives
@@ -190,7 +205,11 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
-    return Stop.CLOSED if _forced_group_in_share(task, team, least) is Stop.CLOSED else prices.run()
+    if not is_brief or math.isfinite(task.budget.seconds_left):
+        least = possible_sizes_bound(task, team, least)
+    if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+        return Stop.CLOSED
+    return prices.run()
 
 
 def _by_trees(task: AttackTask, *, is_brief: bool) -> int:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.stopping import Stop
 
-__all__ = ["AttackBracket", "AttackResult", "AttackTask", "PlanValues"]
+__all__ = ["AttackBracket", "AttackResult", "AttackTask", "MeetsAim", "PlanValues"]
 
 LARGEST_CHUNK = 4096
 """Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
@@ -90,6 +90,10 @@ CLOSED_WIDTH = 1e-10
 in different orders differ by some 1e-13; a narrower width would ask for proofs within rounding."""
 
 
+class MeetsAim(Exception):  # noqa: N818  (a signal within a search, never seen by a user)
+    """An attack leaves the team no more than was aimed at; the bracket has it."""
+
+
 @dataclass(slots=True)
 class AttackBracket:
     """``lower <= worst-case value <= upper`` at any moment; ``attack`` attains ``upper``."""
@@ -99,6 +103,8 @@ class AttackBracket:
     lower: float
     rounding: float = 0.0
     """Values that differ by no more are equal: a relative width alone never closes on a worst case of 0."""
+    aim: float = -np.inf
+    """The search ends at an attack that leaves the team no more."""
 
     @property
     def goal(self) -> float:
@@ -111,10 +117,19 @@ class AttackBracket:
         return self.lower >= self.goal
 
     def offer(self, attack: Attack, value: float) -> bool:
-        """Keep an attack of strictly smaller value; return whether it is one."""
+        """Keep an attack of strictly smaller value; return whether it is one.
+
+        Raises ``MeetsAim`` : no worse one is asked for.
+        """
         if better := value < self.upper:
             self.attack, self.upper = attack, float(value)
+        self.check_aim()
         return better
+
+    def check_aim(self) -> None:
+        """Raise :class:`MeetsAim` where the attack in hand is as bad for the team as was aimed at."""
+        if self.upper <= self.aim:
+            raise MeetsAim
 
     def raise_lower(self, bound: float) -> None:
         """Keep a larger lower bound."""

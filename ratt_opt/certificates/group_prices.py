@@ -1,7 +1,8 @@
 """Proofs that every attack leaves a group worth a threshold, by prices of robots that no weak group pays.
 
 The attacker's search (``attackers/by_prices``) finds the prices in floating point. Here they become integers, and the
-search over the robots that see in a group becomes a tree that the verifier follows (``verifier/group_prices.py``).
+search over the robots that see in a group becomes a tree that the verifier follows
+(``verifier/lower_end/group_prices.py``).
 """
 
 from __future__ import annotations

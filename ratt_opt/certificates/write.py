@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
 
 from ratt_opt._files import write_atomically
 from ratt_opt.budget import Budget
+from ratt_opt.certificates.certification import Certificate, Certification
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
@@ -34,10 +34,6 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = [
-    "INTERRUPTED",
-    "PENDING",
-    "Certificate",
-    "Certification",
     "certify",
     "certify_if_possible",
     "problem_document",
@@ -46,46 +42,11 @@ __all__ = [
 
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
 """How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
-LARGEST_SHAVE = SHAVES[-1]
+
+LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
+"""The largest shave is at least so many times what the objective's values are off by."""
 LOWER_SHARE = 0.4
 """Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Certificate:
-    """A certificate as written and verified.
-
-    ``lower_shaved`` and ``upper_raised`` : how far the claim's ends lie outside the given bracket, because
-    exact arithmetic proves a little less than floating point suggests, or (the lower end) because no cover of all
-    attacks was found but for a lower value [unit of the objective].
-    """
-
-    path: Path
-    verified: Verified
-    lower_shaved: float
-    upper_raised: float
-    size: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Certification:
-    """Whether a result has a certificate: it, or (``None``) ``why_not`` in words.
-
-    ``final`` : whether that is how it stays; not so while a proof is under way, or where one was cut short.
-    """
-
-    certificate: Certificate | None = None
-    why_not: str = ""
-    final: bool = True
-
-
-PENDING = Certification(
-    why_not="not finished when this report was written; a certificate beside it is of an earlier one", final=False
-)
-"""What a report says while its proof is written and verified, and for good where that is killed."""
-INTERRUPTED = Certification(
-    why_not="interrupted before it was complete; a certificate beside this report is of an earlier one", final=False
-)
 
 
 def problem_document(problem: Problem) -> dict[str, Any]:
@@ -293,7 +254,9 @@ def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterato
 
     Where none is found for ``lower``, for what is proved some hundredths below.
     """
-    scale = max(abs(lower), abs(problem.objective(elements)))
+    # Values far below the prior's criterion are differences of larger numbers: no share of them covers their rounding.
+    rounding = ROUNDINGS * problem.information_objective.rounding / LARGEST_SHAVE
+    scale = max(abs(lower), abs(problem.objective(elements)), rounding)
     proved, below = lower, LARGEST_SHAVE * scale / 10
     with limited(LOWER_SHARE * seconds_left()):
         part = lower_proof(problem, elements, lower - below)

@@ -71,7 +71,7 @@ def _bound(
     as_json: bool,
 ) -> None:
     from ratt_opt._files import output_directory
-    from ratt_opt.certificates.write import PENDING
+    from ratt_opt.certificates.certification import PENDING
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.tables import report_tables
     from ratt_opt.report.write import FILES, write_report
@@ -101,7 +101,8 @@ def _certified(report: "BoundReport", folder: Path) -> "BoundReport":
 
     Raises ProofError for a fault in our own proof, and KeyboardInterrupt; the report in the folder then says so.
     """
-    from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
+    from ratt_opt.certificates.certification import INTERRUPTED, Certification
+    from ratt_opt.certificates.write import certify_if_possible
     from ratt_opt.report.write import write_verdict
 
     began = monotonic()

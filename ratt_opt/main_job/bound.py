@@ -13,7 +13,8 @@ from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.write import INTERRUPTED, Certification, certify_if_possible
+from ratt_opt.certificates.certification import INTERRUPTED, Certification
+from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.main_job.assessment import assess, recommended, views_of

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
     from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.attackers.task import AttackResult
-    from ratt_opt.certificates.write import Certification
+    from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.main_job.result import BoundReport, PlanAssessment
 

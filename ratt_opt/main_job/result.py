@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
-    from ratt_opt.certificates.write import Certification
+    from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult

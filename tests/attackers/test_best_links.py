@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from itertools import combinations
 
@@ -13,7 +14,7 @@ import ratt_opt as ro
 from ratt_opt import links_to_add, links_to_protect
 from ratt_opt.errors import InputError
 from tests.oracles import brute_force_worst_case
-from tests.strategies import random_elements, random_problem
+from tests.strategies import information_data, random_elements, random_problem
 
 
 def with_links(problem, links):
@@ -121,6 +122,20 @@ def test_limits_leave_a_bracket(limit):
         assert brief.stop in {ro.Stop.TIME, ro.Stop.NODES}
         assert brief.lower <= exact.lower * (1 + 1e-9)
         assert brief.upper >= exact.upper * (1 - 1e-9)
+
+
+@pytest.mark.parametrize("choose", [ro.links_to_add, ro.links_to_protect])
+@pytest.mark.parametrize("shape", ["hubs", "parts"])
+def test_limits_are_kept_by_a_thousand_robots(choose, shape):
+    """Half a million pairs, and hundreds of groups: two seconds beyond the limit, of the processor."""
+    hubs, parts = nx.barabasi_albert_graph(1000, 4, seed=0), nx.Graph([(i, i + 1) for i in range(0, 1000, 2)])
+    graph = hubs if shape == "hubs" else parts
+    prior, information = information_data(np.random.default_rng(0), 1000, 4, 2)
+    problem = ro.Problem(ro.TraceObjective(prior, information), np.arange(1000), graph, 200, 300)
+    began = time.process_time()
+    found = choose(problem, np.arange(1000), 3, time_limit=0.1)
+    assert time.process_time() - began <= 2.105
+    assert 0 < found.lower <= found.upper
 
 
 def test_one_link_gains_what_the_ranking_says():

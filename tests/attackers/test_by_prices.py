@@ -84,6 +84,17 @@ def test_against_a_table_of_thresholds(seed):
     check(problem, plan, bracket, ro.worst_case_attack(problem, plan).upper)
 
 
+@pytest.mark.parametrize("n_robots", [1, 2, 5])
+@pytest.mark.parametrize("seed", range(3))
+def test_where_nothing_can_be_attacked_no_group_is_weak(n_robots, seed):
+    problem, plan = team_problem(seed, n_robots, graph=nx.path_graph(n_robots))
+    links = [(i, i + 1) for i in range(n_robots - 1)]
+    safe = ro.Problem(problem.objective, problem.robot, problem.graph, n_robots, len(links), range(n_robots), links)
+    bracket, stop = run_prices(safe, plan)
+    assert stop is ro.Stop.CLOSED
+    check(safe, plan, bracket, problem.objective(plan))
+
+
 @pytest.mark.parametrize("nodes", [0, 1, 100, 2_000])
 def test_a_bracket_that_is_stopped_is_valid(nodes):
     problem, plan = team_problem(1, 13, graph=nx.gnp_random_graph(13, 0.5, seed=1))

@@ -115,6 +115,40 @@ def test_an_outer_budget_counts_too(n_robots, complete):
         assert result.lower <= problem.team_value(plan, result.attack) == result.upper
 
 
+@pytest.mark.parametrize("family", [None, "disk-6", "dense"])
+@pytest.mark.parametrize("n_robots", [8, 14, 21])
+def test_an_attack_that_meets_the_aim_ends_the_search(family, n_robots):
+    scenario = ro.random_scenario(n_robots, 5, alpha_s=2, alpha_c=12, seed=1)
+    if family is not None:
+        scenario = ro.network_scenario(family, n_robots, 5, alpha_s=2, alpha_c=6, seed=1)
+    problem = scenario.problem()
+    plan = ro.ratt(problem).elements
+    worst = worst_case_attack(problem, plan)
+    for aim in (worst.upper * (1 + 1e-6), problem.team_value(plan, ro.Attack())):
+        result = worst_case_attack(problem, plan, aim=aim)
+        assert result.stop in {ro.Stop.GAP, worst.stop}
+        assert result.lower <= worst.upper <= result.upper <= aim
+        assert problem.team_value(plan, result.attack) == result.upper
+    assert result.stop is ro.Stop.GAP
+    assert worst_case_attack(problem, plan, aim=worst.lower * (1 - 1e-6)) == worst
+    with pytest.raises(InputError, match="aim"):
+        worst_case_attack(problem, plan, aim=np.nan)
+
+
+@pytest.mark.parametrize("n_robots", [8, 21])
+def test_no_result_is_better_for_the_team_than_a_known_attack(n_robots):
+    problem = ro.network_scenario("disk-6", n_robots, 5, alpha_s=2, alpha_c=6, seed=1).problem()
+    plan = ro.ratt(problem).elements
+    worst = worst_case_attack(problem, plan)
+    for seed in range(3):
+        known = ro.random_attack(problem, plan, seed=seed).attack
+        result = worst_case_attack(problem, plan, known=known, max_nodes=0)
+        assert result.lower <= worst.upper <= result.upper <= problem.team_value(plan, known)
+    assert worst_case_attack(problem, plan, known=worst.attack, max_nodes=0).upper == worst.upper
+    with pytest.raises(InputError, match="attack robot"):
+        worst_case_attack(problem, plan, known=ro.Attack(frozenset({n_robots})))
+
+
 @pytest.mark.parametrize("n_robots", [5, 14])
 def test_results_are_plain_values(n_robots):
     rng = np.random.default_rng(1)

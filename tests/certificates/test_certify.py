@@ -25,8 +25,8 @@ from ratt_opt import (
     verify_certificate,
 )
 from ratt_opt.certificates.lower import lower_proof
-from ratt_opt.certificates.verifier.forced_size import is_forced
 from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.write import _prior_range, certify, problem_document
 from ratt_opt.graph.survivor_sizes import forced_group_size
@@ -75,6 +75,25 @@ def test_an_open_bracket_is_certified_as_open(kind, max_nodes, tmp_path):
     assert verified.lower <= result.lower
     assert verified.upper >= result.upper
     assert verified.lower <= exhaustive_optimum(problem).lower <= verified.upper * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("digits", [10, 7, 4])
+def test_lower_ends_far_below_the_prior_s_criterion_are_proved(kind, digits, tmp_path):
+    """Such values are differences of larger numbers, and off by more than a share of themselves."""
+    for seed in range(4):
+        rng = np.random.default_rng([24, seed])
+        prior, information = information_data(rng, 6, 2, int(rng.integers(1, 4)))
+        information[:, 1] = 0.0
+        objective = OBJECTIVES[kind](prior, information * 10.0**-digits)
+        budgets = int(rng.integers(0, 4)), int(rng.integers(0, 4))
+        problem = Problem(objective, np.repeat(np.arange(3), 2), None, *budgets)
+        written = certify(problem, solve_maxmin(problem), tmp_path / "c.json")
+        value, slack = exhaustive_optimum(problem).lower, 64 * objective.rounding
+        assert written.verified.lower_proved
+        assert written.verified.lower <= value * (1 + 1e-9) + slack
+        assert written.verified.upper >= value * (1 - 1e-9) - slack
+        assert written.verified.upper - written.verified.lower <= 1e-8 * value + slack
 
 
 def test_the_paper_s_size(tmp_path):

@@ -21,8 +21,8 @@ from ratt_opt.certificates import write
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.lower import ENUMERATED, weaker_lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
-from ratt_opt.certificates.verifier.group_costs import Group
-from ratt_opt.certificates.verifier.partitions import Partitions
+from ratt_opt.certificates.verifier.lower_end.group_costs import Group
+from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
 from tests.certificates.cases import certified
 from tests.certificates.test_group_prices import KINDS, checker, drawn, exact, network
 from tests.certificates.test_group_prices import proof as price_proof

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_prices.answer import Threshold
@@ -14,14 +15,18 @@ from ratt_opt.budget import OutOfBudget
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt.attackers.by_prices.starts import Partition
     from ratt_opt.attackers.by_prices.team import PricedTeam
     from ratt_opt.attackers.task import AttackTask
+    from ratt_opt.budget import Budget
 
 __all__ = ["PriceSearch"]
 
 FURTHER_STARTS = 4
-"""Annealed attacks whenever the thresholds get harder."""
+"""Annealed attacks whenever a threshold is left open, and whenever the thresholds get harder: a tenth of a second each
+at 30 robots, against seconds."""
 
 ANNEALING_SHARE = 0.3
 """Of the seconds left that the first starts may take, where the limit is short."""
@@ -52,7 +57,8 @@ class PriceSearch:
         self._decision = ThresholdDecision(team, links, threat, WeakSizes(team, planar))
 
     def anneal(self, starts: int) -> None:
-        """Offer the first annealed attacks."""
+        """Offer the first annealed attacks, one of them from the attack in hand."""
+        self._take(partial(self._starts.near, self.task.bracket.attack))
         self._anneal(starts, ANNEALING_SHARE)
 
     def run(self) -> Stop:
@@ -70,6 +76,7 @@ class PriceSearch:
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self._offer(answer.partition):
                 unknown = threshold
+                self._anneal(FURTHER_STARTS, ANNEALING_SHARE)
             else:
                 unknown = None
         return Stop.CLOSED
@@ -89,14 +96,18 @@ class PriceSearch:
             self.task.budget.check()
             if count and part.stop() is not None:
                 return
-            try:
-                partition = self._starts.next(self.task.budget)
-            except OutOfBudget:
-                if self._starts.best is not None:
-                    self._offer(self._starts.best)
-                raise
-            if partition is not None:
-                self._offer(partition)
+            self._take(self._starts.next)
+
+    def _take(self, start: Callable[[Budget], Partition | None]) -> None:
+        """Offer the outcome of a start."""
+        try:
+            partition = start(self.task.budget)
+        except OutOfBudget:
+            if self._starts.best is not None:
+                self._offer(self._starts.best)
+            raise
+        if partition is not None:
+            self._offer(partition)
 
     def _offer(self, partition: Partition) -> bool:
         """Offer an attack and teach its groups to the prices."""

@@ -204,7 +204,7 @@ class GroupPrices:
     def _rows(self, groups: list[KnownGroup], *, slack: bool) -> Rows:
         """That no group pays, or that each could pay its part of the slack besides."""
         n_robots, entries = len(self._adjacent), []
-        half = self.half_cuts(np.array([group.robots for group in groups]).reshape(-1, n_robots))
+        half = self.half_cuts(np.array([group.robots for group in groups], dtype=np.bool_).reshape(-1, n_robots))
         for group, cut in zip(groups, half.tolist(), strict=True):
             members = np.flatnonzero(group.robots).tolist()
             columns, values = [*members, n_robots], [1.0] * len(members) + [-float(group.need)]

@@ -12,7 +12,6 @@ incumbent is found, the other groups of the outcome are packed; that makes a new
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import replace
 from itertools import islice
 from math import comb
 from operator import attrgetter, itemgetter
@@ -24,7 +23,6 @@ from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
-from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
@@ -39,7 +37,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["SizeVectorSearch", "unprotected_bound"]
+__all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
@@ -68,13 +66,17 @@ LONGEST_LIST = 10**8
 
 
 class SizeVectorSearch:
-    """Closes the task's bracket; relies on a non-decreasing objective."""
+    """Closes the task's bracket; relies on a non-decreasing objective.
 
-    def __init__(self, task: AttackTask, team: PlanarTeam) -> None:
+    ``vectors`` : of sizes to search; those that the budgets allow by default
+    """
+
+    def __init__(self, task: AttackTask, team: PlanarTeam, vectors: list[Sizes] | None = None) -> None:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
         n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
-        self.vectors = list(islice(iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c), MOST_VECTORS + 1))
+        allowed = iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else iter(vectors)
+        self.vectors = list(islice(allowed, MOST_VECTORS + 1))
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
         if not self.has_all_vectors:
             self.vectors = self._some_vectors()
@@ -272,21 +274,3 @@ class SizeVectorSearch:
             self.bracket.raise_lower(min(search.lower, search.threshold))
         self.bracket.raise_lower(search.threshold)
         return Stop.CLOSED if self.bracket.is_closed else Stop.HEURISTIC
-
-
-def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
-    """Raise the lower bound to the worst case without protected links, which is no larger; keep its attack if allowed.
-
-    Relies on a non-decreasing objective. What is proved when the budget runs out is kept.
-    """
-
-    problem, bracket = task.problem, task.bracket
-    relaxed = replace(problem, protected_links=frozenset())
-    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
-    start.offer(bracket.attack, bracket.upper)
-    try:
-        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team).run()
-    finally:
-        bracket.raise_lower(min(start.lower, start.upper))
-        if not start.attack.links & problem.protected_links:
-            task.offer(start.attack)

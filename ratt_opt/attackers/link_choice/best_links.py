@@ -149,13 +149,12 @@ class _LinkSearch:
         self.upgrade, self.budget, self.max_nodes = upgrade, budget, max_nodes
         self.count = min(check_integer("k", k, low=0), len(upgrade.candidates))
         self.values = PlanValues(upgrade.problem, elements)
-        self.known = KnownAttacks(upgrade, self.values)
+        self.known = KnownAttacks(upgrade, self.values, budget)
         self.attacks = self.nodes = 0
         self.unproved_stop = Stop.HEURISTIC  # why the last attack that did not close stopped
         self.links: tuple[Link, ...] = ()
         # Monotonicity, before any attack is known: all robots that all candidates could hold together.
-        together = upgrade.changed(upgrade.candidates).communication.groups()
-        self.upper = max(self.values(group) for group in together)
+        self.upper = max(self.values(group) for group in upgrade.together())
         self.before = self.after = self._attack(())
 
     @property
@@ -198,7 +197,7 @@ class _LinkSearch:
             self.upper = min(self.upper, self.level)
             return False
         self.upper = min(self.upper, best.value)
-        links = tuple(link for k, link in enumerate(self.upgrade.candidates) if best.chosen >> k & 1)
+        links = self._links_of(best.chosen)
         if known.adapt(links, self.level):
             return True
         before = len(known.ascending), self.after.lower
@@ -206,6 +205,14 @@ class _LinkSearch:
         if (len(known.ascending), self.after.lower) == before:  # an attack that did not close, known already
             self._attack(links, share=1.0)
         return (len(known.ascending), self.after.lower) != before
+
+    def _links_of(self, chosen: int) -> tuple[Link, ...]:
+        """The candidates of a bit mask, ascending."""
+        links = []
+        while chosen:
+            links.append(self.upgrade.candidates[(chosen & -chosen).bit_length() - 1])
+            chosen &= chosen - 1
+        return tuple(links)
 
     def _attack(
         self, links: tuple[Link, ...], *, share: float = ATTACK_SHARE, max_nodes: int | None = None

@@ -7,7 +7,9 @@ joined as long as the joint one is worth no more than what the attack has to sho
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,14 +17,19 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from ratt_opt._validation import IntArray
     from ratt_opt.attackers.link_choice.upgrades import Upgrade
     from ratt_opt.attackers.task import PlanValues
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
     from ratt_opt.problem import Attack, Problem
 
 __all__ = ["KnownAttack", "KnownAttacks"]
 
 Groups = list[frozenset[int]]
+
+AT_ONCE = 64
+"""Pairs of groups that are valued between two looks at the clock."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -41,15 +48,20 @@ class KnownAttack:
 
 
 class KnownAttacks:
-    """All attacks met so far, weakest team first; each is kept once."""
+    """All attacks met so far, weakest team first; each is kept once.
 
-    def __init__(self, upgrade: Upgrade, values: PlanValues) -> None:
+    Where the budget is over, groups are no longer joined: what is kept still holds.
+    """
+
+    def __init__(self, upgrade: Upgrade, values: PlanValues, budget: Budget) -> None:
         self.upgrade = upgrade
         self.ascending: list[KnownAttack] = []
-        self._values = values
+        self._values, self._budget = values, budget
         self._worth: dict[frozenset[int], float] = {}
+        self._candidates = _as_array(upgrade.candidates)
         # Links of the graph count too: only groups with something between them are worth joining.
-        self._pairs = sorted({*upgrade.candidates, *upgrade.problem.communication.links})
+        others = upgrade.problem.communication.links.difference(upgrade.candidates)
+        self._pairs = np.concatenate([self._candidates, _as_array(others)])
 
     def meet(self, attack: Attack, problem: Problem, goal: float) -> None:
         """Keep an attack on the team of a changed problem, with as few groups as leave ``goal``, or what it leaves."""
@@ -76,8 +88,7 @@ class KnownAttacks:
 
     def mask(self, links: Iterable[Link]) -> int:
         """Candidates as a bit mask."""
-        wanted = set(links)
-        return sum(1 << k for k, link in enumerate(self.upgrade.candidates) if link in wanted)
+        return sum(1 << bisect_left(self.upgrade.candidates, link) for link in set(links))
 
     def _withstanding(
         self, groups: Groups, blinded: frozenset[int], chosen: Sequence[Link], below: float
@@ -92,18 +103,53 @@ class KnownAttacks:
 
     def _joined(self, groups: Groups, blinded: frozenset[int], goal: float) -> Groups:
         """The groups, those with most links between them joined first, as long as none is worth more than ``goal``."""
-        while True:
-            between = _between(groups, self._pairs)
-            counts = {pair: between.count(pair) for pair in sorted(set(between))}
-            worths = self._worths([groups[a] | groups[b] for a, b in counts], blinded)
-            allowed = [pair for pair, worth in zip(counts, worths, strict=True) if worth <= goal]
-            if not allowed:
-                return groups
-            _join(groups, max(allowed, key=lambda pair: counts[pair]))
+        counts = self._links_between(groups)
+        while (pair := self._most_linked(groups, counts, blinded, goal)) is not None:
+            _join(groups, pair)
+            first, second = pair
+            counts[first] += counts[second]
+            counts[:, first] = counts[first]
+            counts[first, first] = 0
+            counts = np.delete(np.delete(counts, second, axis=0), second, axis=1)
+        return groups
+
+    def _links_between(self, groups: Groups) -> IntArray:
+        """(G, G) candidates and links of the graph between each two groups."""
+        home = self._home(groups)[self._pairs]
+        counts = np.zeros((len(groups), len(groups)), dtype=np.int64)
+        np.add.at(counts, (home[:, 0], home[:, 1]), 1)
+        counts += counts.T
+        np.fill_diagonal(counts, 0)
+        return counts
+
+    def _most_linked(
+        self, groups: Groups, counts: IntArray, blinded: frozenset[int], goal: float
+    ) -> tuple[int, int] | None:
+        """Of the pairs of groups that are worth no more than ``goal`` together, the first with most links between."""
+        first, second = np.nonzero(np.triu(counts))
+        order = np.argsort(-counts[first, second], kind="stable")
+        for start in range(0, len(order), AT_ONCE):
+            if self._budget.is_over:
+                return None
+            some = order[start : start + AT_ONCE]
+            pairs = list(zip(first[some].tolist(), second[some].tolist(), strict=True))
+            worths = self._worths([groups[a] | groups[b] for a, b in pairs], blinded)
+            for pair, worth in zip(pairs, worths, strict=True):
+                if worth <= goal:
+                    return pair
+        return None
+
+    def _home(self, groups: Groups) -> IntArray:
+        """(N,) which group each robot is in."""
+        home = np.empty(self.upgrade.problem.n_robots, dtype=np.int64)
+        for k, group in enumerate(groups):
+            home[list(group)] = k
+        return home
 
     def _keep(self, groups: Groups, blinded: frozenset[int]) -> None:
-        home = {i: k for k, group in enumerate(groups) for i in group}
-        links = sum(1 << k for k, (i, j) in enumerate(self.upgrade.candidates) if home[i] != home[j])
+        home = self._home(groups)[self._candidates]
+        separated = np.packbits(home[:, 0] != home[:, 1], bitorder="little")
+        links = int.from_bytes(separated.tobytes(), "little")
         value = max(self._worths(groups, blinded))
         known = KnownAttack(value, links, self.upgrade.needed(groups), tuple(groups), blinded)
         if known not in self.ascending:
@@ -122,6 +168,11 @@ class KnownAttacks:
                 row[list(group)] = True
             self._worth.update(zip(new, self._values.evaluate(rows).tolist(), strict=True))
         return [self._worth[group] for group in left]
+
+
+def _as_array(links: Iterable[Link]) -> IntArray:
+    """(L, 2) their ends."""
+    return np.fromiter(chain.from_iterable(links), dtype=np.int64).reshape(-1, 2)
 
 
 def _between(groups: Groups, links: Iterable[Link]) -> list[tuple[int, int]]:

@@ -9,6 +9,7 @@ import networkx as nx
 
 from ratt_opt._validation import check_distinct, check_link
 from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import CommunicationGraph
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -27,6 +28,9 @@ class Upgrade(Protocol):
 
     def changed(self, links: Iterable[Link]) -> Problem:
         """The problem of the team that has these candidates."""
+
+    def together(self) -> Sequence[frozenset[int]]:
+        """The groups of the team that has all candidates, before any attack."""
 
     def needed(self, groups: Sequence[frozenset[int]]) -> int:
         """So many chosen links between the groups spoil the attack that separates them; fewer do not."""
@@ -49,6 +53,10 @@ class Protection:
         """The problem in which these links cannot be cut."""
         return replace(self.problem, protected_links=self.problem.protected_links | set(links))
 
+    def together(self) -> Sequence[frozenset[int]]:
+        """Those of the team as it is."""
+        return self.problem.communication.groups()
+
     def needed(self, groups: Sequence[frozenset[int]]) -> int:  # noqa: ARG002  (the same for every attack)
         """One, whatever the groups."""
         return 1
@@ -62,11 +70,11 @@ class Addition:
 
     def __init__(self, problem: Problem, candidates: Iterable[Link] | None) -> None:
         n_robots, links = problem.n_robots, problem.communication.links
-        missing = frozenset((i, j) for j in range(n_robots) for i in range(j)) - links
-        given = missing if candidates is None else checked_links(candidates)
-        for link in sorted(given - missing):
+        missing = [(i, j) for i in range(n_robots) for j in range(i + 1, n_robots) if (i, j) not in links]
+        given = missing if candidates is None else sorted(checked_links(candidates))
+        for link in () if given is missing else sorted(set(given).difference(missing)):
             raise InputError("candidates", "must be pairs of robots without a link", link)
-        self.problem, self.candidates = problem, tuple(sorted(given))
+        self.problem, self.candidates = problem, tuple(given)
 
     def changed(self, links: Iterable[Link]) -> Problem:
         """The problem with these links."""
@@ -75,6 +83,11 @@ class Addition:
         graph.add_edges_from(self.problem.communication.links)
         graph.add_edges_from(links)
         return replace(self.problem, graph=graph)
+
+    def together(self) -> Sequence[frozenset[int]]:
+        """Those that the candidates join."""
+        links = self.problem.communication.links.union(self.candidates)
+        return CommunicationGraph(self.problem.n_robots, links).groups()
 
     def needed(self, groups: Sequence[frozenset[int]]) -> int:
         """One more than the adversary could cut beside those links of the graph that it has to cut anyway."""

@@ -1,4 +1,6 @@
-"""What bounds the cost of the groups of a case, in compiled code: as the verifier (``verifier/group_costs.py``) has it.
+"""What bounds the cost of the groups of a case, in compiled code.
+
+It is what the verifier (``verifier/lower_end/group_costs.py``) computes in integers.
 
 Imported only where a certificate is written.
 """

@@ -1,8 +1,8 @@
 """The groups that may be part of an attack, by a tree over who is inside one, in compiled code.
 
-What closes a case is what the verifier (``verifier/group_covers.py``) follows in integers: that its groups cannot be
-part of an attack, or a bound on their reduced cost by a flow, of which the links between a decided robot and an
-open one take no part: what these cost is a sum over robots. Flows are found where those of earlier cases do not do.
+What closes a case is what the verifier (``verifier/lower_end/group_covers.py``) follows in integers: that its groups
+cannot be part of an attack, or a bound on their reduced cost by a flow, of which the links between a decided robot and
+an open one take no part: what these cost is a sum over robots. Flows are found where those of earlier cases do not do.
 Imported only where a certificate is written.
 """
 

@@ -16,8 +16,8 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
-from ratt_opt.certificates.verifier.group_costs import Group, Groups
-from ratt_opt.certificates.verifier.partitions import Partitions
+from ratt_opt.certificates.verifier.lower_end.group_costs import Group, Groups
+from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
 
 if TYPE_CHECKING:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.certificates.verifier.forced_size import is_forced, is_forced_by_trees
-from ratt_opt.certificates.verifier.group_covers import check_group_covers
-from ratt_opt.certificates.verifier.group_prices import check_group_prices
+from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced, is_forced_by_trees
+from ratt_opt.certificates.verifier.lower_end.group_covers import check_group_covers
+from ratt_opt.certificates.verifier.lower_end.group_prices import check_group_prices
+from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
+from ratt_opt.certificates.verifier.lower_end.worth import Worth
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
-from ratt_opt.certificates.verifier.size_tree import check_size_tree
-from ratt_opt.certificates.verifier.worth import Worth
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

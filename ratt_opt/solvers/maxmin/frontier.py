@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import heapq
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
     from ratt_opt.solvers.maxmin.proof import TreeNode
 
@@ -27,16 +30,18 @@ class ClosingRule:
 
     Below that plan's level, proved or not, no better one is to be found. A new outcome may lower the level; then what
     was closed may have to be opened again.
+
+    ``floor`` : only plans above it are looked for, while it is above that level; see ``descent.py``.
     """
 
     def __init__(self, plans: Candidates, gap: float) -> None:
-        self.plans, self.gap = plans, gap
+        self.plans, self.gap, self.floor = plans, gap, -np.inf
         self._rounding = MARGINS * plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
-        """Value of the best plan under the known outcomes."""
-        return self.plans.level
+        """Value of the best plan under the known outcomes, or the floor."""
+        return max(self.plans.level, self.floor)
 
     @property
     def better(self) -> float:
@@ -114,6 +119,19 @@ class Frontier:
     def __len__(self) -> int:
         """How many nodes are queued."""
         return len(self._queue)
+
+    def nodes(self) -> Iterator[TreeNode]:
+        """All that are open, in work, lent, closed or settled."""
+        queued, settled = (node for _, _, node in self._queue), (node for node, _ in self._settled)
+        current = [] if self.current is None else [self.current]
+        return chain(queued, current, self.lent, self._closed, settled)
+
+    def finish(self, node: TreeNode) -> None:
+        """Close a node where its bound closes it, else queue it."""
+        if self.rule.closes(node.bound):
+            self.close(node)
+        else:
+            self.push(node)
 
     def close(self, node: TreeNode) -> None:
         """Finish a node whose bound closes it."""

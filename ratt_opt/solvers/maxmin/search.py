@@ -8,6 +8,7 @@ their own, and where that fails the node branches on which group wins (``groups/
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,10 +17,10 @@ from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
-from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
+from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups, SmallTables
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
-from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, nodes_below, upper_proof
+from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
 from ratt_opt.stopping import Stop
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
     Progress = Callable[[int, float, float], None] | None
 
-__all__ = ["BranchAndBound", "Turns"]
+__all__ = ["BranchAndBound", "Known", "Turns"]
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 STALL = 0.03
@@ -47,27 +48,51 @@ STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
 cuts all nodes inherit, 2 take 32 and 40 take 34. Larger teams were not measured."""
 
 
-class BranchAndBound:
-    """The search; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Known:
+    """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node."""
 
-    def __init__(
-        self,
-        task: Task,
-        incumbent: Incumbent,
-        gap: float,
-        pairs: PairOutcomes | None,
-        roots: list[TreeNode] | None = None,
-    ) -> None:
-        self.task, self.pool, self.incumbent, self.pairs = task, incumbent.pool, incumbent, pairs
-        self.rule = ClosingRule(incumbent.candidates, gap)
+    task: Task
+    incumbent: Incumbent
+    pairs: PairOutcomes | None
+    rule: ClosingRule
+    cuts: CutStore
+    proofs: GroupProofs
+    tables: SmallTables
+    node_attacks: NodeAttacks | None
+
+    @classmethod
+    def of(cls, task: Task, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> Known:
+        """What is known before the first tree; ``gap`` : relative width that closes a node."""
+        pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap)
+        cuts = CutStore(task, pool)
+        return cls(
+            task=task,
+            incumbent=incumbent,
+            pairs=pairs,
+            rule=rule,
+            cuts=cuts,
+            proofs=GroupProofs(cuts, rule),
+            tables=SmallTables(task, pool),
+            node_attacks=NodeAttacks.of(task.problem, pool, incumbent.budget),
+        )
+
+
+class BranchAndBound:
+    """The search of one tree; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
+
+    def __init__(self, known: Known, roots: list[TreeNode] | None = None) -> None:
+        self.known, self.task, self.pool, self.pairs = known, known.task, known.incumbent.pool, known.pairs
+        self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
         self.frontier = Frontier(self.rule)
-        self.cuts = CutStore(task, self.pool)
-        self.winners = Winners(GroupProofs(self.cuts, self.rule), incumbent.candidates)
-        self.rounds = CutRounds(self.cuts, self.winners, incumbent.adversary)
+        self.winners = Winners(known.proofs, self.incumbent.candidates)
+        self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
-        self.small = SmallGroups(task, self.by_winner, incumbent.budget)
+        self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
-        self.node_attacks = NodeAttacks.of(task.problem, self.pool, incumbent.budget)
+        self.node_attacks = known.node_attacks
+        self._is_part = roots is not None
+        """Whether another search looks after winners decided for all plans: it queues what is open in the proofs."""
         self.roots = [self._first_node()] if roots is None else roots
         for root in self.roots:
             self.frontier.push(root)
@@ -86,10 +111,7 @@ class BranchAndBound:
 
     def proof(self, number: int = 0) -> UpperProof:
         """The proof of the bound below one of the roots: winners decided for all plans, then the tree."""
-        below = self.roots[number]
-        used = {k for node in nodes_below(below) if node.split is None for k in node.leaf.cuts}
-        root = self.winners.above(below, {int(self.cuts.outcomes[k]) for k in used})
-        return upper_proof(root, self.pool.attack, self.cuts.record)
+        return upper_proof(self.winners.above(self.roots[number]), self.pool.attack, self.cuts.record)
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
@@ -104,11 +126,10 @@ class BranchAndBound:
 
     def is_finished(self) -> bool:
         """Whether every open node closes, and everything that was closed still does."""
-        if not self.frontier.is_closed:
-            return False
-        reopened = self.frontier.reopen()
-        self.winners.reconsider()
-        return not reopened
+        lost = self.winners.reconsider()
+        for outcome in () if self._is_part else lost:
+            self.winners.reopen(outcome, self.roots[0], self.frontier)
+        return self.frontier.is_closed and not self.frontier.reopen()
 
     def explore_next(self, turns: Turns) -> Stop | None:
         """Bound the open node of largest bound, then close it or divide it; why to stop where it is neither."""
@@ -237,23 +258,23 @@ class Turns:
     """Says when it is time to stop searching: for good, or to prove the best plan's value."""
 
     def __init__(self, budget: Budget, incumbent: Incumbent) -> None:
-        self.budget, self._incumbent = budget, incumbent
+        self.budget, self.incumbent = budget, incumbent
         self._turn = budget.part(SEARCH_SHARE)
 
     @property
     def seconds_left(self) -> float:
         """Seconds until it is time to stop, as far as that is known."""
         left = self.budget.seconds_left
-        return left if self._incumbent.is_proved else min(left, self._turn.seconds_left)
+        return left if self.incumbent.is_proved else min(left, self._turn.seconds_left)
 
     def stop(self) -> Stop | None:
         """Why to stop searching now, if at all."""
         if (stop := self.budget.stop()) not in {None, Stop.NODES}:
             return stop
-        return Stop.TIME if self._turn.stop() is Stop.TIME and not self._incumbent.is_proved else None
+        return Stop.TIME if self._turn.stop() is Stop.TIME and not self.incumbent.is_proved else None
 
     def prove(self) -> bool:
         """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
-        goes_on = self._incumbent.prove()
+        goes_on = self.incumbent.prove()
         self._turn = self.budget.part(SEARCH_SHARE)
         return goes_on

@@ -17,10 +17,11 @@ from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.any_function import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.maxmin.descent import Descent
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
+from ratt_opt.solvers.maxmin.search import Known, Turns
 from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
 from ratt_opt.solvers.maxmin.task import Task
@@ -99,7 +100,7 @@ def solve_maxmin(
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
-    search: BranchAndBound | None = None
+    search: Descent | None = None
     try:
         pool.list_all()
         outcomes = warm.add_outcomes(pool)
@@ -107,10 +108,10 @@ def solve_maxmin(
         pairs = PairOutcomes.of(task)
         incumbent.start(_first_plans(problem, first, warm, pairs, budget))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = BranchAndBound(task, incumbent, max(gap - PROVED, 0.0), pairs)
-        search.use(warm.add_cuts(search.cuts, outcomes))
+        search = Descent(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs))
+        search.first.use(warm.add_cuts(search.first.cuts, outcomes))
         with open_crew(workers) as crew:
-            run = search.run if crew is None else SharedSearch(search, crew).run
+            run = search.run if crew is None else SharedSearch(search.first, crew).run
             stop = _search_and_prove(search, run, Turns(budget, incumbent), progress)
     except OutOfBudget as out:
         stop = out.stop
@@ -130,20 +131,18 @@ def _first_plans(
 
 
 def _search_and_prove(
-    search: BranchAndBound, run: Callable[[Turns, Progress], Stop], turns: Turns, progress: Progress
+    search: Descent, run: Callable[[Turns, Progress], Stop], turns: Turns, progress: Progress
 ) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
-            progress(turns.budget.nodes, search.incumbent.proved.lower, search.upper)
+            progress(turns.budget.nodes, turns.incumbent.proved.lower, search.upper)
         stop = run(turns, progress)
         if not turns.prove():
             return stop
 
 
-def _result(
-    problem: Problem, incumbent: Incumbent, search: BranchAndBound | None, stop: Stop, gap: float
-) -> MaxMinResult:
+def _result(problem: Problem, incumbent: Incumbent, search: Descent | None, stop: Stop, gap: float) -> MaxMinResult:
     before = problem.information_objective.prior_criterion
     # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
     everything = problem.objective(range(problem.objective.n))

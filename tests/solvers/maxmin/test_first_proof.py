@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, Stop, random_scenario, ratt, worst_case_attack
+from ratt_opt import Attack, Stop, greedy, myopic, network_scenario, random_scenario, ratt, worst_case_attack
 from ratt_opt.attackers.task import AttackResult
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.solvers.maxmin.plans import incumbent
@@ -49,6 +49,30 @@ def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_n
     assert np.array_equal(search.proved.elements, first)
 
 
+@pytest.mark.parametrize("criterion", ["trace", "logdet", "maxeig"])
+@pytest.mark.parametrize("family", ["complete", "dense", "hubs"])
+def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(
+    family: str, criterion: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At once more can be known of another plan than a brief attack on RATT's proves."""
+    if family == "complete":
+        scenario = random_scenario(60, 8, alpha_s=12, alpha_c=531, seed=1)
+    else:
+        scenario = network_scenario(family, 60, 8, alpha_s=0.2, alpha_c=0.15, seed=1)
+    problem = scenario.problem(criterion)
+    plans = [planner(problem).elements for planner in (ratt, greedy, myopic)]
+    at_once = [worst_case_attack(problem, plan, time_limit=0).lower for plan in plans]
+    search = started(problem, plans[0])
+    monkeypatch.setattr(incumbent, "FIRST_SHARE", 0.0)
+    search.budget.time_limit = 0.0
+    search.start(plans)
+    best = int(np.argmax(at_once))
+    assert search.proved.lower == at_once[best] > 0
+    assert np.array_equal(search.proved.elements, plans[best])
+    assert search.proved.worst_case is not None
+    assert search.proved.worst_case.upper == problem.team_value(plans[best], search.proved.worst_case.attack)
+
+
 @pytest.mark.parametrize("share_of_best", [0.5, 0.9])
 def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     share_of_best: float, monkeypatch: pytest.MonkeyPatch
@@ -67,7 +91,7 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     search.candidates.add(best)
     attacked = []
 
-    def attack(_: Adversary, plan: IntArray, _budget: Budget) -> AttackResult:
+    def attack(_: Adversary, plan: IntArray, _budget: Budget, _aim: float) -> AttackResult:
         is_first = np.array_equal(plan, first)
         attacked.append(is_first)
         share = 0.95 + 0.01 * len(attacked) if is_first else share_of_best

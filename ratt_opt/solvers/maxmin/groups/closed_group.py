@@ -31,7 +31,7 @@ LARGEST_PROOF = 300
 """Cuts after which the attempt is given up."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ClosedGroup:
     """A node of the proof: closed by ``cut``, or divided into ``parts`` = (elements of ``robot``, node)."""
 
@@ -106,6 +106,8 @@ class GroupProofs:
     def __init__(self, cuts: CutStore, rule: ClosingRule) -> None:
         self.task, self.pool, self.cuts, self.rule = cuts.task, cuts.pool, cuts, rule
         self._attempts: dict[tuple[int, bytes], tuple[float, ClosedGroup | None]] = {}
+        self._written: dict[tuple[int, ClosedGroup], int] = {}
+        """Outcome and proof -> the cut in the store: the same proof is written below many nodes."""
 
     def find(self, group: int, choices: Choices) -> ClosedGroup | None:
         """A proof that a group stays low enough within ``choices``, if one is found."""
@@ -122,7 +124,9 @@ class GroupProofs:
     def graft(self, node: TreeNode, outcome: int, group: int, proof: ClosedGroup) -> list[TreeNode]:
         """Write the proof that a group is closed below ``node`` of the search tree; return its leaves."""
         if proof.cut is not None:
-            node.leaf = Leaf(cuts=(self.cuts.add(outcome, group, proof.cut),), weights=(1.0,))
+            if (k := self._written.get((outcome, proof))) is None:
+                k = self._written[outcome, proof] = self.cuts.add(outcome, group, proof.cut)
+            node.leaf = Leaf(cuts=(k,), weights=(1.0,))
             node.bound = proof.bound
             return [node]
         children = [node.child(with_choice(node.choices, proof.robot, part)) for part, _ in proof.parts]

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import TreeNode
     from ratt_opt.solvers.maxmin.task import Choices, Task
 
-__all__ = ["SmallGroups"]
+__all__ = ["SmallGroups", "SmallTables"]
 
 WHOLE, PART = 600_000, 60_000
 """Criteria of single targets that list a group's elements once and for all, and those left at a node that are listed
@@ -102,13 +102,25 @@ class _Group:
         return objective.value(points)
 
 
+class SmallTables:
+    """What the pool's groups can reach, by group; numbers of choices, by what they are."""
+
+    def __init__(self, task: Task, pool: OutcomePool) -> None:
+        self.task, self.pool = task, pool
+        self.groups: list[_Group] = []
+        self.numbers: dict[bytes, int] = {}
+
+    def grow(self) -> None:
+        """Make room for groups that are new in the pool."""
+        self.groups += [_Group(self.task, members) for members in self.pool.groups[len(self.groups) :]]
+
+
 class SmallGroups:
     """Narrows nodes by the outcomes in the pool whose groups can be listed, as far as the budget lasts."""
 
-    def __init__(self, task: Task, division: WinnerDivision, budget: Budget) -> None:
-        self.task, self.pool, self.division, self.budget = task, division.pool, division, budget
-        self._groups: list[_Group] = []
-        self._numbers: dict[bytes, int] = {}
+    def __init__(self, tables: SmallTables, division: WinnerDivision, budget: Budget) -> None:
+        self.task, self.pool, self.division, self.budget = tables.task, tables.pool, division, budget
+        self._tables, self._groups = tables, tables.groups
         self._above: dict[int, list[int]] = {}
         """The two groups of an outcome that could be above the level when it was last looked at, to be looked at first.
         """
@@ -120,7 +132,7 @@ class SmallGroups:
         """
         if self.pool.complete:
             return node
-        self._groups += [_Group(self.task, members) for members in self.pool.groups[len(self._groups) :]]
+        self._tables.grow()
         level, before = better - ROUNDING * abs(better), None
         while node is not before:
             before, domains = node, self._domains(node)
@@ -135,7 +147,7 @@ class SmallGroups:
         return node
 
     def _domains(self, node: TreeNode) -> _Domains:
-        return _Domains(self.task, self.pool, node.choices, self._numbers)
+        return _Domains(self.task, self.pool, node.choices, self._tables.numbers)
 
     def _narrow_by(self, node: TreeNode, outcome: int, level: float, domains: _Domains) -> TreeNode | None:
         winner = self.division.winners.of(node, outcome)

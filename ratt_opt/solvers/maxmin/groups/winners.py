@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.proof import Split, TreeNode
+from ratt_opt.solvers.maxmin.proof import Split, TreeNode, nodes_below
 from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
@@ -41,6 +41,8 @@ class Winners:
         self._everything = self.task.choices
         self._winner = np.zeros(0, dtype=np.int64)
         self._closed: dict[int, list[tuple[int, ClosedGroup]]] = {}
+        self._reopened: dict[int, tuple[tuple[tuple[int, ...], TreeNode | None], ...]] = {}
+        """Outcome -> robots of each group and the node where it wins; ``None`` is all that was searched before."""
 
     @property
     def decided(self) -> dict[int, int]:
@@ -94,28 +96,65 @@ class Winners:
         objective, plan = self.task.objective, self.plans.best[list(self.pool.groups[group])]
         return float(objective.value(objective.posterior_information(plan)[None])[0])
 
-    def reconsider(self) -> None:
-        """After the best plan turned out worse: close again what no longer closes, where that works."""
+    def reconsider(self) -> list[int]:
+        """After the best plan turned out worse: close again what no longer closes; the outcomes where that fails."""
         if self.proofs.rule.closes(self.finished):
-            return
-        for closed in self._closed.values():
+            return []
+        failed = []
+        for outcome, closed in self._closed.items():
             for k, (group, proof) in enumerate(closed):
                 if not self.proofs.rule.closes(proof.bound):
                     closed[k] = group, self.proofs.find(group, self._everything) or proof
+            if any(not self.proofs.rule.closes(proof.bound) for _, proof in closed):
+                failed.append(outcome)
+        self._bound_closed()
+        return failed
+
+    def _bound_closed(self) -> None:
         self.finished = max((p.bound for closed in self._closed.values() for _, p in closed), default=-np.inf)
 
-    def above(self, root: TreeNode, used: set[int]) -> TreeNode:
-        """The search tree below the winner branches of those among the ``used`` outcomes decided for all plans."""
+    def reopen(self, outcome: int, root: TreeNode, frontier: Frontier) -> None:
+        """Divide the whole search on the winner of an outcome that was decided for all plans and no longer is.
+
+        What was searched is the part where that winner wins; parts where others win are bounded by their old proofs
+        and go to the frontier. An interrupt on the way leaves bounds and proof as valid as before.
+        """
+        winner, closed = int(self._winner[outcome]), self._closed[outcome]
+        for node in frontier.nodes():
+            node.winners.setdefault(outcome, winner)
+        parts: list[tuple[tuple[int, ...], TreeNode | None]] = [(self.pool.groups[winner], None)]
+        for group, proof in closed:
+            node = TreeNode(choices=root.choices, winners={outcome: group}, bound=np.inf, leaf=root.leaf)
+            for leaf in self.proofs.graft(node, outcome, group, proof):
+                frontier.finish(leaf)
+            parts.append((self.pool.groups[group], node))
+        self._reopened[outcome] = tuple(parts)
+        self._winner[outcome] = UNDECIDED
+        del self._closed[outcome]
+        self._bound_closed()
+
+    def above(self, root: TreeNode) -> TreeNode:
+        """The search tree below the branches on winners that were decided for all plans, where they are relied on.
+
+        Those that no longer are come last, the latest above the others: only what was searched before relies on them.
+        """
         top = root
-        for outcome in sorted(used & set(self._closed)):
-            parts = [(self.pool.groups[int(self._winner[outcome])], top)]
+        for outcome, parts in self._reopened.items():
+            top = self._branch(root, outcome, [(members, top if node is None else node) for members, node in parts])
+        used = {k for node in nodes_below(top) if node.split is None for k in node.leaf.cuts}
+        outcomes = {int(self.proofs.cuts.outcomes[k]) for k in used}
+        for outcome in sorted((outcomes & set(self._closed)) - set(self._reopened)):
+            below = [(self.pool.groups[int(self._winner[outcome])], top)]
             for group, proof in self._closed[outcome]:
                 node = TreeNode(choices=root.choices, winners={}, bound=-np.inf, leaf=root.leaf)
                 self.proofs.graft(node, outcome, group, proof)
-                parts.append((self.pool.groups[group], node))
-            top = TreeNode(choices=root.choices, winners={}, bound=root.bound, leaf=root.leaf)
-            top.split = Split(by_winner=True, subject=outcome, parts=tuple(parts))
+                below.append((self.pool.groups[group], node))
+            top = self._branch(root, outcome, below)
         return top
+
+    def _branch(self, root: TreeNode, outcome: int, parts: list[tuple[tuple[int, ...], TreeNode]]) -> TreeNode:
+        split = Split(by_winner=True, subject=outcome, parts=tuple(parts))
+        return TreeNode(choices=root.choices, winners={}, bound=root.bound, leaf=root.leaf, split=split)
 
 
 class WinnerDivision:

@@ -193,9 +193,10 @@ class Adversary:
             annealed = self._annealed.attack(relaxed, owners, BRIEF_MOVES, worst)
         return self._quick_attack(relaxed, owners) if annealed is None else annealed
 
-    def attack(self, plan: IntArray, budget: Budget) -> AttackResult:
-        """Exact worst case of a plan within a part of the budget."""
-        result = worst_case_attack(self.problem, plan, max_nodes=budget.max_nodes, budget=budget)
+    def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> AttackResult:
+        """Exact worst case of a plan within a part of the budget, or an attack that leaves it no more than ``aim``."""
+        nodes, known = budget.max_nodes, self._worst_known(self.problem, plan)
+        result = worst_case_attack(self.problem, plan, max_nodes=nodes, budget=budget, aim=aim, known=known)
         self._remember(self.problem, plan, result.attack)
         return result
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.stopping import Stop
 
@@ -125,15 +126,31 @@ class ProvedPlan:
     def attack(self, plan: IntArray, budget: Budget) -> None:
         """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
 
+        An attack that leaves it no more than that ends it: what a plan of no use keeps need not be proved.
+
         Raises ``OutOfBudget`` : the user interrupted the attack; what it had proved counts.
         """
-        result = self.adversary.attack(plan, budget)
+        result = self.adversary.attack(plan, budget, self.lower)
+        self._keep(plan, result)
+        if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
+            self.unproved_stop = result.stop
+        self.adversary.heed(result)
+
+    def glance(self, plan: IntArray, budget: Budget) -> None:
+        """Keep a plan where more is known of it at once than is proved of the one kept.
+
+        The attack that comes with it teaches nothing: of the outcomes a search begins with, these are not the worst.
+
+        Raises ``OutOfBudget`` : the user interrupted it; what was known counts.
+        """
+        result = worst_case_attack(self.adversary.problem, plan, time_limit=0, budget=budget)
+        self._keep(plan, result)
+        self.adversary.heed(result)
+
+    def _keep(self, plan: IntArray, result: AttackResult) -> None:
         self.evaluations += result.evaluations
         if result.lower > self.lower:
             self.elements, self.lower, self.worst_case = plan.copy(), result.lower, result
-        if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
-            self.unproved_stop = result.stop
-        self.adversary.heed(result)
 
 
 LOCAL_SEARCH_ROUNDS = 50
@@ -167,9 +184,12 @@ class Incumbent:
     def start(self, plans: Sequence[IntArray]) -> None:
         """Attack the first of some plans, improve the most promising one, beat all of them, and attack the best one.
 
-        Whatever ends the rest, what the brief attack on the first plan proved is kept.
+        Whatever ends the rest, what the brief attack on the first plan proved is kept, and what is known of the others
+        at once: where time is short that can be more.
         """
         self.proved.attack(plans[0], self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF))
+        for plan in plans[1:]:
+            self.proved.glance(plan, self.budget)
         if self.budget.is_over:
             return
         for plan in plans:

@@ -43,10 +43,7 @@ def hang_below(search: BranchAndBound, node: TreeNode, proof: UpperProof) -> Non
 def _end(search: BranchAndBound, node: TreeNode, leaf: Leaf) -> None:
     if leaf.cuts:
         node.tighten(leaf, search.cuts.leaf_bound(leaf, node.choices)[0])
-    if search.rule.closes(node.bound):
-        search.frontier.close(node)
-    else:
-        search.frontier.push(node)
+    search.frontier.finish(node)
 
 
 def _elements(search: BranchAndBound, node: TreeNode, given: ElementBranch) -> list[TreeNode | None]:

@@ -13,7 +13,7 @@ from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode
-from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
+from ratt_opt.solvers.maxmin.search import BranchAndBound, Known, Turns
 from ratt_opt.solvers.maxmin.task import Task
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class _Worker:
         pool = OutcomePool(work.problem)
         self._incumbent = Incumbent(work.problem, pool, work.plan, self._budget)
         task = Task.of(work.problem)
-        self._search = BranchAndBound(task, self._incumbent, work.gap, PairOutcomes.of(task), roots=[])
+        self._search = BranchAndBound(Known.of(task, self._incumbent, work.gap, PairOutcomes.of(task)), [])
 
     def search(self, work: Work) -> Searched:
         """Search the nodes of one piece of work."""

@@ -24,14 +24,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
 from ratt_opt.certificates.verifier.reading import array, fields, index, need, walk
-from ratt_opt.certificates.verifier.size_tree import check_size_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from ratt_opt.certificates.verifier.lower_end.worth import Worth
     from ratt_opt.certificates.verifier.statement import Statement
-    from ratt_opt.certificates.verifier.worth import Worth
 
 __all__ = ["check_group_prices"]
 

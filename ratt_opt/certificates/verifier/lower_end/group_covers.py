@@ -25,16 +25,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.certificates.verifier.group_costs import Case, Group, Groups, mask_of
-from ratt_opt.certificates.verifier.partitions import Partitions
+from ratt_opt.certificates.verifier.lower_end.group_costs import Case, Group, Groups, mask_of
+from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
+from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
 from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need, walk
-from ratt_opt.certificates.verifier.size_tree import check_size_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from ratt_opt.certificates.verifier.lower_end.worth import Worth
     from ratt_opt.certificates.verifier.statement import Statement
-    from ratt_opt.certificates.verifier.worth import Worth
 
 __all__ = ["check_group_covers"]
 

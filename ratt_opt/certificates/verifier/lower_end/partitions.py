@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from ratt_opt.certificates.verifier.group_costs import mask_of, robots_of
+from ratt_opt.certificates.verifier.lower_end.group_costs import mask_of, robots_of
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
-    from ratt_opt.certificates.verifier.group_costs import Group, Groups
+    from ratt_opt.certificates.verifier.lower_end.group_costs import Group, Groups
 
 __all__ = ["Partitions"]
 

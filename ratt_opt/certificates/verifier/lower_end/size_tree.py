@@ -9,7 +9,7 @@ from ratt_opt.certificates.verifier.reading import index, need, walk
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.certificates.verifier.worth import Worth
+    from ratt_opt.certificates.verifier.lower_end.worth import Worth
 
 __all__ = ["check_size_tree"]
 

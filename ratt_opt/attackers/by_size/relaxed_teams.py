@@ -1,0 +1,92 @@
+"""Lower bounds from attackers that may do more: every worst case is that of some complete graph, or above it.
+
+Relies on a non-decreasing objective. What is proved when the budget runs out is kept.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from math import comb, inf
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.by_size.largest_groups import largest_groups_bound
+from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
+from ratt_opt.attackers.task import AttackBracket
+from ratt_opt.budget import OutOfBudget
+from ratt_opt.graph.link_scores import link_scores
+from ratt_opt.graph.possible_sizes import PossibleSizes
+from ratt_opt.problem import Attack
+
+if TYPE_CHECKING:
+    from ratt_opt.attackers.task import AttackTask
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.graph.survivor_sizes import Sizes
+
+__all__ = ["possible_sizes_bound", "unprotected_bound"]
+
+SIZES_SHARE, SIZES_NODES = 0.2, 3_000_000
+"""Of the seconds left, and of the nodes, at most so many, for groups of possible sizes. Lists of weak sets take most of
+them: at 50 robots of a dense graph, 10 blinded and 128 links cut, 2 million nodes and six seconds."""
+
+MOST_POSSIBLE = 1_000
+"""Vectors of sizes to search: 10 at dense graphs, hundreds at 50 robots of sparser ones."""
+
+LARGEST = 100
+"""Robots of which sizes are looked at: some twenty seconds without a limit."""
+
+
+def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
+    """Raise the lower bound to the worst case without protected links, no larger; keep its attack if allowed."""
+    problem, bracket = task.problem, task.bracket
+    relaxed = replace(problem, protected_links=frozenset())
+    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
+    start.offer(bracket.attack, bracket.upper)
+    try:
+        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team).run()
+    finally:
+        bracket.raise_lower(min(start.lower, start.upper))
+        if not start.attack.links & problem.protected_links:
+            task.offer(start.attack)
+
+
+def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int) -> int:
+    """Raise the lower bound to the least that groups of possible sizes leave, whichever robots are in them.
+
+    ``least`` : seeing robots that are known to be left in some group. Returns how many are, by sizes too.
+
+    Raises
+    ------
+    OutOfBudget : the time is up, or no node is left, before it begins.
+    """
+    threat, budget = task.problem.threat, task.budget
+    n_seeing = threat.graph.n_robots - threat.n_blinded
+    if n_seeing == 0 or threat.graph.n_robots > LARGEST or task.bracket.is_closed:
+        return least
+    nodes = inf if budget.max_nodes is None else SIZES_SHARE * budget.nodes_left(budget.max_nodes)
+    part = budget.part(SIZES_SHARE, max_nodes=int(min(nodes, SIZES_NODES)))
+    possible = PossibleSizes(link_scores(threat.graph, threat.alpha_c, part), threat.n_blinded, least)
+    vectors = possible.vectors(part, MOST_POSSIBLE)
+    if vectors is None:
+        return possible.forced
+    if team is not None:
+        within = replace(task, budget=part)
+        try:
+            with suppress(OutOfBudget):
+                _sizes_bound(within, team, vectors)
+                largest_groups_bound(within, team, possible)
+        finally:
+            budget.nodes += part.nodes
+    return vectors[0][0]
+
+
+def _sizes_bound(task: AttackTask, team: PlanarTeam, vectors: list[Sizes]) -> None:
+    """The same for these ``vectors``: every attack leaves groups of seeing robots of such sizes, or mergers of them."""
+    problem, bracket = task.problem, task.bracket
+    every_link = comb(problem.n_robots, 2)
+    relaxed = replace(problem, graph=None, alpha_c=every_link, protected_links=frozenset())
+    start = AttackBracket(bracket.attack, bracket.upper, bracket.lower, bracket.rounding)
+    try:
+        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team, vectors).run()
+    finally:
+        bracket.raise_lower(min(start.lower, start.upper))

@@ -1,0 +1,50 @@
+"""What became of a result's proof: a certificate as written and verified, or why there is none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ratt_opt.certificates.verifier.verified import Verified
+
+__all__ = ["INTERRUPTED", "PENDING", "Certificate", "Certification"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """A certificate as written and verified.
+
+    ``lower_shaved`` and ``upper_raised`` : how far the claim's ends lie outside the given bracket, because
+    exact arithmetic proves a little less than floating point suggests, or (the lower end) because no cover of all
+    attacks was found but for a lower value [unit of the objective].
+    """
+
+    path: Path
+    verified: Verified
+    lower_shaved: float
+    upper_raised: float
+    size: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certification:
+    """Whether a result has a certificate: it, or (``None``) ``why_not`` in words.
+
+    ``final`` : whether that is how it stays; not so while a proof is under way, or where one was cut short.
+    """
+
+    certificate: Certificate | None = None
+    why_not: str = ""
+    final: bool = True
+
+
+PENDING = Certification(
+    why_not="not finished when this report was written; a certificate beside it is of an earlier one", final=False
+)
+"""What a report says while its proof is written and verified, and for good where that is killed."""
+INTERRUPTED = Certification(
+    why_not="interrupted before it was complete; a certificate beside this report is of an earlier one", final=False
+)

@@ -1,0 +1,6 @@
+"""What the verifier asks of the lower end's proofs, one kind a file; ``../lower.py`` says which is meant.
+
+Trees over sizes or attacks (``size_tree.py``, ``forced_size.py``); prices that no weak group pays
+(``group_prices.py``); prices with slack, and no partition into the groups that nearly pay (``group_covers.py`` with
+``group_costs.py`` and ``partitions.py``). ``worth.py`` values sets of robots for all of them.
+"""

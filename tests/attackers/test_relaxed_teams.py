@@ -1,0 +1,63 @@
+"""What groups of possible sizes leave is never above the worst case, on any graph."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.budget import Budget
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_elements, random_problem
+
+
+def _bounded(problem, plan, budget=None, least=0):
+    """The bracket after the bound, and the seeing robots left in some group."""
+    attack = ro.Attack()
+    bracket = AttackBracket(attack, problem.team_value(plan, attack), -np.inf, problem.objective.rounding)
+    task = AttackTask(problem, PlanValues(problem, plan), bracket, Budget() if budget is None else budget)
+    return bracket, possible_sizes_bound(task, PlanarTeam.of(problem.objective, plan), least)
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(40))
+def test_no_attack_leaves_less(name, seed):
+    rng = np.random.default_rng([seed, 4])
+    problem = random_problem(rng, kind=name)
+    plan = random_elements(rng, problem)
+    bracket, _ = _bounded(problem, plan)
+    assert bracket.lower <= brute_force_worst_case(problem, plan) * (1 + 1e-9) + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_on_a_complete_graph_it_is_the_worst_case(seed):
+    problem = ro.random_scenario(8, 4, alpha_s=1 + seed % 3, alpha_c=10 + 2 * seed, seed=seed).problem()
+    plan = ro.ratt(problem).elements
+    bracket, _ = _bounded(problem, plan)
+    assert bracket.lower == pytest.approx(ro.worst_case_attack(problem, plan).upper, rel=1e-8)
+
+
+@pytest.mark.parametrize(("seed", "alpha_s", "alpha_c"), [(0, 3, 11), (2, 3, 11), (2, 5, 17), (3, 3, 12), (3, 5, 17)])
+def test_on_dense_networks_it_is_the_worst_case(seed, alpha_s, alpha_c):
+    """Groups of possible sizes alone are worth 1 to 6 % less: sets that attacks cannot leave are ruled out."""
+    problem = ro.network_scenario("dense", 14, 6, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed).problem()
+    plan = np.array([choice[0] for choice in problem.choices])
+    bracket, size = _bounded(problem, plan)
+    worst = ro.worst_case_attack(problem, plan)
+    assert bracket.lower == pytest.approx(worst.upper, rel=1e-8)
+    groups = problem.groups_left(worst.attack)
+    assert 1 < size <= max(len(group - worst.attack.sensing) for group in groups)
+
+
+def test_spent_time_and_interrupts_claim_nothing():
+    problem = ro.network_scenario("dense", 24, 5, alpha_s=5, alpha_c=30, seed=1).problem()
+    plan = np.array([choice[0] for choice in problem.choices])
+    interrupted = Budget()
+    interrupted.interrupt()
+    for budget in (Budget(time_limit=0.0), interrupted):
+        bracket, size = _bounded(problem, plan, budget, least=3)
+        assert bracket.lower == -np.inf
+        assert size >= 3

@@ -1,0 +1,108 @@
+"""Trees with floors lose no plan, prove what they say, and leave a valid bracket wherever the search stops."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ratt_opt import Attack, Problem, certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
+from ratt_opt.solvers.maxmin import descent
+from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
+from tests.solvers.maxmin.test_pairs import ragged, threatened
+from tests.solvers.maxmin.test_solve import proved_upper
+from tests.strategies import OBJECTIVES
+
+BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 4), (5, 0, 3))
+"""(N, sensing, links)."""
+
+pytestmark = pytest.mark.usefixtures("floors")
+
+
+@pytest.fixture
+def floors(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, float]]:
+    """Many small trees, as where searches of large teams are long; best plan, floor and bound as they began."""
+    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
+    monkeypatch.setattr(descent, "FIRST_NODES", 1)
+    monkeypatch.setattr(descent, "TREE_NODES", 2)
+    monkeypatch.setattr(descent, "NARROW", 0.0)
+    used: list[tuple[float, float, float]] = []
+
+    def next_floor(self, plain=descent.Descent._next_floor):
+        used.append((self.first.incumbent.candidates.level, plain(self), self.upper))
+        return used[-1][1]
+
+    monkeypatch.setattr(descent.Descent, "_next_floor", next_floor)
+    return used
+
+
+def drawn(seed: int) -> Problem:
+    """A small random problem."""
+    rng = np.random.default_rng([23, seed])
+    robots, alpha_s, alpha_c = BUDGETS[seed % len(BUDGETS)]
+    team = ragged(rng, robots, 4, list(OBJECTIVES)[seed // len(BUDGETS) % 3], weak=int(rng.integers(0, 2)))
+    return threatened(team, alpha_s, alpha_c)
+
+
+def check(problem: Problem) -> None:
+    """The search, its proof and exhaustive search agree."""
+    found, best = solve_maxmin(problem, gap=0), exhaustive_optimum(problem)
+    slack = 1e-9 * best.upper + 16 * problem.objective.rounding
+    assert found.lower == pytest.approx(best.lower, abs=slack)
+    assert best.lower - slack <= found.upper <= best.upper + slack
+    assert proved_upper(problem, found.proof) <= found.upper + slack
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_agrees_with_exhaustive_search(seed: int) -> None:
+    check(drawn(seed))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_plans_that_turn_out_worse_than_a_floor_are_searched_below_it(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Attacks see nothing until a plan is attacked exactly: the level falls below floors that were placed above it."""
+    monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
+    monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
+    check(drawn(seed))
+
+
+def test_an_optimum_of_nothing_ends() -> None:
+    problem = random_scenario(5, 3, alpha_s=4, alpha_c=3, seed=2).problem()
+    nothing = replace(
+        problem, objective=problem.information_objective.with_information(0 * problem.information_objective.information)
+    )
+    found = solve_maxmin(nothing)
+    assert found.upper == pytest.approx(0, abs=1e-9)
+
+
+def test_floors_lie_between_the_best_plan_and_the_bound_and_come_down(
+    floors: list[tuple[float, float, float]],
+) -> None:
+    problem = random_scenario(8, 6, alpha_s=1, alpha_c=14, seed=1).problem()
+    uppers = []
+    result = solve_maxmin(problem, gap=1e-7, progress=lambda _nodes, _lower, upper: uppers.append(upper))
+    finite = [one for one in floors if np.isfinite(one[1])]
+    assert len(finite) > 2
+    assert all(level < floor < upper for level, floor, upper in finite)
+    assert finite[-1][1] < finite[0][1]
+    assert np.all(np.diff(uppers) <= 1e-12 * result.upper)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+
+
+@pytest.mark.parametrize("kind", OBJECTIVES)
+def test_stopping_at_any_node_leaves_a_proved_bracket(kind: str, tmp_path) -> None:
+    problem = random_scenario(6, 4, alpha_s=0, alpha_c=9, seed=5).problem(kind)
+    optimum = exhaustive_optimum(problem).lower
+    uppers = []
+    for max_nodes in (1, 2, 3, 4, 6, 9, 13):
+        result = solve_maxmin(problem, max_nodes=max_nodes, gap=0)
+        assert result.lower <= optimum * (1 + 1e-12)
+        assert result.upper >= optimum * (1 - 1e-12)
+        assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+        uppers.append(result.upper)
+    assert np.all(np.diff(uppers) <= 1e-12 * optimum)
+    certify(problem, result, tmp_path / "one.json")
+    assert verify_certificate(tmp_path / "one.json").upper >= optimum * (1 - 1e-12)

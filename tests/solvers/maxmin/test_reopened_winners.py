@@ -1,0 +1,57 @@
+"""Winners decided for all plans on the word of a plan that turned out worse: the search divides on them after all."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt import Problem, exhaustive_optimum, solve_maxmin
+from ratt_opt.solvers.maxmin.groups.winners import Winners
+from ratt_opt.solvers.maxmin.plans import outcome_pool
+from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
+from ratt_opt.solvers.maxmin.search import Turns
+from tests.solvers.maxmin.test_solve import proved_upper
+from tests.strategies import OBJECTIVES, information_data
+
+TOO_MUCH = 1.3
+"""Times what it is worth that a plan seems to be worth until the search ends for the first time."""
+
+
+def two_triangles(rng: np.random.Generator, kind: str) -> Problem:
+    """Six robots of three elements each; a link joins two triangles that are worth about the same."""
+    graph = nx.Graph([(0, 1), (1, 2), (0, 2), (2, 3), (3, 4), (4, 5), (3, 5)])
+    objective = OBJECTIVES[kind](*information_data(rng, 18, 3))
+    alpha_s, alpha_c = int(rng.integers(0, 3)), int(rng.integers(1, 4))
+    return Problem(objective, np.repeat(np.arange(6), 3), graph, alpha_s, alpha_c)
+
+
+@pytest.mark.parametrize("seed", [0, 9, 12, 14, 17, 29, 39, 56])
+def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    hopeful, reopened = True, 0
+    level, prove, reopen = Candidates.level.fget, Turns.prove, Winners.reopen
+
+    def hoped_for(plans: Candidates) -> float:
+        return level(plans) * (TOO_MUCH if hopeful else 1.0)
+
+    def disappointed(turns: Turns) -> bool:
+        nonlocal hopeful
+        was, hopeful = hopeful, False
+        return prove(turns) or was
+
+    def counted(winners: Winners, *about: object) -> None:
+        nonlocal reopened
+        reopened += 1
+        reopen(winners, *about)
+
+    monkeypatch.setattr(Candidates, "level", property(hoped_for))
+    monkeypatch.setattr(Turns, "prove", disappointed)
+    monkeypatch.setattr(Winners, "reopen", counted)
+    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
+    problem = two_triangles(np.random.default_rng([9, seed]), list(OBJECTIVES)[seed % 3])
+    result = solve_maxmin(problem)
+    expected = exhaustive_optimum(problem).lower
+    assert result.lower == pytest.approx(expected, rel=1e-8)
+    assert result.upper == pytest.approx(expected, rel=1e-8)
+    assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
+    assert reopened
