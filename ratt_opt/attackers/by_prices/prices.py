@@ -33,7 +33,7 @@ SLACK_OF_BLINDED = 4.0
 prices in proportion take more than 50,000, and the other way round at another."""
 
 
-DEARNESS = 0.8
+DEARNESS = 0.7
 """Of the way to the dearest that blinded robots can be, where prices have no slack left. Measured at a threshold for
 hubs of 30 robots: the search over seeing robots ends after 40,800, 30,800 and 29,900 nodes with 0.4, 0.7 and 0.9, and
 not in 100,000 with 0."""
