@@ -197,7 +197,8 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
-        stop = forced_group_bound(task, team)
+        may_help = _is_dense(task.problem) and not (is_brief and math.isinf(task.budget.seconds_left))
+        stop = forced_group_bound(task, team, possible_sizes_bound(task, team, 0) if may_help else 0)
         return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
     if is_brief and task.budget.max_nodes is None and math.isinf(task.budget.seconds_left):
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
