@@ -53,6 +53,9 @@ INNER_NODES = 500_000
 """Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
 teams, none of which need ever close."""
 
+DENSE = 0.5
+"""Share of all links from which groups of possible sizes are looked at where another search asks, too."""
+
 EXACT_SHARE = 0.9
 """Of the seconds of a survey; the heuristics need little."""
 
@@ -85,11 +88,11 @@ def worst_case_attack(
       partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
-      (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; not where
-      another search asks without a limit of time), and prices that no weak group pays (``by_prices``; a node is a
-      branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take hours to close
-      (of another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing objective, as
-      above; targets of any dimension. Compiling takes about a minute once per machine.
+      (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; where another
+      search asks, on dense graphs and within a limit of time), and prices that no weak group pays (``by_prices``; a
+      node is a branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take
+      hours to close (of another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing
+      objective, as above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
@@ -205,11 +208,15 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
-    if not is_brief or math.isfinite(task.budget.seconds_left):
+    if not is_brief or (_is_dense(task.problem) and math.isfinite(task.budget.seconds_left)):
         least = possible_sizes_bound(task, team, least)
     if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
         return Stop.CLOSED
     return prices.run()
+
+
+def _is_dense(problem: Problem) -> bool:
+    return 2 * len(problem.communication.links) >= DENSE * problem.n_robots * (problem.n_robots - 1)
 
 
 def _by_trees(task: AttackTask, *, is_brief: bool) -> int:

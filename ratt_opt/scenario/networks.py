@@ -6,6 +6,7 @@ may be shares of the robots and links. Sparse disks can fall apart into several 
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import networkx as nx
@@ -79,7 +80,7 @@ def network_links(family: str, positions: FloatArray, seed: int) -> tuple[Link, 
 def _count(name: str, budget: float, most: int) -> int:
     if isinstance(budget, (int, np.integer)):
         return check_integer(name, budget, low=0, high=most)
-    if not 0 <= budget <= 1:
+    if not (isinstance(budget, Real) and 0 <= budget <= 1):
         raise InputError(name, "must be a number of them or a share in [0, 1]", budget)
     return round(budget * most)
 

@@ -251,12 +251,17 @@ def test_every_choice_of_prices_claims_what_it_says_and_no_known_group_pays_it(s
     prices.add(groups)
     found = prices.solve(1.0)
     links = 0.6 * found.links
-    for chosen in (found.scaled(links), prices.slackest(1.0, links), found.for_robots(links, threat.n_blinded)):
+    scaled, for_robots = found.scaled(links), found.for_robots(links, threat.n_blinded)
+    dearest = prices.dearest(1.0, links)
+    for chosen in (scaled, prices.slackest(1.0, links), for_robots, dearest):
         assert chosen is not None
         assert chosen.links == pytest.approx(links)
         assert chosen.links == pytest.approx(chosen.robot.sum() - chosen.blinded * threat.n_blinded)
         paid = [chosen.robot[group.robots].sum() - chosen.blinded * group.need for group in groups]
         assert all(p <= prices.half_cut(group.robots) + 1e-6 for p, group in zip(paid, groups, strict=True))
+    assert dearest.blinded >= found.blinded
+    assert prices.solve(1.0).links == pytest.approx(found.links)
+    assert prices.dearest(1.0, found.links + 1.0) is None
 
 
 def least_cost(problem, plan, threshold, prices):

@@ -65,6 +65,7 @@ def test_numbers_of_robots_and_links_are_taken_as_they_are():
     [
         ({"family": "ring"}, "graph must be one of dense, disk-12"),
         ({"alpha_s": 1.5}, "alpha_s must be a number of them or a share"),
+        ({"alpha_s": "1"}, "alpha_s must be a number of them or a share"),
         ({"alpha_c": 10_000}, "alpha_c must be an integer in"),
         ({"seed": -1}, "seed must be"),
     ],

@@ -151,26 +151,26 @@ class ThresholdDecision:
     def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
         """Ask whether no group pays prices that claim a little more than the budget; ``None`` where more is to be done.
 
-        The prices furthest below what known groups cost prune best, once the groups that pay them are known: they soon
-        are. Where they do not end, others may: all in turn, and ever longer.
+        The prices furthest below what known groups cost prune best, or those with dear blinded robots, once the groups
+        that pay them are known: they soon are. Where they do not end, others may: all in turn, and ever longer.
         """
         links, asked = self.threat.alpha_c + MARGIN, (threshold, size, -TOLERANCE)
-        while (slackest := self.prices.slackest(threshold, links, budget.seconds_left)) is not None:
-            budget.check()
-            answer = self._answered(slackest, asked, budget)
-            if answer is None:
-                break
-            if answer is not Threshold.REACHED:
-                return Answer(verdict=answer, prices=slackest)
+        for choose in (self.prices.slackest, self.prices.dearest):
+            while (chosen := choose(threshold, links, budget.seconds_left)) is not None:
+                budget.check()
+                answer = self._answered(chosen, asked, budget)
+                if answer is None:
+                    break
+                if answer is not Threshold.REACHED:
+                    return Answer(verdict=answer, prices=chosen)
         found = self._settled(threshold, budget)
         if found.links <= links:
             return None
-        for prices in (found.scaled(links), found.for_robots(links, self.threat.n_blinded)):
-            answer = self._answered(prices, asked, budget)
-            if answer is not None:
-                return None if answer is Threshold.REACHED else Answer(verdict=answer, prices=prices)
-        self._attempt *= LONGER
-        return None
+        prices = found.scaled(links)
+        answer = self._answered(prices, asked, budget)
+        if answer is None:
+            self._attempt *= LONGER
+        return None if answer in {None, Threshold.REACHED} else Answer(verdict=answer, prices=prices)
 
     def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Threshold | None:
         """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
