@@ -34,7 +34,7 @@ SHARES = ((0.2, 0.15), (1 / 3, 0.3), None)
 GAP = 1e-6
 """That a max-min search is asked for."""
 WARM = 24
-"""Robots of the first problem of each objective, not counted: what is compiled is loaded then."""
+"""Robots of the first problems of each objective, not counted: what is compiled is loaded then."""
 
 
 def instances(robots: list[int], families: list[str], seeds: range, objective: str) -> Iterator[tuple[Any, ...]]:
@@ -89,9 +89,10 @@ def measured(what: str, problem: Problem, seed: int, options: argparse.Namespace
 
 def warm_up(objective: str) -> None:
     """Load or compile what is compiled."""
-    problem = ro.network_scenario("disk-6", WARM, 5, alpha_s=4, alpha_c=8, seed=0).problem(objective)
-    ro.worst_case_attack(problem, ro.ratt(problem).elements, time_limit=2)
-    ro.solve_maxmin(problem, time_limit=2)
+    for family in ("disk-6", "dense"):
+        problem = ro.network_scenario(family, WARM, 5, alpha_s=4, alpha_c=8, seed=0).problem(objective)
+        ro.worst_case_attack(problem, ro.ratt(problem).elements, time_limit=2)
+        ro.solve_maxmin(problem, time_limit=2)
 
 
 def _options() -> argparse.Namespace:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
+from importlib import import_module
 from itertools import islice
 from math import isinf
 from typing import TYPE_CHECKING, Any
@@ -96,8 +98,7 @@ def _groups(problem: Problem, attacks: Sequence[Attack]) -> tuple[list[tuple[int
 def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) -> tuple[float, FloatArray, str]:
     if budget.is_over:
         return float("nan"), uniform_selection(problem), "not asked: no time"
-    import cvxpy as cp
-
+    cp = imported_whole("cvxpy")
     objective = problem.information_objective
     z = cp.Variable(objective.n, nonneg=True)
     t = cp.Variable()
@@ -118,6 +119,19 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) 
             selection[choice] /= selection[choice].sum()
     claimed = float("nan") if program.value is None else float(program.value)
     return claimed, selection, str(program.status)
+
+
+def imported_whole(package: str) -> Any:
+    """A package, imported anew next time where an interrupt ends its import.
+
+    What was imported of it by then would stay, and hold on to a package that is none.
+    """
+    try:
+        return import_module(package)
+    except BaseException:
+        for name in [name for name in sys.modules if name == package or name.startswith(f"{package}.")]:
+            del sys.modules[name]
+        raise
 
 
 def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:

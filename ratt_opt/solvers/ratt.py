@@ -72,9 +72,14 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
 
 @Step("planning")
-def bait_and_greedy(problem: Problem, alpha: int, budget: Budget | None = None) -> Plan:
-    """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts."""
-    single = check_problem(problem).objective.singletons()
+def bait_and_greedy(
+    problem: Problem, alpha: int, budget: Budget | None = None, single: FloatArray | None = None
+) -> Plan:
+    """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts.
+
+    ``single`` : (E,) individual values, where known; else asked for. They count as evaluations either way
+    """
+    single = check_problem(problem).objective.singletons() if single is None else single
     best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
     # A stable sort of the negated values keeps the lowest robot first among equals.
     order = np.argsort(-single[best], kind="stable")

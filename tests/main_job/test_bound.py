@@ -121,3 +121,23 @@ def test_a_proof_that_is_not_decided_is_a_reason(tmp_path, monkeypatch):
     monkeypatch.setattr(write, "_write_verified", undecided)
     report = ro.bound(SMALL, certificate=tmp_path / "c.json")
     assert report.certificate.why_not == "could not be made: not decided within 600 s"
+
+
+class Counted(ro.Modular):
+    """A set function that counts what it is asked."""
+
+    def __init__(self, weights):
+        super().__init__(weights)
+        self.asked = 0
+
+    def evaluate(self, membership):
+        self.asked += len(membership)
+        return super().evaluate(membership)
+
+
+@pytest.mark.parametrize("robots", [25, 50])
+def test_without_time_individual_values_are_asked_for_once(robots):
+    """Of a slow function they are the time that a limit of 0 takes; besides, a few for every plan that is shown."""
+    f = Counted(np.random.default_rng(robots).random(3 * robots))
+    ro.bound(ro.Problem(f, np.repeat(np.arange(robots), 3), None, 3, 40), time_limit=0)
+    assert f.asked <= f.n + 40
