@@ -34,7 +34,8 @@ from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.result import MaxMinResult as MaxMinResult
 
 # == Attackers
-from .attackers.exact import worst_case_attack as worst_case_attack, attack_survey as attack_survey
+from .attackers.exact import worst_case_attack as worst_case_attack
+from .attackers.survey import attack_survey as attack_survey
 from .attackers.heuristics.bounded_rational import bounded_rational_attack as bounded_rational_attack
 from .attackers.heuristics.greedy import greedy_attack as greedy_attack
 from .attackers.heuristics.random_attack import random_attack as random_attack

@@ -1,4 +1,4 @@
-"""The exact worst-case attack on a plan, with a bracket at any time; and all attackers side by side."""
+"""The exact worst-case attack on a plan, with a bracket at any time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, MeetsAim, PlanValues
 from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
-__all__ = ["attack_survey", "worst_case_attack"]
+__all__ = ["worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
@@ -55,9 +54,6 @@ teams, none of which need ever close."""
 
 DENSE = 0.5
 """Share of all links from which groups of possible sizes are looked at where another search asks, too."""
-
-EXACT_SHARE = 0.9
-"""Of the seconds of a survey; the heuristics need little."""
 
 FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
@@ -83,9 +79,9 @@ def worst_case_attack(
     - Larger teams with two-dimensional targets on a complete graph without protected links: families
       of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set). Relies on a non-decreasing
       objective, which the three criteria are.
-    - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots:
-      partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a
-      partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
+    - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots, to 20 where half of
+      all links are there: partitions into groups and who is blinded in each (``by_partition``; a node is a group tried
+      or a partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
       protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
       (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; where another
@@ -193,14 +189,19 @@ def _any_function(task: AttackTask) -> Stop:
 
 
 def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
-    """The forced size, then partitions where they are few; elsewhere annealed attacks before, prices after it."""
+    """Groups of possible sizes on dense graphs; partitions where they are few; else annealing, bounds, prices."""
+    is_short = is_brief and math.isinf(task.budget.seconds_left)
+    is_dense = _is_dense(task.problem) and not is_short
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
-        may_help = _is_dense(task.problem) and not (is_brief and math.isinf(task.budget.seconds_left))
-        stop = forced_group_bound(task, team, possible_sizes_bound(task, team, 0) if may_help else 0)
-        return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
-    if is_brief and task.budget.max_nodes is None and math.isinf(task.budget.seconds_left):
+        if not is_dense or task.problem.n_robots <= LARGEST_COMPILED:
+            stop = forced_group_bound(task, team)
+            return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
+        least = possible_sizes_bound(task, team, 0)
+        if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+            return Stop.CLOSED
+    if is_short and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
     prices = _price_search(task) if task.budget.stop() is None else None
     if prices is not None:
@@ -209,7 +210,7 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
-    if not is_brief or (_is_dense(task.problem) and math.isfinite(task.budget.seconds_left)):
+    if is_dense or not is_brief:
         least = possible_sizes_bound(task, team, least)
     if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
         return Stop.CLOSED
@@ -267,33 +268,3 @@ def _few_groups(problem: Problem, team: PlanarTeam | None) -> SeparableGroups | 
 
     few = FEW_GROUPS if problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
     return separable_groups(problem.threat, few)
-
-
-def attack_survey(
-    problem: Problem,
-    elements: ArrayLike,
-    *,
-    time_limit: float | None = None,
-    seed: int = 0,
-    budget: Budget | None = None,
-) -> dict[str, AttackResult]:
-    """Attack one plan exactly and with every heuristic: name -> result.
-
-    Parameters
-    ----------
-    time_limit : seconds for all of them, nine tenths for the exact attack; unlimited by default
-    seed : of the random attack
-    budget : an outer search's budget: its seconds and interrupts count too
-
-    Raises
-    ------
-    InputError : the plan is not one element per robot.
-    """
-    own = Budget.inside(budget, time_limit)
-    seconds = None if time_limit is None else EXACT_SHARE * time_limit
-    return {
-        "exact": worst_case_attack(problem, elements, time_limit=seconds, budget=budget),
-        "bounded rational": bounded_rational_attack(problem, elements),
-        "greedy": greedy_attack(problem, elements, budget=own),
-        "random": random_attack(problem, elements, seed=seed),
-    }

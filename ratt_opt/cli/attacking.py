@@ -40,8 +40,8 @@ def attack(
 ) -> None:
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
     from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
-    from ratt_opt.attackers.exact import attack_survey
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
+    from ratt_opt.attackers.survey import attack_survey
     from ratt_opt.main_job.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input

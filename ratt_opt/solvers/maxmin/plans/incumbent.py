@@ -158,6 +158,8 @@ LOCAL_SEARCH_ROUNDS = 50
 FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time left, spent at once on attacks that bound the first plan, and the best one, from below.
 Nearly all attacks on teams of up to 30 robots close in less."""
+FIRST_SECONDS, SHORT_SHARE = 1.0, 0.5
+"""So many seconds at least, if that is no more than this share of those left: a tenth of a second proves little."""
 IMPROVED_SHARE = 0.1
 """Of the time left for the local search from one plan: at 100 robots each attack on the way takes up to two seconds."""
 RIVAL_SHARE = 0.5
@@ -187,7 +189,7 @@ class Incumbent:
         Whatever ends the rest, what the brief attack on the first plan proved is kept, and what is known of the others
         at once: where time is short that can be more.
         """
-        self.proved.attack(plans[0], self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF))
+        self.proved.attack(plans[0], self._first_part())
         for plan in plans[1:]:
             self.proved.glance(plan, self.budget)
         if self.budget.is_over:
@@ -198,7 +200,11 @@ class Incumbent:
         for plan in plans:
             self.offer(plan)
         if not self.is_proved and not np.array_equal(self.candidates.best, plans[0]):
-            self.proved.attack(self.candidates.best, self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF))
+            self.proved.attack(self.candidates.best, self._first_part())
+
+    def _first_part(self) -> Budget:
+        seconds = min(FIRST_SECONDS, SHORT_SHARE * self.budget.seconds_left)
+        return self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF, at_least=seconds)
 
     def offer(self, plan: IntArray) -> bool:
         """Attack a plan that is better on the known outcomes; return whether it became the best."""
