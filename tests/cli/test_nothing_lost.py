@@ -94,7 +94,7 @@ def test_an_interrupt_before_there_is_a_plan_leaves_the_earlier_files(
     command = ["bound", str(scenario_file), "--out", str(tmp_path / "o")]
     assert run(command) == 0
     before = {file.name: file.read_bytes() for file in (tmp_path / "o").iterdir()}
-    monkeypatch.setattr(main_job, "ratt", _raise(KeyboardInterrupt()))
+    monkeypatch.setattr(main_job, "bait_and_greedy", _raise(KeyboardInterrupt()))
     assert run(command) == 130
     assert {file.name: file.read_bytes() for file in (tmp_path / "o").iterdir()} == before
 
