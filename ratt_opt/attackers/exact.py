@@ -198,8 +198,7 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
         if not is_dense or task.problem.n_robots <= LARGEST_COMPILED:
             stop = forced_group_bound(task, team)
             return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
-        least = possible_sizes_bound(task, team, 0)
-        if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+        if _closed_by_sizes(task, team, 0):
             return Stop.CLOSED
     if is_short and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
@@ -210,11 +209,16 @@ def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroup
     least = _by_trees(task, is_brief=is_brief)
     if prices is None:
         return forced_group_bound(task, team, least)
-    if is_dense or not is_brief:
-        least = possible_sizes_bound(task, team, least)
-    if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+    if _closed_by_sizes(task, team, least, looks=is_dense or not is_brief):
         return Stop.CLOSED
     return prices.run()
+
+
+def _closed_by_sizes(task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True) -> bool:
+    """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it."""
+    if looks:
+        least = possible_sizes_bound(task, team, least)
+    return task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED
 
 
 def _is_dense(problem: Problem) -> bool:

@@ -119,10 +119,7 @@ class GroupPrices:
         """
         if self._program is None or threshold != self._threshold:
             self._start(threshold)
-        if self._slack_program is None:
-            self._slack_program = self._start_slack()
-        self._slack_program.bound_row(0, -np.inf, -links)
-        n_robots, x = len(self._adjacent), self._slack_program.solve(seconds).x
+        n_robots, x = len(self._adjacent), self._claiming(links).solve(seconds).x
         if len(x) != n_robots + 2:
             return None
         blinded = max(float(x[n_robots]), 0.0)
@@ -150,14 +147,18 @@ class GroupPrices:
 
     def _dearest_blinded(self, links: float, seconds: float) -> float | None:
         """The highest price of a blinded robot at which so many links can be claimed."""
-        n_robots = len(self._adjacent)
+        n_robots, program = len(self._adjacent), self._claiming(links)
+        program.change_cost(np.eye(n_robots + 2)[n_robots])
+        x = program.solve(seconds).x
+        program.change_cost(np.eye(n_robots + 2)[n_robots + 1])
+        return float(x[n_robots]) if len(x) == n_robots + 2 else None
+
+    def _claiming(self, links: float) -> LinearProgram:
+        """The program of :meth:`slackest`, for so many links."""
         if self._slack_program is None:
             self._slack_program = self._start_slack()
         self._slack_program.bound_row(0, -np.inf, -links)
-        self._slack_program.change_cost(np.eye(n_robots + 2)[n_robots])
-        x = self._slack_program.solve(seconds).x
-        self._slack_program.change_cost(np.eye(n_robots + 2)[n_robots + 1])
-        return float(x[n_robots]) if len(x) == n_robots + 2 else None
+        return self._slack_program
 
     def _start_slack(self) -> LinearProgram:
         """The program of :meth:`slackest`: prices, and the slack's share; the first row is the links they claim."""

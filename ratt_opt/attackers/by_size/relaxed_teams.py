@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.graph.survivor_sizes import Sizes
+    from ratt_opt.problem import Problem
 
 __all__ = ["possible_sizes_bound", "unprotected_bound"]
 
@@ -43,9 +44,8 @@ def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
     start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
     start.offer(bracket.attack, bracket.upper)
     try:
-        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team).run()
+        _search(task, team, relaxed, start)
     finally:
-        bracket.raise_lower(min(start.lower, start.upper))
         if not start.attack.links & problem.protected_links:
             task.offer(start.attack)
 
@@ -86,7 +86,14 @@ def _sizes_bound(task: AttackTask, team: PlanarTeam, vectors: list[Sizes]) -> No
     every_link = comb(problem.n_robots, 2)
     relaxed = replace(problem, graph=None, alpha_c=every_link, protected_links=frozenset())
     start = AttackBracket(bracket.attack, bracket.upper, bracket.lower, bracket.rounding)
+    _search(task, team, relaxed, start, vectors)
+
+
+def _search(
+    task: AttackTask, team: PlanarTeam, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
+) -> None:
+    """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
     try:
         SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team, vectors).run()
     finally:
-        bracket.raise_lower(min(start.lower, start.upper))
+        task.bracket.raise_lower(min(start.lower, start.upper))

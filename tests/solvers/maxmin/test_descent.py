@@ -45,28 +45,18 @@ def drawn(seed: int) -> Problem:
     return threatened(team, alpha_s, alpha_c)
 
 
-def check(problem: Problem) -> None:
-    """The search, its proof and exhaustive search agree."""
+@pytest.mark.parametrize(("seed", "sees_late"), [*((k, False) for k in range(60)), *((k, True) for k in range(30))])
+def test_agrees_with_exhaustive_search(seed: int, sees_late: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where attacks see nothing until a plan is attacked exactly: the level falls below floors put above it."""
+    if sees_late:
+        monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
+        monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
+    problem = drawn(seed)
     found, best = solve_maxmin(problem, gap=0), exhaustive_optimum(problem)
     slack = 1e-9 * best.upper + 16 * problem.objective.rounding
     assert found.lower == pytest.approx(best.lower, abs=slack)
     assert best.lower - slack <= found.upper <= best.upper + slack
     assert proved_upper(problem, found.proof) <= found.upper + slack
-
-
-@pytest.mark.parametrize("seed", range(60))
-def test_agrees_with_exhaustive_search(seed: int) -> None:
-    check(drawn(seed))
-
-
-@pytest.mark.parametrize("seed", range(30))
-def test_plans_that_turn_out_worse_than_a_floor_are_searched_below_it(
-    seed: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Attacks see nothing until a plan is attacked exactly: the level falls below floors that were placed above it."""
-    monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
-    monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
-    check(drawn(seed))
 
 
 def test_an_optimum_of_nothing_ends() -> None:
