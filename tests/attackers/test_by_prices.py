@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups import cover
 from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, WEAK, weak_subset
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
@@ -17,7 +18,7 @@ from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup
+from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -302,3 +303,31 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
             assert group.need <= threat.n_blinded
             assert reduced_cost(problem, group.robots.astype(int), (prices[0], 0.0)) + prices[1] * group.need <= limit
     assert not find_paying_groups(team, links, at, question, Budget(), nodes=0, room=3).is_complete
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_prices_fall_for_groups_that_pay_until_none_does(seed):
+    """What is closed at higher prices stays closed: one search proves what the prices left at its end claim."""
+    rng = np.random.default_rng(seed)
+    problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    threshold, blinded = problem.objective(plan) * rng.uniform(0.4, 0.9), rng.uniform(0.0, 2)
+    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    robot = rng.uniform(0, 2, 6)
+    robot += max(least_cost(problem, plan, threshold, (robot, blinded)), 0) + 0.5  # some groups pay
+    first = PriceVector(robot=robot.copy(), blinded=blinded, links=float(robot.sum() - blinded * threat.n_blinded))
+    at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1))
+    question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
+    for least in (-1e9, first.links - 0.5):
+        falling = FallingPrices(program=GroupPrices(threat), threshold=threshold, prices=first, links=least)
+        found = find_paying_groups(team, links, at, question, Budget(), falling, nodes=10**6, room=10**6)
+        left = falling.prices
+        assert falling.learned > 0
+        assert np.all(left.robot <= robot + 1e-9)
+        assert left.blinded == blinded
+        assert left.links == pytest.approx(left.robot.sum() - blinded * threat.n_blinded)
+        assert left.links >= least
+        assert found.is_complete
+        assert not (found.groups and least < -1e8)
+        assert (least_cost(problem, plan, threshold, (left.robot, blinded)) >= -1e-5) == (not found.groups)
+    np.testing.assert_array_equal(at.robot, first.robot)

@@ -126,24 +126,44 @@ class GroupPrices:
         claimed = float(x[:n_robots].sum()) - blinded * self._threat.n_blinded
         return PriceVector(robot=x[:n_robots], blinded=blinded, links=claimed) if claimed >= links - 1e-6 else None
 
-    def dearest(self, threshold: float, links: float, seconds: float = np.inf) -> PriceVector | None:
+    def lowered(self, threshold: float, prices: PriceVector, seconds: float = np.inf) -> PriceVector | None:
+        """Best prices that known groups do not pay, for robots at most these; ``None`` if none are found."""
+        return self._with_blinded_at(threshold, prices.blinded, prices.robot, seconds)
+
+    def dearest(
+        self, threshold: float, links: float, seconds: float = np.inf, reserve: float = 0.0
+    ) -> PriceVector | None:
         """Prices that claim so many links with blinded robots about as dear as can be; ``None`` if none are found.
 
-        Dear ones keep the groups of the search over seeing robots small.
+        Dear ones keep the groups of the search over seeing robots small. ``reserve`` : share of the links that could be
+        claimed beyond these to claim, too.
         """
-        found, n_robots = self.solve(threshold, seconds), len(self._adjacent)
-        most = self._dearest_blinded(links, seconds)
-        if found.links < links or most is None or self._program is None:
+        found, most = self.solve(threshold, seconds), self._dearest_blinded(links, seconds)
+        if found.links < links or most is None:
             return None
         blinded = max(found.blinded + DEARNESS * (most - found.blinded), 0.0)
-        self._program.bound_column(n_robots, blinded, blinded)
+        dear = self._with_blinded_at(threshold, blinded, np.full(len(self._adjacent), self._most()), seconds)
+        if dear is None or dear.links < links:
+            return None
+        return dear.for_robots(links + reserve * (dear.links - links), self._threat.n_blinded)
+
+    def _with_blinded_at(
+        self, threshold: float, blinded: float, robot: FloatArray, seconds: float
+    ) -> PriceVector | None:
+        """Best prices with this one of a blinded robot and at most ``robot`` (N,) of the others."""
+        if self._program is None or threshold != self._threshold:
+            self._start(threshold)
+        assert self._program is not None
+        n_robots, most = len(self._adjacent), self._most()
+        for i, price in enumerate([*robot.tolist(), blinded]):
+            self._program.bound_column(i, blinded if i == n_robots else -most, price)
         x = self._program.solve(seconds).x
-        self._program.bound_column(n_robots, 0.0, self._most())
+        for i in range(n_robots + 1):
+            self._program.bound_column(i, 0.0 if i == n_robots else -most, most)
         if len(x) != n_robots + 1:
             return None
         claimed = float(x[:n_robots].sum()) - blinded * self._threat.n_blinded
-        dear = PriceVector(robot=x[:n_robots], blinded=blinded, links=claimed)
-        return dear.for_robots(links, self._threat.n_blinded) if claimed >= links else None
+        return PriceVector(robot=x[:n_robots], blinded=blinded, links=claimed)
 
     def _dearest_blinded(self, links: float, seconds: float) -> float | None:
         """The highest price of a blinded robot at which so many links can be claimed."""

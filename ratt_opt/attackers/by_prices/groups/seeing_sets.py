@@ -20,9 +20,9 @@ from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, va
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, always, augment, copy_flows, open_flow
 from ratt_opt.compiling import numba
 
-__all__ = ["Flows", "SeeingStack", "search_seeing_sets"]
+__all__ = ["Flows", "SeeingStack", "leave_node", "lower_prices", "search_seeing_sets"]
 
-FINISHED, PAUSED, FULL = 0, 1, 2
+FINISHED, PAUSED, FOUND = 0, 1, 2
 
 OPEN, SEEING, ELSE, BLINDED, OUTSIDE = 0, 1, 2, 3, 4
 """What a robot of a node is: ELSE is blinded or outside the group."""
@@ -42,7 +42,7 @@ class Flows(NamedTuple):
 
 
 class SeeingStack(NamedTuple):
-    """Open nodes of the search; ``position`` : open nodes, nodes so far, groups found.
+    """Open nodes of the search; ``position`` : the last open node, nodes so far.
 
     For each open node: ``part`` (N,) what robots are; K flows; ``sums`` (M, T) of the seeing robots; ``worth`` (N,)
     value with one robot more; ``room`` further robots that may see; ``bound`` (K,) of the flows; ``grown`` whether the
@@ -65,7 +65,7 @@ class SeeingStack(NamedTuple):
         """A search that has not begun."""
         depth = n_robots + 2
         return cls(
-            position=np.array([-1, 0, 0], dtype=np.int64),
+            position=np.array([-1, 0], dtype=np.int64),
             part=np.zeros((depth, n_robots), dtype=np.int8),
             into=np.zeros((depth, n_flows, n_robots)),
             out=np.zeros((depth, n_flows, n_robots)),
@@ -216,14 +216,31 @@ def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
 
 
 @numba.njit(cache=True)
+def lower_prices(stack: Any, robot: Any, lower: Any) -> None:
+    """Make the prices ``robot`` (N,) no larger than ``lower`` (N,), in all open nodes: what is closed stays closed."""
+    for i in range(len(robot)):
+        fall = max(robot[i] - lower[i], 0.0)
+        robot[i] -= fall
+        for node in range(stack.position[0] + 1):
+            for kind in range(stack.out.shape[1]):
+                stack.out[node, kind, i] += fall
+
+
+@numba.njit(cache=True)
+def leave_node(stack: Any) -> None:
+    """Close the last node, of which a group was found."""
+    stack.position[0] -= 1
+
+
+@numba.njit(cache=True)
 def search_seeing_sets(  # noqa: PLR0917
     team: Any, links: Any, prices: Any, flows: Any, question: Any, stack: Any, nodes: int, found: Any
 ) -> int:
-    """Continue for at most so many nodes: FINISHED, PAUSED, or FULL when ``found`` has no room left.
+    """Continue for at most so many nodes: FINISHED, PAUSED, or FOUND at a node that has a group that pays.
 
     ``prices.capacity`` : the most robots of a set worth less than the threshold; ``question.limit`` < 0, which no group
-    at all would cost; ``found`` : robots (C, N) and blinded ones (C, N) of groups that pay. FINISHED without any proves
-    that none does.
+    at all would cost; ``found`` : robots (N,) and blinded ones (N,) of the group. The node stays open: it is left
+    (:func:`leave_node`), or looked at again with lower prices. FINISHED proves that no group pays but in nodes left.
     """
     n_robots, position = len(prices.robot), stack.position
     work = (np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64))
@@ -234,8 +251,6 @@ def search_seeing_sets(  # noqa: PLR0917
         node = position[0]
         if node < 0:
             return FINISHED
-        if position[2] >= len(found[0]):
-            return FULL
         position[1] += 1
         _fill(team, links, flows, question.threshold, stack, node)
         if _bounds(links, prices, flows, question, stack, sides, work) > question.limit:
@@ -248,8 +263,9 @@ def search_seeing_sets(  # noqa: PLR0917
         blinded = 0
         for i in range(n_robots):
             inside = sides[len(sides) - 1, i]
-            found[0][position[2], i], found[1][position[2], i] = inside, inside and stack.part[node, i] != SEEING
-            blinded += int(found[1][position[2], i])
-        position[2] += int(blinded <= question.budget)
+            found[0][i], found[1][i] = inside, inside and stack.part[node, i] != SEEING
+            blinded += int(found[1][i])
+        if blinded <= question.budget:
+            return FOUND
         position[0] -= 1
     return PAUSED if position[0] >= 0 else FINISHED
