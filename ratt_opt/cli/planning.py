@@ -42,7 +42,7 @@ def bound(
     out: OutFolder,
     objective: ObjectiveOption = "trace",
     time_limit: Annotated[
-        float, typer.Option("--time-limit", help="Seconds for all searches; the certificate comes on top.")
+        float, typer.Option("--time-limit", help="Seconds for all searches, and as many again for the certificate.")
     ] = TIME_LIMIT,
     gap: Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")] = GAP,
     workers: Annotated[int, typer.Option("--workers", help="Processes that search for the best plan.")] = 1,
@@ -83,7 +83,7 @@ def _bound(
         files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)
     if wanted:
         with Step("certificate"):
-            report = _certified(report, folder)
+            report = _certified(report, folder, time_limit)
         files += [proof.path] if (proof := report.certificate.certificate) else []
     if report.certificate.certificate is None and report.certificate.final and (folder / PROOF).exists():
         (folder / PROOF).replace(folder / EARLIER_PROOF)  # it is not about this report
@@ -96,19 +96,21 @@ def _bound(
         raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then")
 
 
-def _certified(report: "BoundReport", folder: Path) -> "BoundReport":
+def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "BoundReport":
     """The report with its certificate, or why there is none, written over the one in the folder.
 
     Raises ProofError for a fault in our own proof, and KeyboardInterrupt; the report in the folder then says so.
     """
+    from ratt_opt.budget import Budget
     from ratt_opt.certificates.certification import INTERRUPTED, Certification
     from ratt_opt.certificates.write import certify_if_possible
     from ratt_opt.report.write import write_verdict
 
     began = monotonic()
+    budget = Budget(time_limit)
     failure: BaseException | None = None
     try:
-        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, source=report.source)
+        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, budget, source=report.source)
     except ProofError as error:
         proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
     except KeyboardInterrupt as error:
