@@ -79,7 +79,7 @@ def _bound(
     folder = output_directory(out, PROOF, EARLIER_PROOF, *FILES)
     report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, workers=workers)
     wanted = certificate and not report.interrupted
-    with Step("report and figure"):
+    with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report and figure"):
         files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)
     if wanted:
         with Step("certificate"):
