@@ -107,7 +107,7 @@ def test_an_interrupt_before_there_is_a_plan_leaves_the_earlier_files(
 def test_a_proof_without_end_keeps_the_limit(
     scenario_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The certificate has as many seconds as all searches; then it says which end is proved."""
+    """The limit covers the certificate, which then says which end is proved."""
     began = monotonic()
 
     def endless(*_: Any, **__: Any) -> Any:
