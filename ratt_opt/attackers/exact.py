@@ -14,7 +14,7 @@ from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.task import AttackBracket, AttackResult, AttackTask, MeetsAim, PlanValues
+from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, AttackTask, MeetsAim, PlanValues
 from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt.attackers.by_prices.price_search import PriceSearch
+    from ratt_opt.attackers.task import Resumable
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
@@ -43,7 +44,7 @@ TREE_SHARE, BOUND_SHARE, BOUND_NODES = 0.2, 0.3, 500_000
 forced size; prices get the rest. Not measured."""
 
 FIRST_STARTS, INNER_STARTS, STARTS_FOR = 12, 3, 24
-"""Annealed attacks before the first threshold, and where only nodes are limited or another search asks: about every
+"""Annealed attacks before the first threshold, and where only nodes limit or another search sets no time: about every
 fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
 The first grow with the square of the robots beyond these 24: at 50 (a disk of mean degree 12, 17 blinded, 90 links cut)
 the fourteenth start is the first of 112 to find the best attack, 1.3 % worse for the team than what the others find."""
@@ -53,10 +54,15 @@ INNER_NODES = 500_000
 teams, none of which need ever close."""
 
 DENSE = 0.5
-"""Share of all links from which groups of possible sizes are looked at where another search asks, too."""
+"""Share of all links from which groups of possible sizes are looked at before partitions, if time allows."""
 
-FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
-"""Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
+FEW_GROUPS, MANY_GROUPS, LISTING_SHARE = 10_000, 300_000, 0.1
+"""Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else; and
+of the seconds left, for listing them. It takes a second on sparse graphs of 50 robots, four on dense ones."""
+
+RENEWED = 4
+"""Times as many seconds as an earlier attack on the plan had, from which its first stages, which had shares of them,
+are run again before its last one goes on."""
 
 
 @Step("the worst attack")
@@ -70,6 +76,7 @@ def worst_case_attack(
     budget: Budget | None = None,
     aim: float = -math.inf,
     known: Attack | None = None,
+    memory: AttackMemory | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -107,11 +114,13 @@ def worst_case_attack(
     budget : an outer search's budget: its seconds and interrupts count too
     aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
     known : an attack to begin with; the one found is no better for the team
+    memory : of earlier attacks on this plan that a budget ended: both ends are taken from there, and prices, or
+        partitions, are gone on with; what this one finds out is left there
 
     Raises
     ------
     InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, ``aim``
-        is no number, or ``known`` is not within the budgets.
+        is no number, ``known`` is not within the budgets, or ``memory`` is of another plan.
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
@@ -119,26 +128,31 @@ def worst_case_attack(
     if isinstance(aim, bool) or not isinstance(aim, Real) or math.isnan(aim):
         raise InputError("aim", "must be a number", aim)
     values = PlanValues(problem, elements)
-    bracket = None
+    memory = AttackMemory() if memory is None else memory
+    memory.check(problem, values.plan)
     try:
         asked = problem
         if not isinstance(problem.objective, InformationObjective):
             asked = metered_problem(problem, own)
             values.objective = asked.objective
-        first = bounded_rational_attack(asked, values.plan)
-        bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding, aim)
+        if memory.bracket is None:
+            first = bounded_rational_attack(asked, values.plan)
+            memory.bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
+            values.evaluations = first.evaluations
+        memory.bracket.aim = aim
         if known is not None:
-            bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
-        bracket.check_aim()
-        values.evaluations = first.evaluations
-        stop = _search(AttackTask(asked, values, bracket, own), is_brief=budget is not None or max_nodes is not None)
+            memory.bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
+        memory.bracket.check_aim()
+        is_inner = budget is not None or max_nodes is not None
+        task = AttackTask(asked, values, memory.bracket, own, memory)
+        stop = _search(task, is_brief=is_inner and math.isinf(own.seconds_left))
     except OutOfBudget as out:
         stop = out.stop
     except MeetsAim:
         stop = Stop.GAP
     except KeyboardInterrupt:
         stop = own.interrupt()
-    if bracket is None:  # what no attack at all gives
+    if (bracket := memory.bracket) is None:  # what no attack at all gives
         values.objective = unmetered(problem.objective)
         bracket = AttackBracket(Attack(), _unattacked(problem, values), values(()))
     attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
@@ -153,6 +167,9 @@ def _unattacked(problem: Problem, values: PlanValues) -> float:
 
 def _search(task: AttackTask, *, is_brief: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
+    if task.memory.search is not None and task.budget.seconds_left <= RENEWED * task.memory.seconds:
+        return _last_stage(task, task.memory.search)
+    task.memory.seconds = task.budget.seconds_left
     if not isinstance(problem.objective, InformationObjective):
         return _any_function(task)
     if problem.n_robots <= LARGEST_PLAIN:
@@ -166,7 +183,7 @@ def _search(task: AttackTask, *, is_brief: bool) -> Stop:
     better = greedy_attack(problem, plan, budget=task.budget)
     task.bracket.offer(better.attack, better.upper)
     task.budget.check()
-    groups = _few_groups(problem, team)
+    groups = _few_groups(task, team)
     if problem.n_robots <= LARGEST_COMPILED and groups is None:
         return threshold_search(task)
     if team is not None and problem.communication.is_complete:
@@ -190,28 +207,32 @@ def _any_function(task: AttackTask) -> Stop:
 
 def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
     """Groups of possible sizes on dense graphs; partitions where they are few; else annealing, bounds, prices."""
-    is_short = is_brief and math.isinf(task.budget.seconds_left)
-    is_dense = _is_dense(task.problem) and not is_short
+    is_dense = _is_dense(task.problem) and not is_brief
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
         if not is_dense or task.problem.n_robots <= LARGEST_COMPILED:
             stop = forced_group_bound(task, team)
-            return stop if stop is Stop.CLOSED else SplitSearch(task, team, groups).run()
+            return stop if stop is Stop.CLOSED else _last_stage(task, SplitSearch(task, team, groups))
         if _closed_by_sizes(task, team, 0):
             return Stop.CLOSED
-    if is_short and task.budget.max_nodes is None:
+    if is_brief and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
-    prices = _price_search(task) if task.budget.stop() is None else None
-    if prices is not None:
-        starts = int(FIRST_STARTS * max(task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
-        prices.anneal(INNER_STARTS if is_brief else starts)
     least = _by_trees(task, is_brief=is_brief)
+    prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
         return forced_group_bound(task, team, least)
-    if _closed_by_sizes(task, team, least, looks=is_dense or not is_brief):
+    starts = int(FIRST_STARTS * max(task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
+    prices.anneal(INNER_STARTS if is_brief else starts)
+    if _closed_by_sizes(task, team, least, looks=not is_brief):
         return Stop.CLOSED
-    return prices.run()
+    return _last_stage(task, prices)
+
+
+def _last_stage(task: AttackTask, search: Resumable) -> Stop:
+    """Run a search, begun or new, that goes on where the memory finds it."""
+    search.task, task.memory.search = task, search
+    return search.run()
 
 
 def _closed_by_sizes(task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True) -> bool:
@@ -238,7 +259,7 @@ def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
 
 
 def _price_search(task: AttackTask) -> PriceSearch | None:
-    """The search by prices, for criteria with compiled code."""
+    """The search by prices, new or begun, for criteria with compiled code."""
     from ratt_opt.attackers.by_prices.team import PricedTeam
 
     team = PricedTeam.of(task.problem.objective, task.values.plan)
@@ -246,6 +267,10 @@ def _price_search(task: AttackTask) -> PriceSearch | None:
         return None
     from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles
 
+    begun = task.memory.search
+    if isinstance(begun, PriceSearch):
+        begun.task = task
+        return begun
     return PriceSearch(task, team)
 
 
@@ -264,11 +289,12 @@ def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None, least: int
         budget.nodes += part.nodes
 
 
-def _few_groups(problem: Problem, team: PlanarTeam | None) -> SeparableGroups | None:
-    """The groups an attack may leave, where they are few enough to search partitions of the team."""
+def _few_groups(task: AttackTask, team: PlanarTeam | None) -> SeparableGroups | None:
+    """The groups an attack may leave, where they are few enough, and soon listed, to search partitions of the team."""
+    problem = task.problem
     if team is None or problem.n_robots <= THRESHOLDS_FASTER:
         return None
     from ratt_opt.graph.separable_groups import separable_groups  # compiles
 
     few = FEW_GROUPS if problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
-    return separable_groups(problem.threat, few)
+    return separable_groups(problem.threat, few, task.budget.part(LISTING_SHARE))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import Shown, counted, plain
+from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.stopping import Stop
 
-__all__ = ["AttackBracket", "AttackResult", "AttackTask", "MeetsAim", "PlanValues"]
+__all__ = ["AttackBracket", "AttackMemory", "AttackResult", "AttackTask", "MeetsAim", "PlanValues", "Resumable"]
 
 LARGEST_CHUNK = 4096
 """Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
@@ -136,14 +137,48 @@ class AttackBracket:
         self.lower = max(self.lower, float(bound))
 
 
+class Resumable(Protocol):
+    """A search that goes on where it was once :meth:`run` is called again, with another budget in its task."""
+
+    task: AttackTask
+
+    def run(self) -> Stop:
+        """Narrow the task's bracket; why it stopped."""
+
+
+@dataclass(slots=True, eq=False)
+class AttackMemory:
+    """What attacks on one plan of one problem found out, for the next one to go on from.
+
+    ``search`` : the last stage of an attack, once it was reached; ``seconds`` : that the stages before had shares of
+    """
+
+    problem: Problem | None = None
+    plan: IntArray | None = None
+    bracket: AttackBracket | None = None
+    search: Resumable | None = None
+    seconds: float = 0.0
+
+    def check(self, problem: Problem, plan: IntArray) -> None:
+        """Raise ``InputError`` where this is about another problem or plan."""
+        if self.problem is None or self.plan is None:
+            self.problem, self.plan = problem, plan
+        if self.problem is not problem or not np.array_equal(self.plan, plan):
+            raise InputError("memory", "must be of attacks on the same plan of the same problem", self.plan.tolist())
+
+
 @dataclass(frozen=True, slots=True)
 class AttackTask:
-    """Narrow ``bracket`` for the plan of ``values`` within ``budget``; the bracket holds the answer."""
+    """Narrow ``bracket`` for the plan of ``values`` within ``budget``; the bracket holds the answer.
+
+    ``memory`` : where a search that can go on later is left
+    """
 
     problem: Problem
     values: PlanValues
     bracket: AttackBracket
     budget: Budget
+    memory: AttackMemory = field(default_factory=AttackMemory)
 
     def offer(self, attack: Attack) -> bool:
         """Value an attack and keep it if it is the worst so far; return whether it is."""

@@ -9,16 +9,18 @@ seconds, once per machine (cached).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.budget import Budget
 from ratt_opt.compiling import numba
 from ratt_opt.graph.communication import neighbour_masks
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
-    from ratt_opt.budget import Budget
+    from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
@@ -49,20 +51,64 @@ class SeparableGroups:
         return np.sort(self.robots[[p for p in range(len(self.robots)) if mask >> p & 1]])
 
 
-def separable_groups(threat: Threat, most: int) -> SeparableGroups | None:
+def separable_groups(threat: Threat, most: int, budget: Budget | None = None) -> SeparableGroups | None:
     """Tabulate the separable groups; ``None`` where there are more than ``most``, or more robots than a mask holds.
+
+    ``None`` too where the ``budget`` is spent before; what was listed of the last few graphs is kept, and gone on with.
 
     The places are the robots in the order in which :class:`PartitionSearch` covers them: those in the most groups
     first, so that what is left afterwards are few small groups.
     """
-    n_robots = threat.graph.n_robots
-    if n_robots > LARGEST_MASK:
+    if threat.graph.n_robots > LARGEST_MASK:
         return None
-    neighbours = np.array(neighbour_masks(n_robots, threat.graph.links), dtype=np.int64)
-    locked = np.array(neighbour_masks(n_robots, threat.protected_links), dtype=np.int64)
-    masks, complete = _enumerate(neighbours, locked, threat.alpha_c, most)
-    if not complete:
-        return None
+    listing = _listing(threat.graph, threat.alpha_c, threat.protected_links)
+    masks = listing.masks(min(most, LONGEST_LIST), budget or Budget())
+    return None if masks is None else SeparableGroups(threat, *listing.placed(masks))
+
+
+LONGEST_LIST = 300_000
+"""Groups listed at most: some megabytes."""
+STEPS = 20_000
+"""Of the enumeration between two looks at the clock: some hundredths of a second."""
+
+
+@lru_cache(maxsize=4)
+def _listing(graph: CommunicationGraph, alpha_c: int, protected_links: frozenset[Link]) -> _Listing:
+    return _Listing(graph, alpha_c, protected_links)
+
+
+class _Listing:
+    """The enumeration of one graph's separable groups, as far as it has come."""
+
+    def __init__(self, graph: CommunicationGraph, alpha_c: int, protected_links: frozenset[Link]) -> None:
+        self._n_robots, self._alpha_c = graph.n_robots, alpha_c
+        self._neighbours = np.array(neighbour_masks(graph.n_robots, graph.links), dtype=np.int64)
+        self._locked = np.array(neighbour_masks(graph.n_robots, protected_links), dtype=np.int64)
+        self._found = np.zeros(LONGEST_LIST + 1, dtype=np.int64)
+        self._stack = np.zeros((2 * graph.n_robots + 2, 3), dtype=np.int64)
+        self._position = np.zeros(3, dtype=np.int64)
+        self._placed: tuple[IntArray, IntArray, IntArray, IntArray] | None = None
+
+    def masks(self, most: int, budget: Budget) -> IntArray | None:
+        """All groups by bit mask over robots; ``None`` where they are more than ``most``, or the budget is spent."""
+        is_done = False
+        while not is_done and self._position[2] <= most and not budget.is_over:
+            given = self._neighbours, self._locked, self._alpha_c
+            is_done = _enumerate(given, self._found, self._stack, self._position, STEPS)
+        count = int(self._position[2])
+        return self._found[:count] if is_done and count <= most else None
+
+    def placed(self, masks: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray]:
+        """The fields of :class:`SeparableGroups` for all groups, read only."""
+        if self._placed is None:
+            self._placed = _placed(masks, self._neighbours)
+            for one in self._placed:
+                one.flags.writeable = False
+        return self._placed
+
+
+def _placed(masks: IntArray, neighbours: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray]:
+    n_robots = len(neighbours)
     bits = [masks >> i & 1 for i in range(n_robots)]
     robots = np.argsort([-int(bit.sum()) for bit in bits], kind="stable")
     place = np.argsort(robots).tolist()
@@ -71,7 +117,7 @@ def separable_groups(threat: Threat, most: int) -> SeparableGroups | None:
     lowest = np.bitwise_count((moved & -moved) - 1).astype(np.int64)
     order = np.lexsort((moved, lowest))
     start = np.searchsorted(lowest[order], np.arange(n_robots + 1))
-    return SeparableGroups(threat, moved[order], start, robots, near.astype(np.int64))
+    return moved[order], start, robots, near.astype(np.int64)
 
 
 @numba.njit(cache=True)
@@ -85,50 +131,61 @@ def count_ones(mask: int) -> int:
 
 
 @numba.njit(cache=True)
-def _enumerate(neighbours: Any, locked: Any, budget: int, most: int) -> Any:
-    """Connected sets with at most ``budget`` outgoing links, none ``locked``: (masks, whether that is all of them).
+def _enumerate(given: Any, found: Any, stack: Any, position: Any, steps: int) -> bool:
+    """Go on with listing connected sets with at most so many outgoing links, none locked; whether that is all of them.
 
     Each set grows from its lowest robot; a robot next to it is taken in or left out, and what is left out
-    already costs its links.
+    already costs its links. It ends, for now, after ``steps``, or where ``found`` (G,) is full.
+
+    ``given`` : (N,) neighbours and locked ones by bit mask, most links; ``stack`` : (2 N + 2, 3) robots inside,
+    outside, links between them; ``position`` : robots begun with, depth of the stack, sets found
     """
+    neighbours, locked, budget = given
     n_robots = len(neighbours)
-    found = np.zeros(1024, dtype=np.int64)
-    count = 0
-    stack = np.zeros((2 * n_robots + 2, 3), dtype=np.int64)  # inside, outside, links between them
-    for first in range(n_robots):
-        below = (1 << first) - 1
-        stack[0, 0], stack[0, 1], stack[0, 2] = 1 << first, below, count_ones(neighbours[first] & below)
-        top = 1 if locked[first] & below == 0 else 0
-        while top:
-            top -= 1
-            inside, outside, cost = stack[top, 0], stack[top, 1], stack[top, 2]
-            if cost > budget:
-                continue
-            pick, most_links = -1, -1
-            for i in range(n_robots):
-                links = count_ones(neighbours[i] & inside)
-                if (inside | outside) >> i & 1 or links == 0:
-                    continue
-                links += count_ones(neighbours[i] & outside)
-                if links > most_links:
-                    pick, most_links = i, links
-            if pick < 0:
-                if count == most:
-                    return found[:count], False
-                if count == len(found):
-                    found = np.concatenate((found, np.zeros(count, dtype=np.int64)))
-                found[count] = inside
-                count += 1
-                continue
-            if locked[pick] & inside == 0:
-                stack[top, 0], stack[top, 1] = inside, outside | (1 << pick)
-                stack[top, 2] = cost + count_ones(neighbours[pick] & inside)
-                top += 1
-            if locked[pick] & outside == 0:
-                stack[top, 0], stack[top, 1] = inside | (1 << pick), outside
-                stack[top, 2] = cost + count_ones(neighbours[pick] & outside)
-                top += 1
-    return found[:count], True
+    for _ in range(steps):
+        if position[1] == 0:
+            first = position[0]
+            if first == n_robots:
+                return True
+            below = (1 << first) - 1
+            stack[0, 0], stack[0, 1], stack[0, 2] = 1 << first, below, count_ones(neighbours[first] & below)
+            position[0], position[1] = first + 1, 1 if locked[first] & below == 0 else 0
+            continue
+        top = position[1] - 1
+        inside, outside, cost = stack[top, 0], stack[top, 1], stack[top, 2]
+        if cost > budget:
+            position[1] = top
+            continue
+        pick = _most_linked(neighbours, inside, outside)
+        if pick < 0:
+            if position[2] == len(found):
+                return False
+            found[position[2]] = inside
+            position[2] += 1
+        elif locked[pick] & inside == 0:
+            stack[top, 0], stack[top, 1] = inside, outside | (1 << pick)
+            stack[top, 2] = cost + count_ones(neighbours[pick] & inside)
+            top += 1
+        if pick >= 0 and locked[pick] & outside == 0:
+            stack[top, 0], stack[top, 1] = inside | (1 << pick), outside
+            stack[top, 2] = cost + count_ones(neighbours[pick] & outside)
+            top += 1
+        position[1] = top
+    return False
+
+
+@numba.njit(cache=True)
+def _most_linked(neighbours: Any, inside: int, outside: int) -> int:
+    """The robot next to ``inside``, in neither set, with the most links to both; -1 where there is none."""
+    pick, most_links = -1, -1
+    for i in range(len(neighbours)):
+        links = count_ones(neighbours[i] & inside)
+        if (inside | outside) >> i & 1 or links == 0:
+            continue
+        links += count_ones(neighbours[i] & outside)
+        if links > most_links:
+            pick, most_links = i, links
+    return pick
 
 
 @numba.njit(cache=True)

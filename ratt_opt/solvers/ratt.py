@@ -30,12 +30,14 @@ longer than so many seconds is the same within any limit: RATT's plan then does 
 
 
 @Step("the smallest largest group")
-def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -> int:
+def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None, *, quick: float = QUICK) -> int:
     """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``.
 
     Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots and, where an
     attack can split off few groups, up to 60; else the integer program's up to 40 robots, and a valid lower bound
     on it beyond that or where the program did not finish, such as where an outer search's ``budget`` is short.
+
+    ``quick`` : seconds that it may take whatever the budget
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
@@ -43,7 +45,7 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
     if problem.n_robots > LARGEST_MASK:  # nothing but the bound is known of larger teams
         return problem.n_robots - counting_bound(problem.threat)
-    seconds = None if budget is None or budget.time_limit is None else max(SIZE_SHARE * budget.seconds_left, QUICK)
+    seconds = None if budget is None or budget.time_limit is None else max(SIZE_SHARE * budget.seconds_left, quick)
     found = by_search(replace(problem.threat, alpha_s=0), Budget(seconds, MILP_NODES))
     return problem.n_robots - (found.lower if found.n_max is None else found.n_max)
 

@@ -6,6 +6,8 @@ import networkx as nx
 import numpy as np
 import pytest
 
+import ratt_opt.graph.separable_groups as separable_groups_module
+from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.connected_partitions import connected_partitions
 from ratt_opt.graph.separable_groups import PartitionSearch, separable_groups
@@ -34,6 +36,21 @@ def test_groups_are_those_of_the_definition(seed):
     if len(found) > 1:
         assert separable_groups(threat, len(found) - 1) is None
     assert separable_groups(threat, len(found)) is not None
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_listing_that_the_budget_ends_goes_on_the_next_time(seed, monkeypatch):
+    threat = random_problem(np.random.default_rng(seed), 5 + seed % 4, kind="logdet", controls=1).threat
+    expected = set(by_definition(threat))
+    monkeypatch.setattr(separable_groups_module, "STEPS", 1)
+    separable_groups_module._listing.cache_clear()
+    looks = iter([False, True] * 10**5)
+    monkeypatch.setattr(Budget, "is_over", property(lambda _: next(looks)))
+    calls = 1
+    while (groups := separable_groups(threat, 10_000, Budget())) is None:
+        calls += 1
+    assert calls >= len(expected)
+    assert {tuple(groups.members(k).tolist()) for k in range(len(groups.masks))} == expected
 
 
 @pytest.mark.parametrize("seed", range(60))

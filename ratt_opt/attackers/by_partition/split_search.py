@@ -108,9 +108,10 @@ class SplitSearch:
         """(G, n_blinded + 1) no subset of the group with so many robots blinded is worth less."""
 
     def run(self) -> Stop:
-        """Bisect the threshold; the bracket is valid whenever this stops."""
+        """Bisect the threshold; the bracket is valid whenever this stops, and from there it can go on."""
         self.task.budget.spend()
-        self._floors = self._first_floors()
+        if not len(self._floors):
+            self._floors = self._first_floors()
         bracket = self.task.bracket
         while not bracket.is_closed:
             width = bracket.upper - bracket.lower

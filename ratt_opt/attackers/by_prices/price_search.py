@@ -55,30 +55,33 @@ class PriceSearch:
         self._starts = Starts(team, links, threat)
         planar = PlanarTeam.of(task.problem.objective, task.values.plan)
         self._decision = ThresholdDecision(team, links, threat, WeakSizes(team, planar))
+        self._effort = FIRST_EFFORT
+        self._unknown: float | None = None
+        """The lowest threshold left open with this effort, if any."""
 
     def anneal(self, starts: int) -> None:
         """Offer the first annealed attacks, one of them from the attack in hand."""
-        self._take(partial(self._starts.near, self.task.bracket.attack))
-        self._anneal(starts, ANNEALING_SHARE)
+        part = self.task.budget.part(ANNEALING_SHARE)
+        self._take(partial(self._starts.near, self.task.bracket.attack), part)
+        self._anneal(starts, part)
 
     def run(self) -> Stop:
-        """Refute or reach thresholds; the bracket is valid whenever this stops."""
+        """Refute or reach thresholds; the bracket is valid whenever this stops, and from there it can go on."""
         bracket, budget = self.task.bracket, self.task.budget
-        effort, unknown = FIRST_EFFORT, None
         while not bracket.is_closed:
-            threshold = self._threshold(unknown)
+            threshold = self._threshold(self._unknown)
             if threshold is None:
-                effort, unknown = HARDER * effort, None
-                self._anneal(FURTHER_STARTS, ANNEALING_SHARE)
+                self._effort, self._unknown = HARDER * self._effort, None
+                self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
                 continue
-            answer = self._decision.decide(threshold, budget, budget.nodes_left(effort))
+            answer = self._decision.decide(threshold, budget, budget.nodes_left(self._effort))
             if answer.verdict is Threshold.REFUTED:
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self._offer(answer.partition):
-                unknown = threshold
-                self._anneal(FURTHER_STARTS, ANNEALING_SHARE)
+                self._unknown = threshold
+                self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
             else:
-                unknown = None
+                self._unknown = None
         return Stop.CLOSED
 
     def _threshold(self, unknown: float | None) -> float | None:
@@ -90,22 +93,19 @@ class PriceSearch:
         below = unknown - bracket.lower
         return None if below <= max(RESOLUTION * width, BISECTED * abs(bracket.upper)) else bracket.lower + below / 2
 
-    def _anneal(self, starts: int, share: float) -> None:
-        part = self.task.budget.part(share)
-        for count in range(starts):
-            self.task.budget.check()
-            if count and part.stop() is not None:
-                return
-            self._take(self._starts.next)
+    def _anneal(self, starts: int, part: Budget) -> None:
+        for _ in range(starts):
+            if part.is_over:
+                break
+            self._take(self._starts.next, part)
+        self.task.budget.check()
 
-    def _take(self, start: Callable[[Budget], Partition | None]) -> None:
-        """Offer the outcome of a start."""
+    def _take(self, start: Callable[[Budget], Partition | None], part: Budget) -> None:
+        """Offer the outcome of a start; where its part of the budget ends first, the best one so far."""
         try:
-            partition = start(self.task.budget)
+            partition = start(part)
         except OutOfBudget:
-            if self._starts.best is not None:
-                self._offer(self._starts.best)
-            raise
+            partition = self._starts.best
         if partition is not None:
             self._offer(partition)
 

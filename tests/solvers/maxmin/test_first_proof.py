@@ -103,3 +103,52 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     assert not search.prove()
     assert attacked == [True, False, True, False]
     assert search.proved.lower == pytest.approx(0.98 * known)
+
+
+class _Attacks:
+    """Exact attacks of scripted ends, as shares of what is known of a plan; notes which plans were attacked."""
+
+    def __init__(self, search: Incumbent, first: IntArray, ends: list[tuple[bool, float]]) -> None:
+        self.search, self.first, self.ends = search, first, iter(ends)
+        self.attacked: list[bool] = []
+        self.aims: list[float] = []
+
+    def __call__(self, plan: IntArray, _budget: Budget, aim: float) -> AttackResult:
+        is_first, lower = next(self.ends)
+        assert is_first == np.array_equal(plan, self.first)
+        self.attacked.append(is_first)
+        self.aims.append(aim)
+        known = self.search.pool.plan_value(plan)
+        return AttackResult(attack=Attack(), lower=lower * known, upper=known, stop=Stop.TIME, evaluations=1)
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [
+        [(True, 0.90), (False, 0.80), (True, 0.95)],
+        [(True, 0.80), (False, 0.90), (False, 0.95)],
+    ],
+)
+def test_on_a_network_the_plan_that_more_is_proved_of_gets_the_rest(
+    ends: list[tuple[bool, float]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = network_scenario("hubs", 24, 4, alpha_s=5, alpha_c=12, seed=0).problem()
+    first = ratt(problem).elements
+    search = started(problem, first)
+    search.adversary.learn(first)
+    known = search.pool.plan_value(first)
+    rng, best = np.random.default_rng(0), first
+    while not search.pool.plan_value(best) > known:
+        drawn = np.array([rng.choice(choice) for choice in problem.choices])
+        best = np.where(rng.random(len(first)) < 0.2, drawn, first)
+    search.candidates.add(first)
+    search.candidates.add(best)
+    attacks = _Attacks(search, first, [*ends, (False, 0.5)])
+    monkeypatch.setattr(Adversary, "attack", attacks)
+    assert not search.prove()
+    assert attacks.attacked[:3] == [is_first for is_first, _ in ends]
+    assert search.proved.lower >= 0.95 * known
+    level = search.candidates.level
+    lower = ends[0][1] * known
+    assert attacks.aims[1] == pytest.approx(level - incumbent.LEFT_EARLY * (level - lower))
+    assert attacks.aims[0] == problem.objective([])

@@ -11,6 +11,7 @@ from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
+from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.outcomes import realise
@@ -112,6 +113,10 @@ BRIEF_MOVES, MOVES = 300, 2_000
 """Moves a robot of annealing a known attack briefly, as for each relaxed plan, and of a plan that this did not hurt."""
 
 
+REMEMBERED = 4
+"""Plans whose exact attacks can go on where they ended: some megabytes each."""
+
+
 class Adversary:
     """Attacks one problem's plans, quickly or exactly; every outcome enters the pool.
 
@@ -122,7 +127,9 @@ class Adversary:
         self.problem, self.pool, self.budget = problem, pool, budget
         self._lasting = LastingAttacks(problem, budget)
         on_network = problem.n_robots > SEARCHED_BY_SIZE and not problem.threat.links_alike
+        self.on_network = on_network
         self._annealed = AnnealedAttacks.of(problem, budget) if on_network else None
+        self._memories: dict[bytes, AttackMemory] = {}
 
     @property
     def is_exact_cheaply(self) -> bool:
@@ -195,10 +202,20 @@ class Adversary:
 
     def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> AttackResult:
         """Exact worst case of a plan within a part of the budget, or an attack that leaves it no more than ``aim``."""
-        nodes, known = budget.max_nodes, self._worst_known(self.problem, plan)
-        result = worst_case_attack(self.problem, plan, max_nodes=nodes, budget=budget, aim=aim, known=known)
+        nodes, known, memory = budget.max_nodes, self._worst_known(self.problem, plan), self._memory(plan)
+        result = worst_case_attack(
+            self.problem, plan, max_nodes=nodes, budget=budget, aim=aim, known=known, memory=memory
+        )
         self._remember(self.problem, plan, result.attack)
         return result
+
+    def _memory(self, plan: IntArray) -> AttackMemory:
+        """Of earlier exact attacks on the plan, where it is one of the last few attacked."""
+        memory = self._memories.pop(plan.tobytes(), None) or AttackMemory()
+        self._memories[plan.tobytes()] = memory
+        if len(self._memories) > REMEMBERED:
+            del self._memories[next(iter(self._memories))]
+        return memory
 
     def heed(self, result: AttackResult) -> None:
         """Stop the search where the user interrupted an attack, once what the attack proved is kept."""

@@ -1,0 +1,80 @@
+"""Attacks that go on where an earlier one on the same plan ended."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers import exact
+from ratt_opt.attackers.by_partition.split_search import SplitSearch
+from ratt_opt.attackers.by_prices.price_search import PriceSearch
+from ratt_opt.attackers.by_prices.team import PricedTeam
+from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
+from ratt_opt.budget import Budget, OutOfBudget
+from tests.attackers.test_by_prices import check, team_problem
+from tests.oracles import brute_force_worst_case
+
+PIECES = 20_000
+"""Budgets after which a search that learns nothing from one to the next would still not have ended."""
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) -> None:
+    problem, plan = team_problem(seed, 3 + seed % 4)
+    values, nothing = PlanValues(problem, plan), ro.Attack()
+    bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
+    team = PricedTeam.of(problem.objective, values.plan)
+    assert team is not None
+    search = PriceSearch(AttackTask(problem, values, bracket, Budget()), team)
+    truth, ends = brute_force_worst_case(problem, plan), (bracket.lower, bracket.upper)
+    for piece in range(PIECES):
+        search.task = AttackTask(problem, values, bracket, Budget(max_nodes=1 + piece % 50))
+        try:
+            search.run()
+        except OutOfBudget:
+            assert ends[0] <= bracket.lower <= truth * (1 + 1e-9) + 1e-10
+            assert truth <= bracket.upper * (1 + 1e-9) + 1e-10
+            assert bracket.upper <= ends[1]
+            ends = bracket.lower, bracket.upper
+        else:
+            break
+    check(problem, plan, bracket, truth)
+
+
+@pytest.mark.parametrize(("groups", "kind"), [(300_000, SplitSearch), (0, PriceSearch)])
+def test_an_attack_in_pieces_proves_what_one_proves(groups: int, kind: type, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exact, "MANY_GROUPS", groups)
+    problem = ro.network_scenario("hubs", 24, 4, alpha_s=2, alpha_c=8, seed=1).problem()
+    plan = ro.ratt(problem).elements
+    whole, memory = ro.worst_case_attack(problem, plan), AttackMemory()
+    assert whole.stop is ro.Stop.CLOSED
+    parts = [ro.worst_case_attack(problem, plan, max_nodes=0, memory=memory)]
+    while parts[-1].stop is ro.Stop.NODES:
+        parts.append(ro.worst_case_attack(problem, plan, max_nodes=5_000 * len(parts), memory=memory))
+        assert parts[-2].lower <= parts[-1].lower <= whole.upper * (1 + 1e-9)
+        assert whole.lower * (1 - 1e-9) <= parts[-1].upper <= parts[-2].upper
+    assert parts[-1].stop is ro.Stop.CLOSED
+    assert parts[-1].upper == pytest.approx(whole.upper, rel=1e-9)
+    assert isinstance(memory.search, kind)
+    assert len(parts) > 2
+
+
+def test_more_time_runs_the_first_stages_again() -> None:
+    """They had a share of next to nothing."""
+    problem = ro.network_scenario("small-world", 60, 4, alpha_s=12, alpha_c=26, seed=0).problem()
+    plan, memory = ro.ratt(problem).elements, AttackMemory()
+    at_once = ro.worst_case_attack(problem, plan, time_limit=0, memory=memory)
+    later = ro.worst_case_attack(problem, plan, time_limit=2, memory=memory)
+    assert later.lower > at_once.lower
+    assert later.upper < at_once.upper
+
+
+def test_what_is_remembered_of_another_plan_is_refused() -> None:
+    problem = ro.network_scenario("hubs", 14, 3, alpha_s=2, alpha_c=4, seed=0).problem()
+    plan, memory = ro.ratt(problem).elements, AttackMemory()
+    first = ro.worst_case_attack(problem, plan, memory=memory)
+    other = np.array([choice[choice != e][0] for choice, e in zip(problem.choices, plan, strict=True)])
+    with pytest.raises(ro.InputError, match="memory"):
+        ro.worst_case_attack(problem, other, memory=memory)
+    assert ro.worst_case_attack(problem, plan, memory=memory).upper == first.upper
