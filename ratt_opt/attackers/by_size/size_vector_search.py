@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_size.annealed_families import annealed_families
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
@@ -45,6 +46,10 @@ Where there are more, some make attacks, and the bound is that of the forced siz
 
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
+
+ANNEALED_SHARE, ANNEALED_STARTS = 0.3, 3
+"""Where there are too many vectors, of the time that the bound of the forced size leaves, for annealed attacks of all;
+and how many. At 100 robots, (0, 4066), log-det, they leave 0.3 to 0.4 % less than exchanges in 93 vectors."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -273,4 +278,8 @@ class SizeVectorSearch:
                 search.threshold = min(search.threshold, self.team.value(found))
             self.bracket.raise_lower(min(search.lower, search.threshold))
         self.bracket.raise_lower(search.threshold)
+        if np.isfinite(self.task.budget.seconds_left) and not self.bracket.is_closed:
+            annealed = annealed_families(self.team, self.threat, self.task.budget.part(ANNEALED_SHARE))
+            for groups in islice(annealed, ANNEALED_STARTS):
+                self._accept(groups)
         return Stop.CLOSED if self.bracket.is_closed else Stop.HEURISTIC
