@@ -26,13 +26,16 @@ ERASE = "\r\x1b[2K"
 
 
 class Step(ContextDecorator):
-    """``with Step("certificate") as step: step.say("checking it")``, or ``@Step("the worst attack")``."""
+    """``with Step("certificate") as step: step.say("checking it")``, or ``@Step("the worst attack")``.
 
-    def __init__(self, text: str) -> None:
-        self._text, self._detail, self._began = text, "", 0.0
+    ``patience`` : seconds before it is shown, ``PATIENCE`` by default; 0 where somebody waits for an answer.
+    """
+
+    def __init__(self, text: str, patience: float | None = None) -> None:
+        self._text, self._patience, self._detail, self._began = text, patience, "", 0.0
 
     def _recreate_cm(self) -> Step:
-        return Step(self._text)  # each call of a decorated function is a step of its own
+        return Step(self._text, self._patience)  # each call of a decorated function is a step of its own
 
     def __enter__(self) -> Self:
         if _somebody_looks():
@@ -51,7 +54,7 @@ class Step(ContextDecorator):
     def line(self, now: float) -> str | None:
         """What to show of it, if it has taken long enough."""
         seconds = now - self._began
-        if seconds < PATIENCE:
+        if seconds < (PATIENCE if self._patience is None else self._patience):
             return None
         return f"{self._text}{': ' if self._detail else ''}{self._detail} ({seconds:.0f} s)"
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import TypeVar
 
-__all__ = ["Stop"]
+__all__ = ["Stop", "uninterrupted"]
+
+T = TypeVar("T")
 
 
 class Stop(Enum):
@@ -26,3 +29,13 @@ class Stop(Enum):
     """The user interrupted; the bracket so far is valid."""
     HEURISTIC = "heuristic"
     """A heuristic ran to its end; no optimality is claimed."""
+
+
+def uninterrupted(found: T) -> T:
+    """What a search found; ``KeyboardInterrupt`` where the user interrupted it.
+
+    For callers that keep no bracket of their own: to them it would pass for what a whole search finds.
+    """
+    if getattr(found, "stop", None) is Stop.INTERRUPTED:
+        raise KeyboardInterrupt
+    return found

@@ -75,6 +75,11 @@ def test_a_line_fits_the_terminal_that_it_is_erased_on() -> None:
     assert lines == {"", "looking for a viola"}
 
 
+def test_a_step_that_somebody_waits_for_is_shown_at_once() -> None:
+    code = "import time, ratt_opt.progress as p\np.PERIOD = 0.01\nwith p.Step('writing', 0.0): time.sleep(0.3)"
+    assert "writing (0 s)" in on_a_terminal(code)[1]
+
+
 def test_a_short_step_shows_nothing() -> None:
     assert (
         on_a_terminal("import ratt_opt as ro; ro.caa(5, 3); ro.find_submodularity_violation(ro.Modular([1.0]))")[1]

@@ -66,7 +66,8 @@ def criticality_ranking(
     ----------
     links : links to rank; all by default
     max_nodes : for each exact attack
-    time_limit : seconds for all of it; unlimited by default
+    time_limit : seconds for all of it; unlimited by default. The value of the team without each robot, and at each
+        bridge, is asked for whatever the limit
     budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
         the gains left are bounded without a search
 

@@ -34,7 +34,8 @@ def attack_survey(
 
     Parameters
     ----------
-    time_limit : seconds for all of them, nine tenths for the exact attack; unlimited by default
+    time_limit : seconds for all of them, nine tenths for the exact attack; unlimited by default. The heuristics ask for
+        the value of each robot alone whatever the limit
     seed : of the random attack
     budget : an outer search's budget: its seconds and interrupts count too
 
@@ -45,7 +46,7 @@ def attack_survey(
     own = Budget.inside(budget, time_limit)
     seconds = None if time_limit is None else EXACT_SHARE * time_limit
     return {
-        "exact": worst_case_attack(problem, elements, time_limit=seconds, budget=budget),
+        "exact": worst_case_attack(problem, elements, time_limit=seconds, budget=own),
         "bounded rational": bounded_rational_attack(problem, elements),
         "greedy": greedy_attack(problem, elements, budget=own),
         "random": random_attack(problem, elements, seed=seed),

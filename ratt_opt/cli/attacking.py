@@ -2,18 +2,23 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
 from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, ObjectiveOption
-from ratt_opt.cli.terminal import print_json, print_tables
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_tables
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt.attackers.link_choice.best_links import BestLinks
+    from ratt_opt.budget import Budget
 
 __all__ = ["attack"]
+
+T = TypeVar("T")
 
 
 def attack(
@@ -38,10 +43,14 @@ def attack(
     ] = None,
     as_json: JsonFlag = False,
 ) -> None:
-    """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect."""
+    """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect.
+
+    An interrupt (Ctrl-C) prints what was found so far and exits with 130.
+    """
     from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
     from ratt_opt.attackers.survey import attack_survey
+    from ratt_opt.budget import Budget
     from ratt_opt.main_job.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
@@ -52,16 +61,32 @@ def attack(
     source = load_input(file)
     problem = source.problem(objective)
     elements = load_plan(plan, problem)
-    results = attack_survey(problem, elements, time_limit=time_limit, seed=seed)
-    critical = criticality_ranking(problem, elements, time_limit=time_limit)[:rank] if rank else None
-    budgets = None if below is None else breaking_budgets(problem, elements, below, time_limit=time_limit)
-    links: dict[str, BestLinks] = {}
+    budget = Budget()
+    within: dict[str, Any] = {"time_limit": time_limit, "budget": budget}
+    results = attack_survey(problem, elements, seed=seed, **within)
+    critical = _found(budget, lambda: criticality_ranking(problem, elements, **within)[:rank] if rank else None)
+    budgets = None if below is None else _found(budget, lambda: breaking_budgets(problem, elements, below, **within))
+    links: dict[str, BestLinks | None] = {}
     if protect:
-        links["protect"] = links_to_protect(problem, elements, protect, time_limit=time_limit)
+        links["protect"] = _found(budget, lambda: links_to_protect(problem, elements, protect, **within))
     if add:
         near = None if reach is None else sorted(set(source.pairs_within(reach)) - problem.communication.links)
-        links["add"] = links_to_add(problem, elements, add, candidates=near, time_limit=time_limit)
+        links["add"] = _found(budget, lambda: links_to_add(problem, elements, add, candidates=near, **within))
+    found = {name: best for name, best in links.items() if best is not None}
     if as_json:
-        print_json(attack_document(objective, elements, results, critical, budgets, best_links=links))
+        print_json(attack_document(objective, elements, results, critical, budgets, best_links=found))
     else:
-        print_tables(attack_tables(results, critical, budgets, below, best_links=links))
+        print_tables(attack_tables(results, critical, budgets, below, best_links=found))
+    if budget.is_over:
+        raise WorkInterrupted("interrupted; printed is what was found until then")
+
+
+def _found(budget: "Budget", search: "Callable[[], T]") -> T | None:
+    """What a search finds, up to an interrupt; ``None`` where the user interrupted before."""
+    if budget.is_over:
+        return None
+    try:
+        return search()
+    except KeyboardInterrupt:
+        budget.interrupt()
+        return None

@@ -42,7 +42,8 @@ def bound(
     out: OutFolder,
     objective: ObjectiveOption = "trace",
     time_limit: Annotated[
-        float, typer.Option("--time-limit", help="Seconds for all searches; the certificate comes on top.")
+        float,
+        typer.Option("--time-limit", help="Seconds for all searches and the certificate, which has a quarter of them."),
     ] = TIME_LIMIT,
     gap: Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")] = GAP,
     workers: Annotated[int, typer.Option("--workers", help="Processes that search for the best plan.")] = 1,
@@ -72,18 +73,24 @@ def _bound(
 ) -> None:
     from ratt_opt._files import output_directory
     from ratt_opt.certificates.certification import PENDING
+    from ratt_opt.main_job.bound import CERTIFICATE_SHARE
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.tables import report_tables
     from ratt_opt.report.write import FILES, write_report
+    from ratt_opt.solvers.maxmin.solve import check_limits
 
     folder = output_directory(out, PROOF, EARLIER_PROOF, *FILES)
-    report = main_job(source, objective=objective, time_limit=time_limit, gap=gap, workers=workers)
+    check_limits(gap, time_limit)
+    began = monotonic()
+    searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
+    report = main_job(source, objective=objective, time_limit=searching, gap=gap, workers=workers)
+    left = max(0.0, time_limit - (monotonic() - began))
     wanted = certificate and not report.interrupted
-    with Step("report and figure"):
+    with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report and figure"):
         files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)
     if wanted:
         with Step("certificate"):
-            report = _certified(report, folder)
+            report = _certified(report, folder, left)
         files += [proof.path] if (proof := report.certificate.certificate) else []
     if report.certificate.certificate is None and report.certificate.final and (folder / PROOF).exists():
         (folder / PROOF).replace(folder / EARLIER_PROOF)  # it is not about this report
@@ -96,19 +103,21 @@ def _bound(
         raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then")
 
 
-def _certified(report: "BoundReport", folder: Path) -> "BoundReport":
+def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "BoundReport":
     """The report with its certificate, or why there is none, written over the one in the folder.
 
     Raises ProofError for a fault in our own proof, and KeyboardInterrupt; the report in the folder then says so.
     """
+    from ratt_opt.budget import Budget
     from ratt_opt.certificates.certification import INTERRUPTED, Certification
     from ratt_opt.certificates.write import certify_if_possible
     from ratt_opt.report.write import write_verdict
 
     began = monotonic()
+    budget = Budget(time_limit)
     failure: BaseException | None = None
     try:
-        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, source=report.source)
+        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, budget, source=report.source)
     except ProofError as error:
         proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
     except KeyboardInterrupt as error:

@@ -1,16 +1,19 @@
 """``ratt-opt track``: a whole mission in simulation."""
 
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from ratt_opt.cli.options import JsonFlag, OutFolder
-from ratt_opt.cli.terminal import print_json, print_lines
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines
 from ratt_opt.errors import InputError, printable
 from ratt_opt.progress import Step
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ratt_opt.missions.result import Mission
 
 __all__ = ["track"]
@@ -57,7 +60,10 @@ def track(
     seeds: Annotated[int, typer.Option("--seeds", min=1, help="Missions for the figures' intervals.")] = 1,
     as_json: JsonFlag = False,
 ) -> None:
-    """Fly a mission under attack in simulation; write tables, figures, an animation and a player."""
+    """Fly a mission under attack in simulation; write tables, figures, an animation and a player.
+
+    An interrupt (Ctrl-C) keeps the steps flown and exits with 130; the same command goes on from there.
+    """
     from ratt_opt._files import output_directory
     from ratt_opt.missions.players.planners import MaxMinPlanner
     from ratt_opt.missions.run import run_mission
@@ -72,7 +78,7 @@ def track(
     model = MissionModel(motion=motion, linearisation=linearisation, objective=objective, beam=beam)
     chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
     missions = []
-    with Step("flying") as shown:
+    with Step("flying") as shown, _resumable(folder):
         for k in range(seeds):
             journal = folder / (JOURNAL if k == 0 else f"{k}.{JOURNAL}")
 
@@ -98,6 +104,18 @@ def track(
         print_json(missions[0].to_dict())
     else:
         print_lines([*_summary(missions), "written: " + ", ".join(printable(str(file)) for file in files)])
+
+
+@contextmanager
+def _resumable(folder: Path) -> "Iterator[None]":
+    """Say of an interrupt inside that the journal keeps what was flown."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not (folder / JOURNAL).exists():
+            raise
+        text = f"interrupted; {printable(str(folder / JOURNAL))} holds the steps flown: the same command goes on"
+        raise WorkInterrupted(text) from None
 
 
 def _summary(missions: "list[Mission]") -> list[str]:

@@ -119,7 +119,8 @@ def bound(
     objective : name of the criterion (trace where ``None``); not with a problem, which has its own
     gap : relative gap at which the search for the optimum stops
     time_limit : seconds for all of it, of which the search for the optimum may take three quarters of what
-        the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit
+        the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit. Of a set
+        function of the user's own the value of each element is asked for whatever the limit: RATT's plan needs them
     certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
     workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`

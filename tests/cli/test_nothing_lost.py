@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from ratt_opt import InputError, _files, load_scenario, verify_certificate
+from ratt_opt.attackers import criticality, survey
+from ratt_opt.attackers.link_choice import best_links
 from ratt_opt.certificates import write
+from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.cli import run
+from ratt_opt.errors import UndecidedError
 from ratt_opt.main_job import bound as main_job
 from ratt_opt.report.write import FILES
 
@@ -97,6 +102,78 @@ def test_an_interrupt_before_there_is_a_plan_leaves_the_earlier_files(
     monkeypatch.setattr(main_job, "bait_and_greedy", _raise(KeyboardInterrupt()))
     assert run(command) == 130
     assert {file.name: file.read_bytes() for file in (tmp_path / "o").iterdir()} == before
+
+
+def test_a_proof_without_end_keeps_the_limit(
+    scenario_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The limit covers the certificate, which then says which end is proved."""
+    began = monotonic()
+
+    def endless(*_: Any, **__: Any) -> Any:
+        try:
+            while monotonic() < began + 20:
+                tick()
+        except UndecidedError:
+            return write.ENUMERATED
+        raise AssertionError
+
+    monkeypatch.setattr(write, "lower_proof", endless)
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o"), "--time-limit", "1"]) == 0
+    found = verify_certificate(tmp_path / "o" / "certificate.json")
+    assert found.upper > 0
+    assert not found.lower_proved
+
+
+SEARCHES = {
+    "attack_survey": survey,
+    "criticality_ranking": criticality,
+    "breaking_budgets": criticality,
+    "links_to_protect": best_links,
+    "links_to_add": best_links,
+}
+"""What ``attack`` asks for, in this order, and where it is."""
+
+
+@pytest.mark.parametrize("case", [*((step, True) for step in SEARCHES), *((step, False) for step in SEARCHES)])
+def test_an_interrupt_of_an_attack_ends_it_with_what_was_found(
+    case: tuple[str, bool],
+    scenario_file: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A search that keeps its bracket is the last one, too; only before the first has one is nothing printed."""
+    step, is_caught = case
+    asked: list[str] = []
+
+    def watched(name: str, real: Callable[..., Any]) -> Callable[..., Any]:
+        def search(*given: Any, **named: Any) -> Any:
+            asked.append(name)
+            if name != step:
+                return real(*given, **named)
+            if not is_caught:
+                raise KeyboardInterrupt
+            named["budget"].interrupt()
+            return real(*given, **named)
+
+        return search
+
+    for name, module in SEARCHES.items():
+        monkeypatch.setattr(module, name, watched(name, getattr(module, name)))
+    plan = tmp_path / "plan.json"
+    plan.write_text('{"elements": [0, 12, 24]}')
+    wanted = ["--rank", "2", "--below", "1e9", "--protect", "1", "--add", "1", "--json"]
+    assert run(["attack", str(scenario_file), "--plan", str(plan), *wanted]) == 130
+    printed = capsys.readouterr()
+    assert len(printed.err.splitlines()) == 1
+    assert "interrupted" in printed.err
+    assert asked == list(SEARCHES)[: list(SEARCHES).index(step) + 1]
+    if is_caught or step != "attack_survey":
+        found = json.loads(printed.out)
+        assert found["attacks"]["exact"]["lower"] <= found["attacks"]["exact"]["upper"]
+    else:
+        assert printed.out == ""
 
 
 def test_files_that_belong_together_are_replaced_together_or_marked(

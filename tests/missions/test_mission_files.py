@@ -10,8 +10,10 @@ import re
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, random_scenario, run_mission, save_scenario
+from ratt_opt import InputError, random_scenario, run_mission, save_scenario, solve_maxmin
+from ratt_opt.budget import Budget
 from ratt_opt.cli import run
+from ratt_opt.missions.players import planners
 from ratt_opt.report.mission.frames import SIGMAS, frames_of
 
 
@@ -100,6 +102,35 @@ def test_ellipses_hold_95_percent(mission) -> None:
     long, short, angle = frames_of(mission)[-1]["ellipses"][0]
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     np.testing.assert_allclose(turn @ np.diag([long**2, short**2]) @ turn.T, SIGMAS**2 * covariance, rtol=1e-9)
+
+
+def test_an_interrupted_command_goes_on_from_its_journal(tmp_path, capsys, monkeypatch) -> None:
+    path, out, whole = tmp_path / "scenario.json", tmp_path / "out", tmp_path / "whole"
+    save_scenario(random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=1), path)
+    command = ["track", str(path), "--steps", "4", "--planner", "maxmin"]
+    assert run([*command, "--out", str(whole)]) == 0
+    asked = []
+
+    def interrupted_at_third(*given, **named):
+        asked.append(0)
+        return solve_maxmin(*given, **named, budget=_interrupted() if len(asked) == 3 else None)
+
+    monkeypatch.setattr(planners, "solve_maxmin", interrupted_at_third)
+    capsys.readouterr()
+    assert run([*command, "--out", str(out)]) == 130
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "journal.jsonl holds the steps flown" in said.err
+    assert len(said.err.splitlines()) == 1
+    assert [file.name for file in out.iterdir()] == ["journal.jsonl"]
+    assert run([*command, "--out", str(out)]) == 0
+    assert (out / "mission.csv").read_bytes() == (whole / "mission.csv").read_bytes()
+
+
+def _interrupted() -> Budget:
+    budget = Budget()
+    budget.interrupt()
+    return budget
 
 
 def test_the_command(tmp_path, capsys) -> None:

@@ -7,7 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, InputError, random_scenario, ratt, worst_case_attack
+from ratt_opt import Attack, InputError, random_scenario, ratt, solve_maxmin, worst_case_attack
+from ratt_opt.budget import Budget
 from ratt_opt.missions.models.sensors import PositionSensor
 from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
 from ratt_opt.missions.players.planners import MaxMinPlanner
@@ -77,6 +78,29 @@ def test_the_same_to_the_bit_and_resumed(attacks: str, sharing: str, tmp_path) -
     assert run_mission(scenario, **arguments, journal=journal) == whole
     assert len(journal.read_text().splitlines()) == 10
     assert run_mission(scenario, **(arguments | {"seed": 5})) != whole
+
+
+@pytest.mark.parametrize("who", ["planner", "attacker"])
+def test_an_interrupted_search_decides_nothing(who, tmp_path) -> None:
+    """Its bracket is valid, but not what a whole search decides: the mission ends, and can be resumed."""
+    scenario, journal = scenario_of(), tmp_path / "journal.jsonl"
+    asked = []
+
+    def search(problem, *elements):
+        asked.append(0)
+        budget = Budget()
+        if len(asked) == 3:
+            budget.interrupt()
+        return (
+            worst_case_attack(problem, *elements, budget=budget) if elements else solve_maxmin(problem, budget=budget)
+        )
+
+    with pytest.raises(KeyboardInterrupt):
+        run_mission(scenario, steps=5, **{who: search}, journal=journal)
+    assert len(journal.read_text().splitlines()) == 1 + 2
+    whole = run_mission(scenario, steps=5, **{who: search})
+    resumed = run_mission(scenario, steps=5, **{who: search}, journal=journal)
+    assert resumed == whole
 
 
 def test_a_callables_mission_resumes_in_another_process(tmp_path) -> None:

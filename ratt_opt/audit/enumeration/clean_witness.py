@@ -16,6 +16,7 @@ from ratt_opt.audit.engine.decide import Verdict
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.ratt import ratt
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,7 +51,7 @@ def _decided() -> Counted:
     plan = ratt(problem)
     first, second = GROUPS
     attack = Attack(frozenset({0}), problem.communication.links_between(GROUPS))
-    worst = worst_case_attack(problem, plan.elements)
+    worst = uninterrupted(worst_case_attack(problem, plan.elements))
     is_worst = problem.team_value(plan.elements, attack) == worst.upper == worst.lower
     greedy = sorted(set(range(n)) - set(plan.bait))
     on_greedy, on_first = sum(VALUES[i] for i in greedy), sum(VALUES[i] for i in first if i not in attack.sensing)

@@ -20,7 +20,7 @@ from ratt_opt.audit.worst_ratio.families import link_only_instance, pair_instanc
 from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.audit.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
 from ratt_opt.bounds.survivors import survivor_share
-from ratt_opt.stopping import Stop
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -92,9 +92,7 @@ def _exceeded(function_class: FunctionClass, proved: Factor, printed: Factor) ->
 def _attained() -> Counted:
     """N = 4, three links cut: one robot is isolated."""
     k = Fraction(3, 10)
-    found = worst_case_ratio(4, 0, 3, curvature=k, family="submodular")
-    if found.stop is Stop.INTERRUPTED:
-        raise KeyboardInterrupt
+    found = uninterrupted(worst_case_ratio(4, 0, 3, curvature=k, family="submodular"))
     verdict = Verdict.PROVED if found.exact_upper == 1 - k else Verdict.UNDECIDED
     detail = f"exact worst ratio {found.exact_upper} at k = {k}, replayed through the library"
     return Counted(verdict=verdict, sizes="N = 4, alpha_s = 0, alpha_c = 3, one value of k", detail=detail)

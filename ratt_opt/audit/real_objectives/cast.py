@@ -22,6 +22,7 @@ from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import bait_and_greedy
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -111,7 +112,7 @@ class Stage:
         """(N,) elements of an exact optimum against ``alpha_s`` blinded robots."""
         if alpha_s not in self._optima:
             against = Problem(self.problem.objective, self.problem.robot, None, alpha_s, 0)
-            self._optima[alpha_s] = exhaustive_optimum(against).elements
+            self._optima[alpha_s] = uninterrupted(exhaustive_optimum(against)).elements
         return self._optima[alpha_s]
 
     def casts(self, team: Team) -> Iterator[Cast]:

@@ -21,6 +21,7 @@ from ratt_opt.audit.worst_ratio.ratio import class_rows
 from ratt_opt.audit.worst_ratio.search import RatioSearch, skeleton
 from ratt_opt.audit.worst_ratio.witness import PLANNERS, RatioWitness, replay
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -95,11 +96,11 @@ def _picks(n_robots: int, order: Sequence[int]) -> Iterator[tuple[int, int]]:
 
 def exchange_gain(problem: Problem, elements: IntArray) -> float:
     """How much the best exchange of one robot's element adds to a plan's worst case; 0 where none adds anything."""
-    here = worst_case_attack(problem, elements).upper
+    here = uninterrupted(worst_case_attack(problem, elements)).upper
     best = here
     for robot, choice in enumerate(problem.choices):
         for element in choice:
             other = elements.copy()
             other[robot] = element
-            best = max(best, worst_case_attack(problem, other).lower)
+            best = max(best, uninterrupted(worst_case_attack(problem, other)).lower)
     return best - here

@@ -27,7 +27,7 @@ from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
-from ratt_opt.stopping import Stop
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -105,10 +105,8 @@ def replay(witness: RatioWitness) -> Fraction:
     _check(witness)
     problem = witness.problem()
     plan = PLANNERS[witness.planner](problem)
-    attack = worst_case_attack(problem, plan.elements)
-    if attack.stop is Stop.INTERRUPTED:
-        raise KeyboardInterrupt  # whoever asked keeps a bracket of its own; this one is not exact
-    optimum = exhaustive_optimum(problem).lower
+    attack = uninterrupted(worst_case_attack(problem, plan.elements))
+    optimum = uninterrupted(exhaustive_optimum(problem)).lower
     if optimum <= 0:
         raise ProofError("witness: the optimum must be positive")
     return Fraction(int(attack.upper), int(optimum))

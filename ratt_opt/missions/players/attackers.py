@@ -12,6 +12,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.missions.players.named import player_called
 from ratt_opt.problem import Attack
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,8 +57,11 @@ def attacker_called(attacker: str | OwnAttacker) -> Attacker:
 
 
 def attack_of(found: Attack | AttackResult, problem: Problem) -> Attack:
-    """An attacker's attack, checked. InputError : it is none, or exceeds the budgets."""
-    attack = found if isinstance(found, Attack) else getattr(found, "attack", None)
+    """An attacker's attack, checked. InputError : it is none, or exceeds the budgets.
+
+    A search that the user interrupted is no attacker's: KeyboardInterrupt.
+    """
+    attack = found if isinstance(found, Attack) else getattr(uninterrupted(found), "attack", None)
     if not isinstance(attack, Attack):
         raise InputError("attacker", "must return an Attack", type(found).__name__)
     return problem.check_attack(attack)

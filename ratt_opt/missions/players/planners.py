@@ -12,6 +12,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import player_called
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,8 +67,11 @@ def planner_called(planner: str | Planner) -> Planner:
 
 
 def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:
-    """A planner's elements, checked. InputError : they are no plan of the problem."""
-    elements = plan if isinstance(plan, (np.ndarray, list, tuple)) else getattr(plan, "elements", None)
+    """A planner's elements, checked. InputError : they are no plan of the problem.
+
+    A search that the user interrupted planned nothing: KeyboardInterrupt, or the mission would go on with another plan.
+    """
+    elements = plan if isinstance(plan, (np.ndarray, list, tuple)) else getattr(uninterrupted(plan), "elements", None)
     if elements is None:
         raise InputError("planner", "must return a plan or its elements", type(plan).__name__)
     return problem.check_plan(elements)

@@ -10,6 +10,7 @@ import numpy as np
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.errors import InputError
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
+from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,7 +51,7 @@ def _best_worst(problem: Problem, count: int, _seed: int) -> IntArray:
     if len(sets) > MOST_SETS:
         raise InputError("cameras", f"must leave at most {MOST_SETS} sets for the max-min choice", len(sets))
     plans = [_plan(problem, running) for running in sets]
-    return plans[int(np.argmax([worst_case_attack(problem, plan).lower for plan in plans]))]
+    return plans[int(np.argmax([uninterrupted(worst_case_attack(problem, plan)).lower for plan in plans]))]
 
 
 def _ratt(problem: Problem, count: int, _seed: int) -> IntArray:

@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.search import BranchAndBound, Turns
+from ratt_opt.solvers.maxmin.search import BranchAndBound, TurnsUntil
+from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.search import Known, Progress
+    from ratt_opt.solvers.maxmin.search import Known, Progress, Turns
+    from ratt_opt.solvers.maxmin.subtrees.crew import Crew
 
 __all__ = ["Descent"]
 
@@ -44,11 +46,15 @@ MOST_FLOORS = 20
 
 
 class Descent:
-    """The search of one problem by such trees; it may be interrupted at any point, as each of them may."""
+    """The search of one problem by such trees; it may be interrupted at any point, as each of them may.
 
-    def __init__(self, known: Known) -> None:
-        self._known = known
+    ``crew`` : who helps with each of them; nobody where ``None``.
+    """
+
+    def __init__(self, known: Known, crew: Crew | None = None) -> None:
+        self._known, self._crew = known, crew
         self.first = self._best = self._current = BranchAndBound(known)
+        self._searching = self._shared()
         self._tree_nodes, self._floors = float(TREE_NODES), MOST_FLOORS
         self._until = FIRST_NODES
 
@@ -64,7 +70,7 @@ class Descent:
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         while True:
-            stop = self._current.run(_TreeTurns(turns, self._until), self._told(progress))
+            stop = self._searching.run(TurnsUntil(turns, self._is_given_up), self._told(progress))
             has_ended = stop is Stop.GAP
             if has_ended and self._known.rule.floor <= self._known.incumbent.candidates.level:
                 return stop
@@ -74,6 +80,14 @@ class Descent:
                 self._until = MORE_NODES
             else:
                 self._begin_next(has_ended=has_ended)
+
+    def _is_given_up(self) -> bool:
+        """Whether the tree in work has taken too many nodes."""
+        return self._known.incumbent.budget.nodes >= self._until
+
+    def _shared(self) -> BranchAndBound | SharedSearch:
+        """The search of the tree in work: by the crew, where there is one."""
+        return self._current if self._crew is None else SharedSearch(self._current, self._crew)
 
     def _lowest(self) -> BranchAndBound:
         return min(self._best, self._current, key=lambda tree: tree.upper)
@@ -92,7 +106,9 @@ class Descent:
         self._best = self._lowest()
         self._known.rule.floor = self._next_floor()
         self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
-        self._current = BranchAndBound(self._known, depth_first=True)
+        # A crew takes nodes from all over the tree; who goes in depth has few.
+        self._current = BranchAndBound(self._known, depth_first=self._crew is None)
+        self._searching = self._shared()
 
     def _is_within(self, width: float) -> bool:
         """Whether no larger share of the bound is left."""
@@ -103,14 +119,3 @@ class Descent:
         if self._is_within(NARROW) or not np.isfinite(upper) or self._floors <= 0:
             return -np.inf
         return level + SHARE * (upper - level)
-
-
-class _TreeTurns(Turns):
-    """The turns of a tree that is given up at a count of nodes."""
-
-    def __init__(self, turns: Turns, until: int) -> None:
-        self.budget, self.incumbent, self._turns, self._until = turns.budget, turns.incumbent, turns, until
-
-    def stop(self) -> Stop | None:
-        """Why to stop searching this tree now, if at all."""
-        return self._turns.stop() or (Stop.NODES if self.budget.nodes >= self._until else None)

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     Progress = Callable[[int, float, float], None] | None
 
-__all__ = ["BranchAndBound", "Known", "Turns"]
+__all__ = ["BranchAndBound", "Known", "Turns", "TurnsUntil"]
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 STALL = 0.03
@@ -286,3 +286,19 @@ class Turns:
         goes_on = self.incumbent.prove()
         self._turn = self.budget.part(SEARCH_SHARE)
         return goes_on
+
+
+class TurnsUntil(Turns):
+    """The turns of a search that stops as at a limit of nodes, too, when ``is_enough`` says so."""
+
+    def __init__(self, turns: Turns, is_enough: Callable[[], bool]) -> None:
+        self.budget, self.incumbent, self._turns, self._is_enough = turns.budget, turns.incumbent, turns, is_enough
+
+    @property
+    def seconds_left(self) -> float:
+        """As of the turns themselves."""
+        return self._turns.seconds_left
+
+    def stop(self) -> Stop | None:
+        """Why to stop searching now, if at all."""
+        return self._turns.stop() or (Stop.NODES if self._is_enough() else None)

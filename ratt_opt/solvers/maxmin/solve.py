@@ -23,7 +23,6 @@ from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import Known, Turns
 from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
-from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
@@ -31,7 +30,6 @@ from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from concurrent.futures import Executor
 
     from numpy.typing import ArrayLike
@@ -107,12 +105,11 @@ def solve_maxmin(
         task = Task.of(problem)
         pairs = PairOutcomes.of(task)
         incumbent.start(_first_plans(problem, first, warm, pairs, budget))
-        # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = Descent(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs))
-        search.first.use(warm.add_cuts(search.first.cuts, outcomes))
         with open_crew(workers) as crew:
-            run = search.run if crew is None else SharedSearch(search.first, crew).run
-            stop = _search_and_prove(search, run, Turns(budget, incumbent), progress)
+            # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
+            search = Descent(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew)
+            search.first.use(warm.add_cuts(search.first.cuts, outcomes))
+            stop = _search_and_prove(search, Turns(budget, incumbent), progress)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -130,14 +127,12 @@ def _first_plans(
     return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
 
 
-def _search_and_prove(
-    search: Descent, run: Callable[[Turns, Progress], Stop], turns: Turns, progress: Progress
-) -> Stop:
+def _search_and_prove(search: Descent, turns: Turns, progress: Progress) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
             progress(turns.budget.nodes, turns.incumbent.proved.lower, search.upper)
-        stop = run(turns, progress)
+        stop = search.run(turns, progress)
         if not turns.prove():
             return stop
 

@@ -21,6 +21,7 @@ import ratt_opt as ro
 from ratt_opt import InputError, Stop, random_scenario, solve_maxmin
 from ratt_opt.solvers.maxmin.subtrees import shared_search
 from ratt_opt.solvers.maxmin.subtrees.crew import LOSSES
+from ratt_opt.solvers.maxmin.subtrees.worker import Work
 from tests.oracles import brute_force_optimum
 from tests.solvers.maxmin.test_solve import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
@@ -39,9 +40,11 @@ class Here(Executor):
 
     def __init__(self, loses=lambda _: False) -> None:
         self.calls, self._loses, self._max_workers = 0, loses, 2
+        self.trees: set[str] = set()
 
     def submit(self, fn, /, *args, **kwargs):
         self.calls += 1
+        self.trees |= {work.tree for work in args if isinstance(work, Work)}
         future = Future()
         if self._loses(self.calls):
             future.set_exception(ConnectionError("the worker is gone"))

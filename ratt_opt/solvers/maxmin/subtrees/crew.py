@@ -6,7 +6,9 @@ import os
 import pickle
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from time import monotonic
 from typing import TYPE_CHECKING
+from uuid import uuid4
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
@@ -28,11 +30,13 @@ LOSSES = 3
 class Crew:
     """Pieces of work and their nodes; one that is lost, to whatever failure, comes back without a result.
 
-    ``size`` : how many pieces are worked on at the same time.
+    ``size`` : how many pieces are worked on at the same time; ``search`` : a name of the search that it is for
+    ``since`` : when it was engaged, by the monotonic clock [s].
     """
 
     def __init__(self, executor: Executor, size: int) -> None:
         self._executor, self.size = executor, size
+        self.search, self.since = uuid4().hex, monotonic()
         self._at_work: dict[Future[Searched], tuple[Work, list[TreeNode]]] = {}
         self._lost = 0
         self.has_answered = False

@@ -8,17 +8,15 @@ from time import monotonic
 from typing import TYPE_CHECKING
 from uuid import uuid4
 
-from ratt_opt.solvers.maxmin.search import Turns
+from ratt_opt.solvers.maxmin.search import TurnsUntil
 from ratt_opt.solvers.maxmin.subtrees.merge import hang_below
 from ratt_opt.solvers.maxmin.subtrees.worker import LentNode, Work
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.proof import TreeNode
-    from ratt_opt.solvers.maxmin.search import BranchAndBound, Progress
+    from ratt_opt.solvers.maxmin.search import BranchAndBound, Progress, Turns
     from ratt_opt.solvers.maxmin.subtrees.crew import Crew
     from ratt_opt.solvers.maxmin.subtrees.worker import Searched
 
@@ -40,22 +38,22 @@ LEAST = 0.05
 WAIT = 0.2
 """Seconds between two looks at the clock while nobody answers."""
 GRACE = 0.3
-"""Seconds waited for work that was asked to be back by now."""
+"""Seconds waited for work that was asked to be back by now. Where a tree is given up for its count of nodes, ``SLICE``
+more: the next one begins with the outcomes found by then, and its work with whoever is free."""
 
 
 class SharedSearch:
-    """A search whose nodes a crew searches, once there are enough of them."""
+    """The search of one tree whose nodes a crew searches, once there are enough of them."""
 
     def __init__(self, search: BranchAndBound, crew: Crew) -> None:
         self._search, self._crew = search, crew
         self._frontier = search.frontier
         self._name = uuid4().hex
-        self._alone_until = monotonic() + ALONE_SECONDS
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         search, budget = self._search, turns.budget
-        stop = search.run(_Alone(turns, self._is_worth_sharing), progress)
+        stop = search.run(TurnsUntil(turns, self._is_worth_sharing), progress)
         if stop is not Stop.NODES or budget.stop() is not None:
             return stop
         while self._frontier.lent or not search.is_finished():
@@ -66,7 +64,7 @@ class SharedSearch:
             if reason is None and works:  # while processes start
                 reason = search.explore_next(turns)
             if reason is not None:
-                self._call_back(budget)
+                self._call_back(budget, GRACE + SLICE if reason is Stop.NODES else GRACE)
                 return reason
             self._take(0.0 if works else WAIT, budget)
             if progress is not None:
@@ -74,7 +72,8 @@ class SharedSearch:
         return Stop.GAP
 
     def _is_worth_sharing(self) -> bool:
-        return len(self._frontier) >= NODES_EACH * self._crew.size and monotonic() >= self._alone_until
+        is_long = monotonic() >= self._crew.since + ALONE_SECONDS
+        return is_long and len(self._frontier) >= NODES_EACH * self._crew.size
 
     def _give_away(self, turns: Turns) -> Stop | None:
         """Give whoever is idle its share of the open nodes; what nobody else can do is done here."""
@@ -104,9 +103,11 @@ class SharedSearch:
         number = {k: position for position, k in enumerate(used)}
         decided = search.winners.decided
         return Work(
-            search=self._name,
+            search=self._crew.search,
+            tree=self._name,
             problem=search.task.problem,
             gap=search.rule.gap,
+            floor=search.rule.floor,
             plan=search.incumbent.candidates.best,
             outcomes=tuple(pool.origin(outcome) for outcome in range(len(pool))),
             cuts=tuple(search.cuts.record(k) for k in used),
@@ -145,20 +146,9 @@ class SharedSearch:
             self._frontier.push(node)
         self._frontier.take_back(nodes)
 
-    def _call_back(self, budget: Budget) -> None:
-        """Take what comes back in a moment; what does not is queued again."""
-        until = monotonic() + GRACE
+    def _call_back(self, budget: Budget, patience: float) -> None:
+        """Take what comes back within so many seconds, as far as there are so many; what does not is queued again."""
+        until = monotonic() + min(patience, max(budget.seconds_left, GRACE))
         while self._frontier.lent and (left := until - monotonic()) > 0 and budget.stop() is not Stop.INTERRUPTED:
             self._take(left, budget)
         self._queue_again(self._crew.recall())
-
-
-class _Alone(Turns):
-    """The turns of a search that stops as at a limit of nodes when there is enough for others to do."""
-
-    def __init__(self, turns: Turns, is_enough: Callable[[], bool]) -> None:
-        self.budget, self._turns, self._is_enough = turns.budget, turns, is_enough
-
-    def stop(self) -> Stop | None:
-        """Why to stop searching alone now, if at all."""
-        return self._turns.stop() or (Stop.NODES if self._is_enough() else None)

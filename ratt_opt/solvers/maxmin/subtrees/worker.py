@@ -43,14 +43,17 @@ class LentNode:
 class Work:
     """Nodes to search, what is known of their problem, and for how long.
 
-    ``search`` : a name of the whole search; ``plan`` : (N,) the best one known; ``outcomes`` : all that are known
+    ``search``, ``tree`` : names of the whole search and of the tree that the nodes are of; ``floor`` : that tree's
+    ``plan`` : (N,) the best one known; ``outcomes`` : all that are known
     ``cuts`` : those of the nodes' leaves
     ``nodes_before`` : of the whole search until now; ``max_nodes`` : at which count of the whole to stop
     """
 
     search: str
+    tree: str
     problem: Problem
     gap: float
+    floor: float
     plan: IntArray
     outcomes: tuple[Attack | Outcome, ...]
     cuts: tuple[TangentCut, ...]
@@ -83,17 +86,25 @@ _MEMORY = threading.local()
 
 
 class _Worker:
-    """One search's outcomes, cuts and programs, kept from work to work; nodes are not."""
+    """One search's outcomes and cuts, and one tree's winners and programs, kept from work to work; nodes are not."""
 
     def __init__(self, work: Work) -> None:
         self._budget = Budget(work.seconds)
         pool = OutcomePool(work.problem)
         self._incumbent = Incumbent(work.problem, pool, work.plan, self._budget)
         task = Task.of(work.problem)
-        self._search = BranchAndBound(Known.of(task, self._incumbent, work.gap, PairOutcomes.of(task)), [])
+        self._known = Known.of(task, self._incumbent, work.gap, PairOutcomes.of(task))
+        self._begin(work)
+
+    def _begin(self, work: Work) -> None:
+        """Begin another tree: what was decided for all plans above the floor of one is not above that of the next."""
+        self._known.rule.floor, self._tree = work.floor, work.tree
+        self._search = BranchAndBound(self._known, [])
 
     def search(self, work: Work) -> Searched:
         """Search the nodes of one piece of work."""
+        if work.tree != self._tree:
+            self._begin(work)
         search, pool, budget = self._search, self._search.pool, self._budget
         budget.time_limit, budget.max_nodes = budget.elapsed + work.seconds, work.max_nodes
         budget.nodes = work.nodes_before
