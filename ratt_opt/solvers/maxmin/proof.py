@@ -109,7 +109,8 @@ class TreeNode:
 
     ``choices`` : remaining elements per robot (one of each class of equal elements); ``winners`` : outcome ->
     declared group; ``bound`` : proved for its plans by ``leaf``; ``split`` : what it was divided by, once it was.
-    ``relies_on`` : outcomes whose cuts its proof uses, once all below is closed; ``is_dropped`` : not in the tree now.
+    ``relies_on`` : outcomes whose cuts its proof uses, once all below is closed; ``parent`` : the node that was
+    divided, if any; ``is_dropped`` : whether it is no longer in the tree (``backjumps.py``).
     """
 
     choices: Choices

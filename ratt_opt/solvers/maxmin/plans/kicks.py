@@ -40,11 +40,14 @@ class Kicks:
     def __init__(self, incumbent: Incumbent) -> None:
         self._incumbent = incumbent
         self._rng = np.random.default_rng(SEED)
-        self._next = FIRST
+        self._next, self._is_symmetric = FIRST, incumbent.problem.threat.is_symmetric
 
     def are_due(self, nodes: int) -> bool:
-        """Whether so many nodes were searched that it is time for a kick; never where all outcomes are known."""
-        return nodes >= self._next and not self._incumbent.pool.complete
+        """Whether so many nodes were searched that it is time for a kick.
+
+        Never where all outcomes are known, nor where robots or links differ to the adversary: not measured there.
+        """
+        return nodes >= self._next and not self._incumbent.pool.complete and self._is_symmetric
 
     def kick(self) -> None:
         """Climb from a plan next to the best one; a better one that is found becomes a candidate.
