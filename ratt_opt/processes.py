@@ -31,6 +31,8 @@ def local_processes(workers: int | None) -> Iterator[Executor]:
     with _one_thread_each():
         executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
         try:
+            with _uninterrupted():
+                executor.submit(os.getpid)  # starts all of them
             yield executor
         except BaseException:
             # Not cancelled first: the pool would then report its cancelled trials as broken, with a traceback.

@@ -165,6 +165,44 @@ def test_interrupt_says_how_to_resume(tmp_path: Path) -> None:
     assert "Traceback" not in errors
 
 
+WORKING = """
+import os, sys, time
+from ratt_opt.processes import local_processes
+if __name__ == "__main__":
+    with local_processes(1) as executor:
+        executor.submit(os.getpid)
+        try:
+            time.sleep(60)
+        except KeyboardInterrupt:
+            time.sleep(0.3)  # it has to write what it has
+            sys.exit(130)
+else:
+    print("starting", flush=True)
+    time.sleep(1)
+"""
+
+
+def test_an_interrupt_of_all_processes_at_once_is_met_by_the_first_alone(tmp_path: Path) -> None:
+    """As a terminal sends it, while the others still start: none of them complains."""
+    script = tmp_path / "working.py"
+    script.write_text(WORKING)
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(
+        [sys.executable, str(script)],
+        env=environment,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "starting\n"
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors == ""
+
+
 def test_other_results_are_refused_and_kept(tmp_path: Path) -> None:
     _threads(tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
