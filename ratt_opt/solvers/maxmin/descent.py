@@ -5,6 +5,9 @@ closes most nodes at once and decides winners early: groups that could be above 
 found on the way hurt the strongest plans, and the next tree meets them at its root, where the one before had met
 them in some deep node. It halves what is left, until the last one has no floor.
 
+Trees after the first are searched in depth: below a node that is closed, divisions that its proof does not rely on are
+taken back (``backjumps.py``), which saves the siblings that were not searched yet.
+
 A tree with a floor proves a bound for all plans: what it closes is hardly above the floor. The tree of smallest bound
 is kept as the proof. A tree that takes too many nodes is given up for one that begins with the outcomes found by then.
 """
@@ -103,7 +106,8 @@ class Descent:
         self._best = self._lowest()
         self._known.rule.floor = self._next_floor()
         self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
-        self._current = BranchAndBound(self._known)
+        # A crew takes nodes from all over the tree; who goes in depth has few.
+        self._current = BranchAndBound(self._known, depth_first=self._crew is None)
         self._searching = self._shared()
 
     def _is_within(self, width: float) -> bool:

@@ -58,10 +58,13 @@ class ClosingRule:
 
 
 class Frontier:
-    """Nodes that are open, the one in work, and those that were closed; any interrupt leaves a valid bound."""
+    """Nodes that are open, the one in work, and those that were closed; any interrupt leaves a valid bound.
 
-    def __init__(self, rule: ClosingRule) -> None:
-        self.rule = rule
+    ``depth_first`` : whether the latest node is taken, instead of the one of largest bound.
+    """
+
+    def __init__(self, rule: ClosingRule, *, depth_first: bool = False) -> None:
+        self.rule, self.depth_first = rule, depth_first
         self.empty()
 
     def empty(self) -> None:
@@ -73,31 +76,44 @@ class Frontier:
         self._queue: list[tuple[float, int, TreeNode]] = []
         self._pushed = 0
         self._closed: list[TreeNode] = []
+        self.fresh: list[TreeNode] = []
+        """Nodes that were closed and not followed up the tree; see ``backjumps.py``."""
         self._settled: list[tuple[TreeNode, int]] = []
         """Nodes of a single plan, and how many outcomes were known when their bounds were found."""
-        self._finished = self._lowest = -np.inf
+        self._finished = -np.inf
 
     @property
     def bound(self) -> float:
         """The largest bound of an open or finished node."""
-        still = [-self._queue[0][0]] if self._queue else []
+        still = [node.bound for node in self._largest()]
+        still.extend(node.bound for node, _ in self._settled if not node.is_dropped)
         if self.current is not None:
             still.append(self.current.bound)
         still.extend(node.bound for node in self.lent)
-        return max(self._finished, self._lowest, *still)
+        return max([self._finished, *still])
 
     @property
     def is_closed(self) -> bool:
         """Whether no open node is left that does not close."""
-        return not self._queue or self.rule.closes(-self._queue[0][0])
+        return all(self.rule.closes(node.bound) for node in self._largest())
+
+    def _largest(self) -> Iterator[TreeNode]:
+        """Queued nodes, one of which has the largest bound of them."""
+        while self._queue and self._queue[0][2].is_dropped:
+            heapq.heappop(self._queue)
+        return (node for _, _, node in (self._queue if self.depth_first else self._queue[:1]) if not node.is_dropped)
 
     def push(self, node: TreeNode) -> None:
         """Queue an open node."""
-        heapq.heappush(self._queue, (-node.bound, self._pushed, node))
+        heapq.heappush(self._queue, (-self._pushed if self.depth_first else -node.bound, self._pushed, node))
         self._pushed += 1
 
     def take(self) -> TreeNode:
-        """Make the open node of largest bound the one in work."""
+        """Make the open node of largest bound, or the latest that does not close, the one in work."""
+        while (first := self._queue[0][2]).is_dropped or (self.depth_first and self.rule.closes(first.bound)):
+            if not first.is_dropped:
+                self.close(first)
+            heapq.heappop(self._queue)
         self.current = node = self._queue[0][2]  # before it leaves the queue: an interrupt must not lose it
         heapq.heappop(self._queue)
         return node
@@ -135,13 +151,22 @@ class Frontier:
 
     def close(self, node: TreeNode) -> None:
         """Finish a node whose bound closes it."""
+        self.finish_up_to(node.bound)
         self._closed.append(node)
-        self._finished = max(self._finished, node.bound)
+        self.fresh.append(node)
+
+    def finish_up_to(self, bound: float) -> None:
+        """Let the bound of what is closed be at least this one."""
+        self._finished = max(self._finished, bound)
+
+    def replace(self, node: TreeNode, other: TreeNode) -> None:
+        """Let another node be closed in the place of one, with its bound."""
+        self._closed.append(other)
+        node.is_dropped = True
 
     def settle(self, node: TreeNode) -> None:
         """Finish a node of a single plan, whose bound is as low as the known outcomes make it."""
         self._settled.append((node, len(self.rule.plans.pool)))
-        self._lowest = max(self._lowest, node.bound)
 
     def reopen(self) -> bool:
         """Queue nodes that were closed against a better level than there is now; whether there are any.
@@ -152,14 +177,16 @@ class Frontier:
         if again:
             self._closed = [node for node in self._closed if self.rule.closes(node.bound)]
             self._finished = max((node.bound for node in self._closed), default=-np.inf)
-            for node in again:
-                self.push(node)
+        again = [node for node in again if not node.is_dropped]
+        for node in again:
+            self.push(node)
+            node.open_again()
+        self._settled = [(node, known) for node, known in self._settled if not node.is_dropped]
         outdated = [(node, known) for node, known in self._settled if self._is_outdated(node, known)]
         for node, _ in outdated:
             self.push(node)
         if outdated:
             self._settled = [one for one in self._settled if one not in outdated]
-            self._lowest = max((node.bound for node, _ in self._settled), default=-np.inf)
         return bool(again or outdated)
 
     def _is_outdated(self, node: TreeNode, known: int) -> bool:

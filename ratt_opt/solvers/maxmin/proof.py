@@ -9,7 +9,7 @@ worst case; the leaf's convex combination of such cuts bounds every plan that re
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ratt_opt._values import ByValue
@@ -98,6 +98,10 @@ class Split:
     subject: int
     parts: tuple[tuple[tuple[int, ...], TreeNode], ...]
 
+    def divides(self, robot: int) -> bool:
+        """Whether it divides the elements of this robot."""
+        return not self.by_winner and self.subject == robot
+
 
 @dataclass(slots=True, eq=False)
 class TreeNode:
@@ -105,6 +109,8 @@ class TreeNode:
 
     ``choices`` : remaining elements per robot (one of each class of equal elements); ``winners`` : outcome ->
     declared group; ``bound`` : proved for its plans by ``leaf``; ``split`` : what it was divided by, once it was.
+    ``relies_on`` : outcomes whose cuts its proof uses, once all below is closed; ``parent`` : the node that was
+    divided, if any; ``is_dropped`` : whether it is no longer in the tree (``backjumps.py``).
     """
 
     choices: Choices
@@ -112,16 +118,25 @@ class TreeNode:
     bound: float
     leaf: Leaf
     split: Split | None = None
+    parent: TreeNode | None = field(default=None, repr=False)
+    relies_on: frozenset[int] | None = None
+    is_dropped: bool = False
 
     def child(self, choices: Choices | None = None, winner: tuple[int, int] | None = None) -> TreeNode:
         """A node below this one, proved so far by the same leaf."""
         winners = self.winners if winner is None else {**self.winners, winner[0]: winner[1]}
-        return TreeNode(self.choices if choices is None else choices, winners, self.bound, self.leaf)
+        return TreeNode(self.choices if choices is None else choices, winners, self.bound, self.leaf, parent=self)
 
     @property
     def is_single(self) -> bool:
         """Whether it stands for one plan."""
         return all(len(choice) == 1 for choice in self.choices)
+
+    def open_again(self) -> None:
+        """Note that it is open, and with it what is above."""
+        node: TreeNode | None = self
+        while node is not None:
+            node.relies_on, node = None, node.parent
 
     def tighten(self, leaf: Leaf, bound: float) -> None:
         """Keep a leaf that bounds the node by less than its own does."""

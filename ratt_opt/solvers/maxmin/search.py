@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import largest_of_each
+from ratt_opt.solvers.maxmin.backjumps import Backjumps
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups, SmallTables
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
+from ratt_opt.solvers.maxmin.plans.kicks import Kicks
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
@@ -60,6 +62,7 @@ class Known:
     proofs: GroupProofs
     tables: SmallTables
     node_attacks: NodeAttacks | None
+    kicks: Kicks
 
     @classmethod
     def of(cls, task: Task, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> Known:
@@ -75,22 +78,24 @@ class Known:
             proofs=GroupProofs(cuts, rule),
             tables=SmallTables(task, pool),
             node_attacks=NodeAttacks.of(task.problem, pool, incumbent.budget),
+            kicks=Kicks(incumbent),
         )
 
 
 class BranchAndBound:
     """The search of one tree; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
-    def __init__(self, known: Known, roots: list[TreeNode] | None = None) -> None:
+    def __init__(self, known: Known, roots: list[TreeNode] | None = None, *, depth_first: bool = False) -> None:
         self.task, self.pool, self.pairs = known.task, known.incumbent.pool, known.pairs
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
-        self.frontier = Frontier(self.rule)
+        self.frontier = Frontier(self.rule, depth_first=depth_first)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
         self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
-        self.node_attacks = known.node_attacks
+        self.node_attacks, self.kicks = known.node_attacks, known.kicks
+        self.backjumps = Backjumps(self.frontier, self.cuts)
         self._is_part = roots is not None
         """Whether another search looks after winners decided for all plans: it queues what is open in the proofs."""
         self.roots = [self._first_node()] if roots is None else roots
@@ -120,6 +125,9 @@ class BranchAndBound:
                 return stop
             if (stop := self.explore_next(turns)) is not None:
                 return stop
+            self.backjumps.follow()
+            if not self._is_part and self.kicks.are_due(turns.budget.nodes):
+                self.kicks.kick()
             if progress is not None:
                 progress(turns.budget.nodes, self.incumbent.proved.lower, self.upper)
         return Stop.GAP
