@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
+from ratt_opt.attackers.any_graph import any_graph, last_stage
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound, unprotected_bound
+from ratt_opt.attackers.by_size.relaxed_teams import unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
-from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, AttackTask, MeetsAim, PlanValues
-from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.largest_group.spreading import forced_size
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
 from ratt_opt.progress import Step
@@ -30,8 +27,6 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.by_prices.price_search import PriceSearch
-    from ratt_opt.attackers.task import Resumable
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
@@ -39,23 +34,6 @@ __all__ = ["worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-TREE_SHARE, BOUND_SHARE, BOUND_NODES = 0.2, 0.3, 500_000
-"""Of what is left of the budget for tree inequalities; then, and at most so many nodes, for the weakest group of the
-forced size; prices get the rest. Not measured."""
-
-FIRST_STARTS, INNER_STARTS, STARTS_FOR = 12, 3, 24
-"""Annealed attacks before the first threshold, and where only nodes limit or another search sets no time: about every
-fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
-The first grow with the square of the robots beyond these 24: at 50 (a disk of mean degree 12, 17 blinded, 90 links cut)
-the fourteenth start is the first of 112 to find the best attack, 1.3 % worse for the team than what the others find."""
-
-INNER_NODES = 500_000
-"""Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
-teams, none of which need ever close."""
-
-DENSE = 0.5
-"""Share of all links from which groups of possible sizes are looked at before partitions, if time allows."""
-
 FEW_GROUPS, MANY_GROUPS, LISTING_SHARE = 10_000, 300_000, 0.1
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else; and
 of the seconds left, for listing them. It takes a second on sparse graphs of 50 robots, four on dense ones."""
@@ -86,16 +64,16 @@ def worst_case_attack(
     - Larger teams with two-dimensional targets on a complete graph without protected links: families
       of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set). Relies on a non-decreasing
       objective, which the three criteria are.
-    - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots, to 20 where half of
-      all links are there: partitions into groups and who is blinded in each (``by_partition``; a node is a group tried
-      or a partial set), after the bounds of the next line and, on a complete graph, of the attacker that may cut
-      protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above do not apply: annealed attacks, tree inequalities
-      (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``; where another
-      search asks, on dense graphs and within a limit of time), and prices that no weak group pays (``by_prices``; a
-      node is a branch on one robot), until closed or out of the budget: give one, as graphs of 50 robots can take
-      hours to close (of another search's budget that limits nothing, half a million nodes). Relies on a non-decreasing
-      objective, as above; targets of any dimension. Compiling takes about a minute once per machine.
+    - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots: partitions into
+      groups and who is blinded in each (``by_partition``; a node is a group tried or a partial set), beyond 20 robots
+      and where half of all links are there for a fifth of the budget. Before, on a complete graph, the bounds of the
+      attacker that may cut protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
+    - Teams of more than 20 robots on any graph, where the lines above do not apply or end: annealed attacks, tree
+      inequalities (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``;
+      where another search asks, on dense graphs and within a limit of time), and prices that no weak group pays
+      (``by_prices``; a node is a branch on one robot), until closed or out of the budget: give one, as graphs of 50
+      robots can take hours to close (of another search's budget that limits nothing, half a million nodes). Relies on
+      a non-decreasing objective, as above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
       steps and exchanges, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
@@ -168,7 +146,7 @@ def _unattacked(problem: Problem, values: PlanValues) -> float:
 def _search(task: AttackTask, *, is_brief: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
     if task.memory.search is not None and task.budget.seconds_left <= RENEWED * task.memory.seconds:
-        return _last_stage(task, task.memory.search)
+        return last_stage(task, task.memory.search)
     task.memory.seconds = task.budget.seconds_left
     if not isinstance(problem.objective, InformationObjective):
         return _any_function(task)
@@ -188,7 +166,7 @@ def _search(task: AttackTask, *, is_brief: bool) -> Stop:
         return threshold_search(task)
     if team is not None and problem.communication.is_complete:
         unprotected_bound(task, team)
-    return _any_graph(task, team, groups, is_brief=is_brief)
+    return any_graph(task, team, groups, is_brief=is_brief)
 
 
 def _any_function(task: AttackTask) -> Stop:
@@ -203,90 +181,6 @@ def _any_function(task: AttackTask) -> Stop:
     if n_robots <= LARGEST_COMPILED and 2**n_robots <= budget.evaluations_left:
         return threshold_search(task)
     return Stop.CLOSED if task.bracket.is_closed else budget.stop() or Stop.HEURISTIC
-
-
-def _any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
-    """Groups of possible sizes on dense graphs; partitions where they are few; else annealing, bounds, prices."""
-    is_dense = _is_dense(task.problem) and not is_brief
-    if team is not None and groups is not None:
-        from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
-
-        if not is_dense or task.problem.n_robots <= LARGEST_COMPILED:
-            stop = forced_group_bound(task, team)
-            return stop if stop is Stop.CLOSED else _last_stage(task, SplitSearch(task, team, groups))
-        if _closed_by_sizes(task, team, 0):
-            return Stop.CLOSED
-    if is_brief and task.budget.max_nodes is None:
-        task.budget.max_nodes = task.budget.nodes + INNER_NODES
-    least = _by_trees(task, is_brief=is_brief)
-    prices = _price_search(task) if task.budget.stop() is None else None
-    if prices is None:
-        return forced_group_bound(task, team, least)
-    starts = int(FIRST_STARTS * max(task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
-    prices.anneal(INNER_STARTS if is_brief else starts)
-    if _closed_by_sizes(task, team, least, looks=not is_brief):
-        return Stop.CLOSED
-    return _last_stage(task, prices)
-
-
-def _last_stage(task: AttackTask, search: Resumable) -> Stop:
-    """Run a search, begun or new, that goes on where the memory finds it."""
-    search.task, task.memory.search = task, search
-    return search.run()
-
-
-def _closed_by_sizes(task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True) -> bool:
-    """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it."""
-    if looks:
-        least = possible_sizes_bound(task, team, least)
-    return task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED
-
-
-def _is_dense(problem: Problem) -> bool:
-    return 2 * len(problem.communication.links) >= DENSE * problem.n_robots * (problem.n_robots - 1)
-
-
-def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
-    """Seeing robots that some group is forced to keep, by tree inequalities; the bracket knows what that is worth."""
-    objective, threat, part = task.problem.objective, task.problem.threat, task.budget.part(TREE_SHARE)
-    assert isinstance(objective, InformationObjective)
-    size = forced_size(threat, part, threat.graph.n_robots)
-    task.bracket.raise_lower(first_bound(objective, task.values.plan, threat, size))
-    if not is_brief:
-        task.bracket.raise_lower(tree_bound(objective, task.values.plan, threat, part, task.bracket.upper))
-    task.budget.check()
-    return size
-
-
-def _price_search(task: AttackTask) -> PriceSearch | None:
-    """The search by prices, new or begun, for criteria with compiled code."""
-    from ratt_opt.attackers.by_prices.team import PricedTeam
-
-    team = PricedTeam.of(task.problem.objective, task.values.plan)
-    if team is None:
-        return None
-    from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles
-
-    begun = task.memory.search
-    if isinstance(begun, PriceSearch):
-        begun.task = task
-        return begun
-    return PriceSearch(task, team)
-
-
-def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None, least: int) -> Stop:
-    """The bound of the forced size within its share of the seconds and nodes left; the bracket keeps what it proves."""
-    budget = task.budget
-    nodes = math.inf if budget.max_nodes is None else BOUND_SHARE * budget.nodes_left(budget.max_nodes)
-    part = budget.part(BOUND_SHARE, max_nodes=int(min(nodes, BOUND_NODES)))
-    try:
-        return forced_group_bound(replace(task, budget=part), team, least)
-    except OutOfBudget as out:
-        if out.stop is Stop.INTERRUPTED:
-            raise
-        return out.stop
-    finally:
-        budget.nodes += part.nodes
 
 
 def _few_groups(task: AttackTask, team: PlanarTeam | None) -> SeparableGroups | None:

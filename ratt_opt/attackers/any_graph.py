@@ -1,0 +1,135 @@
+"""Worst attacks on incomplete graphs and with protected links: what is asked, and what of the budget each has."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
+from ratt_opt.attackers.first_bound import first_bound
+from ratt_opt.attackers.forced_group import forced_group_bound
+from ratt_opt.attackers.tree_bound import tree_bound
+from ratt_opt.budget import OutOfBudget
+from ratt_opt.graph.largest_group.spreading import forced_size
+from ratt_opt.graph.threshold import LARGEST_COMPILED
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt.attackers.by_prices.price_search import PriceSearch
+    from ratt_opt.attackers.task import AttackTask, Resumable
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.graph.separable_groups import SeparableGroups
+    from ratt_opt.problem import Problem
+
+__all__ = ["any_graph", "last_stage"]
+
+TREE_SHARE, BOUND_SHARE, BOUND_NODES = 0.2, 0.3, 500_000
+"""Of what is left of the budget for tree inequalities; then, and at most so many nodes, for the weakest group of the
+forced size; prices get the rest. Not measured."""
+
+FIRST_STARTS, INNER_STARTS, STARTS_FOR = 12, 3, 24
+"""Annealed attacks before the first threshold, and where only nodes limit or another search sets no time: about every
+fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
+The first grow with the square of the robots beyond these 24: at 50 (a disk of mean degree 12, 17 blinded, 90 links cut)
+the fourteenth start is the first of 112 to find the best attack, 1.3 % worse for the team than what the others find."""
+
+INNER_NODES = 500_000
+"""Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
+teams, none of which need ever close."""
+
+DENSE, SPLIT_SHARE, SPLIT_NODES = 0.5, 0.2, 2_000_000
+"""Share of all links from which partitions have but a share of the seconds, and at most so many nodes (some seconds),
+before possible sizes and prices: a disk of 24 robots and mean degree 12 closes in 0.6 s by partitions, and not in 30 by
+prices; a random graph with 0.7 of all links in 6 s by sizes and prices, and not in 60 by partitions."""
+
+
+def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
+    """Partitions where groups are few, on dense graphs for a while; then annealing, bounds of sizes, prices."""
+    if team is not None and groups is not None:
+        from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
+
+        if not _is_dense(task.problem) or is_brief or task.problem.n_robots <= LARGEST_COMPILED:
+            stop = forced_group_bound(task, team)
+            return stop if stop is Stop.CLOSED else last_stage(task, SplitSearch(task, team, groups))
+        if _forced_group_in_share(task, team, 0) is Stop.CLOSED:
+            return Stop.CLOSED
+        if (
+            _in_share(task, (SPLIT_SHARE, SPLIT_NODES), lambda part: SplitSearch(part, team, groups).run())
+            is Stop.CLOSED
+        ):
+            return Stop.CLOSED
+    if is_brief and task.budget.max_nodes is None:
+        task.budget.max_nodes = task.budget.nodes + INNER_NODES
+    least = _by_trees(task, is_brief=is_brief)
+    prices = _price_search(task) if task.budget.stop() is None else None
+    if prices is None:
+        return forced_group_bound(task, team, least)
+    starts = int(FIRST_STARTS * max(task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
+    prices.anneal(INNER_STARTS if is_brief else starts)
+    if not is_brief:
+        least = possible_sizes_bound(task, team, least)
+    if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+        return Stop.CLOSED
+    return last_stage(task, prices)
+
+
+def last_stage(task: AttackTask, search: Resumable) -> Stop:
+    """Run a search, begun or new, that goes on where the memory finds it."""
+    search.task, task.memory.search = task, search
+    return search.run()
+
+
+def _is_dense(problem: Problem) -> bool:
+    return 2 * len(problem.communication.links) >= DENSE * problem.n_robots * (problem.n_robots - 1)
+
+
+def _by_trees(task: AttackTask, *, is_brief: bool) -> int:
+    """Seeing robots that some group is forced to keep, by tree inequalities; the bracket knows what that is worth."""
+    objective, threat, part = task.problem.objective, task.problem.threat, task.budget.part(TREE_SHARE)
+    assert isinstance(objective, InformationObjective)
+    size = forced_size(threat, part, threat.graph.n_robots)
+    task.bracket.raise_lower(first_bound(objective, task.values.plan, threat, size))
+    if not is_brief:
+        task.bracket.raise_lower(tree_bound(objective, task.values.plan, threat, part, task.bracket.upper))
+    task.budget.check()
+    return size
+
+
+def _price_search(task: AttackTask) -> PriceSearch | None:
+    """The search by prices, new or begun, for criteria with compiled code."""
+    from ratt_opt.attackers.by_prices.team import PricedTeam
+
+    team = PricedTeam.of(task.problem.objective, task.values.plan)
+    if team is None:
+        return None
+    from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles
+
+    begun = task.memory.search
+    if isinstance(begun, PriceSearch):
+        begun.task = task
+        return begun
+    return PriceSearch(task, team)
+
+
+def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None, least: int) -> Stop:
+    """The bound of the forced size within its share of the seconds and nodes left."""
+    return _in_share(task, (BOUND_SHARE, BOUND_NODES), lambda part: forced_group_bound(part, team, least))
+
+
+def _in_share(task: AttackTask, most: tuple[float, int], stage: Callable[[AttackTask], Stop]) -> Stop:
+    """A stage within ``most`` = (share of the seconds and nodes left, nodes); the bracket keeps what it proves."""
+    budget, (share, at_most) = task.budget, most
+    nodes = math.inf if budget.max_nodes is None else share * budget.nodes_left(budget.max_nodes)
+    part = budget.part(share, max_nodes=int(min(nodes, at_most)))
+    try:
+        return stage(replace(task, budget=part))
+    except OutOfBudget as out:
+        if out.stop is Stop.INTERRUPTED:
+            raise
+        return out.stop
+    finally:
+        budget.nodes += part.nodes
