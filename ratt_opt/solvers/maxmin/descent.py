@@ -18,14 +18,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.search import BranchAndBound, TurnsUntil
+from ratt_opt.solvers.maxmin.search import BranchAndBound
 from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
+from ratt_opt.solvers.maxmin.turns import TurnsUntil
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.search import Known, Progress, Turns
+    from ratt_opt.solvers.maxmin.search import Known, Progress
     from ratt_opt.solvers.maxmin.subtrees.crew import Crew
+    from ratt_opt.solvers.maxmin.turns import Turns
 
 __all__ = ["Descent"]
 

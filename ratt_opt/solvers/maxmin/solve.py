@@ -21,9 +21,10 @@ from ratt_opt.solvers.maxmin.descent import Descent
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.search import Known, Turns
+from ratt_opt.solvers.maxmin.search import Known
 from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
+from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import QUICK, equivalent_sensing_attacks, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan

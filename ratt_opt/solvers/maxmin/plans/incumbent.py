@@ -126,8 +126,7 @@ class ProvedPlan:
     def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> None:
         """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
 
-        An attack that leaves it no more than that, or than ``aim``, ends it: what a plan of no use keeps need not be
-        proved.
+        An attack that leaves it no more than that, or than ``aim``, ends it: it is of no use then.
 
         Raises ``OutOfBudget`` : the user interrupted the attack; what it had proved counts.
         """

@@ -8,17 +8,18 @@ from time import monotonic
 from typing import TYPE_CHECKING
 from uuid import uuid4
 
-from ratt_opt.solvers.maxmin.search import TurnsUntil
 from ratt_opt.solvers.maxmin.subtrees.merge import hang_below
 from ratt_opt.solvers.maxmin.subtrees.worker import LentNode, Work
+from ratt_opt.solvers.maxmin.turns import TurnsUntil
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.proof import TreeNode
-    from ratt_opt.solvers.maxmin.search import BranchAndBound, Progress, Turns
+    from ratt_opt.solvers.maxmin.search import BranchAndBound, Progress
     from ratt_opt.solvers.maxmin.subtrees.crew import Crew
     from ratt_opt.solvers.maxmin.subtrees.worker import Searched
+    from ratt_opt.solvers.maxmin.turns import Turns
 
 __all__ = ["SharedSearch"]
 

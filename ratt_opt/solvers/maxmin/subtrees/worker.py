@@ -13,8 +13,9 @@ from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode
-from ratt_opt.solvers.maxmin.search import BranchAndBound, Known, Turns
+from ratt_opt.solvers.maxmin.search import BranchAndBound, Known
 from ratt_opt.solvers.maxmin.task import Task
+from ratt_opt.solvers.maxmin.turns import Turns
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
