@@ -89,8 +89,8 @@ def measured(what: str, problem: Problem, seed: int, options: argparse.Namespace
 
 def warm_up(objective: str) -> None:
     """Load or compile what is compiled."""
-    for family in ("disk-6", "dense"):
-        problem = ro.network_scenario(family, WARM, 5, alpha_s=4, alpha_c=8, seed=0).problem(objective)
+    for family in ("disk-6", "dense", "hubs"):  # hubs: nothing quicker than prices closes them
+        problem = ro.network_scenario(family, WARM, 5, alpha_s=1 / 3, alpha_c=0.3, seed=0).problem(objective)
         ro.worst_case_attack(problem, ro.ratt(problem).elements, time_limit=2)
         ro.solve_maxmin(problem, time_limit=2)
 
