@@ -6,6 +6,7 @@ import math
 from numbers import Real
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.any_graph import any_graph, last_stage
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
@@ -75,7 +76,7 @@ def worst_case_attack(
       robots can take hours to close (of another search's budget that limits nothing, half a million nodes). Relies on
       a non-decreasing objective, as above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
-      steps and exchanges, and the bounds of ``any_function.py``.
+      steps and exchanges, annealing within a limit where no other search asks, and the bounds of ``any_function.py``.
     - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
       non-decreasing objective (not checked).
 
@@ -123,7 +124,7 @@ def worst_case_attack(
         memory.bracket.check_aim()
         is_inner = budget is not None or max_nodes is not None
         task = AttackTask(asked, values, memory.bracket, own, memory)
-        stop = _search(task, is_brief=is_inner and math.isinf(own.seconds_left))
+        stop = _search(task, is_inner=is_inner)
     except OutOfBudget as out:
         stop = out.stop
     except MeetsAim:
@@ -143,13 +144,13 @@ def _unattacked(problem: Problem, values: PlanValues) -> float:
     return max(values(group) for group in problem.communication.groups())
 
 
-def _search(task: AttackTask, *, is_brief: bool) -> Stop:
+def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
     if task.memory.search is not None and task.budget.seconds_left <= RENEWED * task.memory.seconds:
         return last_stage(task, task.memory.search)
     task.memory.seconds = task.budget.seconds_left
     if not isinstance(problem.objective, InformationObjective):
-        return _any_function(task)
+        return _any_function(task, is_inner=is_inner)
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(task)
     task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
@@ -166,19 +167,23 @@ def _search(task: AttackTask, *, is_brief: bool) -> Stop:
         return threshold_search(task)
     if team is not None and problem.communication.is_complete:
         unprotected_bound(task, team)
+    is_brief = is_inner and math.isinf(task.budget.seconds_left)
     return any_graph(task, team, groups, is_brief=is_brief)
 
 
-def _any_function(task: AttackTask) -> Stop:
+def _any_function(task: AttackTask, *, is_inner: bool) -> Stop:
     """Thresholds where all sets of robots can be valued; where that is limited, and beyond, first what is quick."""
     n_robots, budget = task.problem.n_robots, task.budget
     is_limited = min(budget.seconds_left, budget.evaluations_left) < math.inf
+    has_table = n_robots <= LARGEST_COMPILED and 2**n_robots <= budget.evaluations_left
     if n_robots > LARGEST_COMPILED or is_limited:
         any_bound(task)
         exchange_attack(task)
+        if is_limited and not (task.bracket.is_closed or has_table or is_inner):
+            annealed_attacks(task)
         if task.bracket.is_closed:
             return Stop.CLOSED
-    if n_robots <= LARGEST_COMPILED and 2**n_robots <= budget.evaluations_left:
+    if has_table:
         return threshold_search(task)
     return Stop.CLOSED if task.bracket.is_closed else budget.stop() or Stop.HEURISTIC
 
