@@ -44,24 +44,22 @@ teams, none of which need ever close."""
 
 DENSE, SPLIT_SHARE, SPLIT_NODES = 0.5, 0.2, 10_000_000
 """Share of all links from which partitions have but a share of the seconds, and at most so many nodes (some seconds),
-before possible sizes and prices: a disk of 24 robots and mean degree 12 closes in 0.5 s by partitions, and not in 30 by
-prices; a random graph with 0.7 of all links in 6 s by sizes and prices, and not in 60 by partitions."""
+after possible sizes and before prices: a disk of 24 robots and mean degree 12 closes in 0.5 s by partitions, and not in
+30 by prices; a random graph with 0.7 of all links in 6 s by sizes and prices, and not in 60 by partitions."""
 
 
 def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
-    """Partitions where groups are few, on dense graphs for a while; then annealing, bounds of sizes, prices."""
+    """Partitions where groups are few, on dense graphs for a while; else annealing, bounds of sizes, prices."""
     if team is not None and groups is not None:
         from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
 
         if not _is_dense(task.problem) or is_brief or task.problem.n_robots <= LARGEST_COMPILED:
             stop = forced_group_bound(task, team)
             return stop if stop is Stop.CLOSED else last_stage(task, SplitSearch(task, team, groups))
-        if _forced_group_in_share(task, team, 0) is Stop.CLOSED:
+        if _closed_by_sizes(task, team, 0):
             return Stop.CLOSED
-        if (
-            _in_share(task, (SPLIT_SHARE, SPLIT_NODES), lambda part: SplitSearch(part, team, groups).run())
-            is Stop.CLOSED
-        ):
+        most = SPLIT_SHARE, SPLIT_NODES
+        if _in_share(task, most, lambda part: SplitSearch(part, team, groups).run()) is Stop.CLOSED:
             return Stop.CLOSED
     if is_brief and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
@@ -71,9 +69,7 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
         return forced_group_bound(task, team, least)
     starts = int(FIRST_STARTS * max(task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
     prices.anneal(INNER_STARTS if is_brief else starts)
-    if not is_brief:
-        least = possible_sizes_bound(task, team, least)
-    if task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED:
+    if _closed_by_sizes(task, team, least, looks=not is_brief):
         return Stop.CLOSED
     return last_stage(task, prices)
 
@@ -82,6 +78,13 @@ def last_stage(task: AttackTask, search: Resumable) -> Stop:
     """Run a search, begun or new, that goes on where the memory finds it."""
     search.task, task.memory.search = task, search
     return search.run()
+
+
+def _closed_by_sizes(task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True) -> bool:
+    """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it."""
+    if looks:
+        least = possible_sizes_bound(task, team, least)
+    return task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED
 
 
 def _is_dense(problem: Problem) -> bool:
