@@ -71,7 +71,7 @@ class _Start:
         self, task: AttackTask, rng: np.random.Generator, known: dict[frozenset[int], float], *, is_warm: bool
     ) -> None:
         self._task, self._rng, self._known, problem = task, rng, known, task.problem
-        self._threat, n_robots = problem.threat, problem.n_robots
+        n_robots = problem.n_robots
         self._near = _neighbours(n_robots, problem.communication.links)
         self._held = _neighbours(n_robots, problem.protected_links)
         self._free = [i for i in range(n_robots) if i not in problem.protected_robots]
@@ -81,7 +81,7 @@ class _Start:
             self._group[list(members)] = label
         self._blind = set(attack.sensing)
         others = [i for i in self._free if i not in self._blind]
-        missing = self._threat.n_blinded - len(self._blind)
+        missing = problem.threat.n_blinded - len(self._blind)
         self._blind |= set(rng.permutation(np.array(others, dtype=np.int64))[:missing].tolist())
         self._cut = len(problem.communication.links_between(self._parts()))
         self._worth = {label: self._value(label) for label in set(self._group.tolist())}

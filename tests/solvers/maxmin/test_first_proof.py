@@ -73,12 +73,8 @@ def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(
     assert search.proved.worst_case.upper == problem.team_value(plans[best], search.proved.worst_case.attack)
 
 
-@pytest.mark.parametrize("share_of_best", [0.5, 0.9])
-def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
-    share_of_best: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Before the proof of the best plan, which may be in vain, the one of which most was proved is attacked again."""
-    problem = random_scenario(40, 6, alpha_s=2, alpha_c=300, seed=0).problem()
+def contested(problem: Problem) -> tuple[Incumbent, IntArray, IntArray]:
+    """A search, RATT's plan in it, and another one that seems better."""
     first = ratt(problem).elements
     search = started(problem, first)
     search.adversary.learn(first)
@@ -89,6 +85,17 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
         best = np.where(rng.random(len(first)) < 0.2, drawn, first)
     search.candidates.add(first)
     search.candidates.add(best)
+    return search, first, best
+
+
+@pytest.mark.parametrize("share_of_best", [0.5, 0.9])
+def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
+    share_of_best: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before the proof of the best plan, which may be in vain, the one of which most was proved is attacked again."""
+    problem = random_scenario(40, 6, alpha_s=2, alpha_c=300, seed=0).problem()
+    search, first, best = contested(problem)
+    known = search.pool.plan_value(first)
     attacked = []
 
     def attack(_: Adversary, plan: IntArray, _budget: Budget, _aim: float) -> AttackResult:
@@ -133,16 +140,8 @@ def test_on_a_network_the_plan_that_more_is_proved_of_gets_the_rest(
     ends: list[tuple[bool, float]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem = network_scenario("hubs", 24, 4, alpha_s=5, alpha_c=12, seed=0).problem()
-    first = ratt(problem).elements
-    search = started(problem, first)
-    search.adversary.learn(first)
+    search, first, _ = contested(problem)
     known = search.pool.plan_value(first)
-    rng, best = np.random.default_rng(0), first
-    while not search.pool.plan_value(best) > known:
-        drawn = np.array([rng.choice(choice) for choice in problem.choices])
-        best = np.where(rng.random(len(first)) < 0.2, drawn, first)
-    search.candidates.add(first)
-    search.candidates.add(best)
     attacks = _Attacks(search, first, [*ends, (False, 0.5)])
     monkeypatch.setattr(Adversary, "attack", attacks)
     assert not search.prove()
