@@ -16,7 +16,7 @@ from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SE
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
+from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
@@ -282,6 +282,14 @@ def least_cost(problem, plan, threshold, prices):
     return least
 
 
+def paying_search(team, links, threat, forms_at=None):
+    """With forms fitted to prices (N,), as a search of some thousand nodes has them, or without any."""
+    forms = ConvexForms(threat)
+    if forms_at is not None:
+        forms.fit(forms_at, len(forms_at))
+    return PayingSearch(team, links, forms)
+
+
 @pytest.mark.parametrize("seed", range(24))
 def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed):
     rng = np.random.default_rng(seed)
@@ -294,15 +302,16 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
     least = least_cost(problem, plan, threshold, prices)
     assert least < 0
     at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1))
+    search = paying_search(team, links, threat, forms_at=prices[0] if seed % 2 else None)
     for limit, room in ((least - 1e-6, 5), (least + 1e-6, 5), (-1e-6, 3)):
         question = Question(threshold, threat.n_blinded, limit, np.arange(6), 0, 0)
-        found = find_paying_groups(team, links, at, question, Budget(), nodes=10**6, room=room)
+        found = search.find(at, question, Budget(), nodes=10**6, room=room)
         assert (len(found.groups) > 0) == (least <= limit)
         assert found.is_complete or len(found.groups) == room
         for group in found.groups:
             assert group.need <= threat.n_blinded
             assert reduced_cost(problem, group.robots.astype(int), (prices[0], 0.0)) + prices[1] * group.need <= limit
-    assert not find_paying_groups(team, links, at, question, Budget(), nodes=0, room=3).is_complete
+    assert not search.find(at, question, Budget(), nodes=0, room=3).is_complete
 
 
 @pytest.mark.parametrize("seed", range(24))
@@ -318,9 +327,10 @@ def test_prices_fall_for_groups_that_pay_until_none_does(seed):
     first = PriceVector(robot=robot.copy(), blinded=blinded, links=float(robot.sum() - blinded * threat.n_blinded))
     at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1))
     question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
+    search = paying_search(team, links, threat, forms_at=robot if seed % 2 else None)
     for least in (-1e9, first.links - 0.5):
         falling = FallingPrices(program=GroupPrices(threat), threshold=threshold, prices=first, links=least)
-        found = find_paying_groups(team, links, at, question, Budget(), falling, nodes=10**6, room=10**6)
+        found = search.find(at, question, Budget(), falling, nodes=10**6, room=10**6)
         left = falling.prices
         assert falling.learned > 0
         assert np.all(left.robot <= robot + 1e-9)

@@ -19,11 +19,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
+from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, cheap_group
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
-from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
+from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.starts import Partition
 
@@ -97,6 +98,7 @@ class ThresholdDecision:
         self.team, self.links, self.threat = team, links, threat
         self._sizes = sizes
         self.prices = GroupPrices(threat)
+        self._paying = PayingSearch(team, links, ConvexForms(threat))
         self._n_robots = len(team.single)
         self._rng, self._shuffled = np.random.default_rng(0), False
         self._attempt = FIRST_ATTEMPT
@@ -188,7 +190,7 @@ class ThresholdDecision:
             return Answer(verdict=Threshold.REACHED)
         (at, question), least, nodes = self._asked(prices, asked), self.threat.alpha_c + MARGIN, self._attempt
         falling = FallingPrices(program=self.prices, threshold=threshold, prices=prices, links=least)
-        found = find_paying_groups(self.team, self.links, at, question, budget, falling, nodes=nodes, room=NEW_GROUPS)
+        found = self._paying.find(at, question, budget, falling, nodes=nodes, room=NEW_GROUPS)
         if found.groups:
             is_new = self.prices.add(found.groups) or falling.learned
             return Answer(verdict=Threshold.REACHED if is_new else Threshold.OPEN)
