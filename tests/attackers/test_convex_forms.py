@@ -56,7 +56,7 @@ def test_forms_are_convex_and_at_most_half_the_links_cut(n_robots, density):
 
 
 def least_costs(graph, prices, part, most, sizes):
-    """The least cost of a group of a node, over each interval of sizes, by definition; ``most`` that see, are blinded."""
+    """The least cost of a group of a node, for each form's sizes, by definition; ``most`` that see, are blinded."""
     least = np.full(len(sizes.low), np.inf)
     for states in product(*(MAY_BE.get(int(now), (int(now),)) for now in part)):
         seeing, blinded = states.count(SEEING) - np.sum(part == SEEING), states.count(BLINDED)
@@ -72,8 +72,9 @@ def least_costs(graph, prices, part, most, sizes):
 def test_a_form_is_done_with_only_where_no_group_of_its_sizes_costs_as_little(seed):
     rng = np.random.default_rng(seed)
     graph = nx.gnp_random_graph(7, 0.5, seed=seed)
-    prices = Prices(rng.uniform(0, 2, 7), rng.uniform(0, 2), np.ones(7), 7.0, 0.0, np.ones(1))
-    known = forms_of(graph, prices.robot).known
+    robot = rng.uniform(0, 2, 7)
+    known = forms_of(graph, robot).known
+    prices = Prices(robot, rng.uniform(0, 2), np.ones(7), 7.0, 0.0, np.ones(1), known)
     done, n_sharp = 0, 0
     for _ in range(6):
         part = rng.choice([OPEN, OPEN, OPEN, SEEING, ELSE, BLINDED, OUTSIDE], 7).astype(np.int8)
@@ -86,7 +87,8 @@ def test_a_form_is_done_with_only_where_no_group_of_its_sizes_costs_as_little(se
                 question = Question(0.0, budget, limit, np.arange(7), 0, 0)
                 points, work = FormPoints.of(2, 1, 7), (*np.zeros((3, 7)), np.arange(7))
                 points.at[0, 0] = rng.uniform(0, 1, 7)  # any point will do
-                proved = open_form(one, prices, question, points, (0, part, room), work) == 1
+                state = 0, part, room, int(np.sum(part == BLINDED))
+                proved = open_form(prices._replace(forms=one), question, points, state, work) == 1
                 assert proved == bool(points.done[0, 0])
                 assert not (proved and slack < 0 and np.isfinite(least[k]))
                 done, n_sharp = done + proved, n_sharp + (slack == 2.0)
@@ -95,8 +97,8 @@ def test_a_form_is_done_with_only_where_no_group_of_its_sizes_costs_as_little(se
 
 def test_without_forms_nothing_is_proved():
     none = ConvexForms(Threat(CommunicationGraph(3, frozenset({(0, 1), (1, 2)})), 0, 0)).known
-    prices = Prices(np.zeros(3), 1.0, np.ones(3), 3.0, 0.0, np.ones(1))
+    prices = Prices(np.zeros(3), 1.0, np.ones(3), 3.0, 0.0, np.ones(1), none)
     question = Question(0.0, 1, -1e-6, np.arange(3), 0, 0)
     work = (*np.zeros((3, 3)), np.arange(3))
-    state = (0, np.zeros(3, dtype=np.int8), 3)
-    assert open_form(none, prices, question, FormPoints.of(2, 2, 3), state, work) == -1
+    state = (0, np.zeros(3, dtype=np.int8), 3, 0)
+    assert open_form(prices, question, FormPoints.of(2, 2, 3), state, work) == -1

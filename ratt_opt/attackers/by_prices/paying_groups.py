@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
     from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
     from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
-    from ratt_opt.attackers.by_prices.groups.size_forms import SizeForms
     from ratt_opt.attackers.by_prices.team import Links, PricedTeam
     from ratt_opt.budget import Budget
 
@@ -76,8 +75,8 @@ class PayingSearch:
         ------
         OutOfBudget : the time is up.
         """
-        prices = prices._replace(robot=prices.robot.copy())
-        n_robots, flows = len(prices.robot), _flows(prices, question.budget, self.forms.known)
+        prices = prices._replace(robot=prices.robot.copy(), forms=self.forms.known)
+        n_robots, flows = len(prices.robot), _flows(prices, question.budget)
         n_bounds = len(flows.share), self.forms.n_forms
         stack = SeeingStack.of(len(self.links.robot), n_bounds, self.team.prior, n_robots)
         found = (np.zeros(n_robots, dtype=np.bool_), np.zeros(n_robots, dtype=np.bool_))
@@ -87,7 +86,7 @@ class PayingSearch:
             budget.check()
             if before >= FITTED and not is_fitted:
                 self.forms.fit(prices.robot, int(prices.capacity) + question.budget)
-                flows, is_fitted = flows._replace(forms=self.forms.known), True
+                prices, is_fitted = prices._replace(forms=self.forms.known), True
             began, asked = monotonic(), (self.team, self.links, prices, flows, question, stack)
             code = search_seeing_sets(*asked, min(chunk, nodes - before), found)
             budget.nodes += int(stack.position[1]) - before
@@ -105,13 +104,13 @@ class PayingSearch:
         return PayingGroups(groups=groups, is_complete=code == FINISHED)
 
 
-def _flows(prices: Prices, n_blinded: int, forms: SizeForms) -> Flows:
+def _flows(prices: Prices, n_blinded: int) -> Flows:
     """All of the robots' share, and none; without forms also half, and both ends with the surcharge."""
     mu = prices.blinded
-    if len(forms.constant):
-        return Flows(np.array([1.0, 0.0]), np.array([mu, mu]), forms)
+    if len(prices.forms.constant):
+        return Flows(np.array([1.0, 0.0]), np.array([mu, mu]))
     n_robots = len(prices.robot)
     least = n_robots - int(prices.capacity)  # the whole team as one group blinds so many at least
     excess = float(prices.robot.sum()) - mu * least
     dear = mu + SURCHARGE + max(excess / max(least - n_blinded, 1), 0.0)
-    return Flows(np.array([1.0, 0.5, 1.0, 0.0, 0.0]), np.array([mu, mu, dear, dear, mu]), forms)
+    return Flows(np.array([1.0, 0.5, 1.0, 0.0, 0.0]), np.array([mu, mu, dear, dear, mu]))

@@ -4,9 +4,9 @@ A group ``g`` whose seeing robots are ``S`` costs ``cut(g) / 2 + mu |g - S| - pi
 do not (they are blinded or outside, as a minimum cut finds best), and some are open. At most ``room`` open robots can
 still see, or the group would be worth the threshold, and at most ``budget`` are blinded. A flow bounds all groups of
 the node: a blinded robot pays ``mu`` and a surcharge, which is paid back ``budget`` times; an open robot pays a share
-of both, which is paid back ``room`` times. Quadratic forms bound the groups of each few sizes
-(``size_forms.py``). Seeing robots are few where values saturate early, while groups may be
-large: ``columns.py`` decides who is inside instead.
+of both, which is paid back ``room`` times. Convex forms bound the groups of a few sizes each (``size_forms.py``), with
+room and budget kept exactly. Seeing robots are few where values saturate early, while groups may be large:
+``columns.py`` decides who is inside instead.
 
 Imported only where compiled loops are used.
 """
@@ -26,6 +26,7 @@ from ratt_opt.attackers.by_prices.groups.size_forms import (
     OUTSIDE,
     SEEING,
     FormPoints,
+    copy_points,
     open_form,
 )
 from ratt_opt.compiling import numba
@@ -45,12 +46,11 @@ UNLIKELY = 1e-3
 class Flows(NamedTuple):
     """What bounds a node: ``share`` (K,) in [0, 1] that open robots pay, ``blinded`` (K,) price of a blinded robot.
 
-    The last is (0, mu), whose minimum cut is a group that costs what it says. ``forms`` : of sizes, or of none
+    The last is (0, mu), whose minimum cut is a group that costs what it says.
     """
 
     share: Any
     blinded: Any
-    forms: Any
 
 
 class SeeingStack(NamedTuple):
@@ -201,6 +201,14 @@ def _branch(stack: Any, sides: Any, budget: int) -> int:
 
 
 @numba.njit(cache=True)
+def _blinded(part: Any) -> int:
+    count = 0
+    for i in range(len(part)):
+        count += int(part[i] == BLINDED)
+    return count
+
+
+@numba.njit(cache=True)
 def _most_inside(stack: Any, form: int) -> int:
     """The open robot that is worth most times its share inside at a form's point; -1 where there is none."""
     node, chosen, most = stack.position[0], -1, 0.0
@@ -214,9 +222,7 @@ def _most_inside(stack: Any, form: int) -> int:
 @numba.njit(cache=True)
 def _copy(stack: Any, node: int, child: int) -> None:
     copy_flows(stack, node, child)
-    copy(stack.points.at[child], stack.points.at[node])
-    copy_row(stack.points.paid[child], stack.points.paid[node])
-    copy_row(stack.points.done[child], stack.points.done[node])
+    copy_points(stack.points, node, child)
     copy(stack.sums[child], stack.sums[node])
     copy_row(stack.part[child], stack.part[node])
     copy_row(stack.worth[child], stack.worth[node])
@@ -283,12 +289,10 @@ def search_seeing_sets(  # noqa: PLR0917
             return FINISHED
         position[1] += 1
         _fill(team, links, flows, question.threshold, stack, node)
-        state = node, stack.part[node], stack.room[node]
-        form = open_form(flows.forms, prices, question, stack.points, state, tangents)
-        if (
-            form == len(flows.forms.constant)
-            or _bounds(links, prices, flows, question, stack, sides, work) > question.limit
-        ):
+        state = node, stack.part[node], stack.room[node], _blinded(stack.part[node])
+        form = open_form(prices, question, stack.points, state, tangents)
+        done = form == len(prices.forms.constant)
+        if done or _bounds(links, prices, flows, question, stack, sides, work) > question.limit:
             position[0] -= 1
             continue
         robot = _branch(stack, sides, question.budget)

@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
 from ratt_opt.compiling import numba
 
-__all__ = ["BLINDED", "ELSE", "OPEN", "OUTSIDE", "SEEING", "FormPoints", "SizeForms", "open_form"]
+__all__ = ["BLINDED", "ELSE", "OPEN", "OUTSIDE", "SEEING", "FormPoints", "SizeForms", "copy_points", "open_form"]
 
 OPEN, SEEING, ELSE, BLINDED, OUTSIDE = 0, 1, 2, 3, 4
 """What a robot of a node is: ELSE is blinded or outside the group."""
@@ -56,6 +57,14 @@ class FormPoints(NamedTuple):
         """At nobody."""
         shape = depth, n_forms
         return cls(at=np.zeros((*shape, n_robots)), paid=np.zeros(shape), done=np.zeros(shape, dtype=np.bool_))
+
+
+@numba.njit(cache=True)
+def copy_points(points: Any, source: int, target: int) -> None:
+    """Copy the points of one node of a search to another."""
+    copy(points.at[target], points.at[source])
+    copy_row(points.paid[target], points.paid[source])
+    copy_row(points.done[target], points.done[source])
 
 
 @numba.njit(cache=True)
@@ -126,16 +135,13 @@ def _times(form: Any, x: Any, product: Any) -> None:
 
 
 @numba.njit(cache=True)
-def _place(part: Any, x: Any) -> int:
-    """Put decided robots where they are; returns how many are blinded for sure."""
-    blinded = 0
+def _place(part: Any, x: Any) -> None:
+    """Put decided robots where they are."""
     for i in range(len(part)):
         if part[i] == SEEING or part[i] == BLINDED:
             x[i] = 1.0
-            blinded += int(part[i] == BLINDED)
         elif part[i] == OUTSIDE:
             x[i] = 0.0
-    return blinded
 
 
 @numba.njit(cache=True)
@@ -150,11 +156,11 @@ def _dot(a: Any, b: Any) -> float:
 def _costs_more(forms: Any, k: int, prices: Any, question: Any, state: Any, work: Any) -> bool:  # noqa: PLR0917
     """Whether form ``k`` proves that no group of its sizes costs as little as the limit.
 
-    ``state`` : what robots are (N,), room, the point (N,) and what its blinded robots paid (1,)
+    ``state`` : what robots are (N,), room and blinded ones, the point (N,) and what its blinded robots paid (1,)
     """
-    part, room, x, paid = state
+    part, room, fixed, x, paid = state
     slope, chosen, turned, order = work
-    fixed = _place(part, x)
+    _place(part, x)
     most = room, question.budget - fixed, forms.low[k], forms.high[k]
     _times(forms.form[k], x, slope)
     value = forms.constant[k] + prices.blinded * fixed
@@ -183,16 +189,17 @@ def _costs_more(forms: Any, k: int, prices: Any, question: Any, state: Any, work
 
 
 @numba.njit(cache=True)
-def open_form(forms: Any, prices: Any, question: Any, points: Any, state: Any, work: Any) -> int:  # noqa: PLR0917
+def open_form(prices: Any, question: Any, points: Any, state: Any, work: Any) -> int:
     """The first form that does not prove that no group of a node pays; K where all do, -1 where there is none.
 
-    ``state`` : the node, what its robots are (N,), and how many more may see; ``work`` : three (N,), and an order (N,)
+    ``state`` : the node, what its robots are (N,), how many more may see, and how many are blinded for sure
+    ``work`` : three (N,), and an order (N,)
     """
-    node, part, room = state
-    n_forms = len(forms.constant)
+    node, part, room, blinded = state
+    forms, n_forms = prices.forms, len(prices.forms.constant)
     for k in range(n_forms):
         if not points.done[node, k]:
-            at = part, room, points.at[node, k], points.paid[node, k : k + 1]
+            at = part, room, blinded, points.at[node, k], points.paid[node, k : k + 1]
             points.done[node, k] = _costs_more(forms, k, prices, question, at, work)
             if not points.done[node, k]:
                 return k
