@@ -43,6 +43,21 @@ def test_while_modules_are_imported(name: str) -> None:
     assert done.stderr == "error: interrupted\n"
 
 
+STUDY_IMPORT = (
+    DURING_IMPORT.rpartition("from ratt_opt.cli")[0]
+    + """
+import runpy
+runpy.run_module("analysis.paper", run_name="__main__", alter_sys=True)
+"""
+)
+
+
+@pytest.mark.parametrize("name", ["analysis.paper.caa", "numpy"])
+def test_while_a_study_imports_its_modules(name: str) -> None:
+    done = _run(STUDY_IMPORT.format(name=name), "--out", "none")
+    assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
+
+
 def test_when_all_is_done_it_changes_nothing() -> None:
     done = _run(ON_THE_WAY_OUT, "--version")
     assert (done.returncode, done.stderr) == (0, "")

@@ -17,6 +17,7 @@ from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.cli import run
 from ratt_opt.errors import UndecidedError
 from ratt_opt.main_job import bound as main_job
+from ratt_opt.report import write as report_files
 from ratt_opt.report.write import FILES
 
 if TYPE_CHECKING:
@@ -33,6 +34,18 @@ def _raise(error: BaseException) -> Callable[..., Any]:
         raise error
 
     return fail
+
+
+def _once_interrupted(real: Callable[..., Any]) -> Callable[..., Any]:
+    calls: list[int] = []
+
+    def once(*given: Any, **named: Any) -> Any:
+        calls.append(0)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return real(*given, **named)
+
+    return once
 
 
 @pytest.mark.parametrize(
@@ -72,15 +85,7 @@ def test_an_interrupt_anywhere_in_the_main_job_leaves_what_is_finished(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """Raised where no search expects it: the report holds valid brackets, and is marked."""
-    real, calls = getattr(main_job, step), []
-
-    def once(*given: Any, **named: Any) -> Any:
-        calls.append(0)
-        if len(calls) == 1:
-            raise KeyboardInterrupt
-        return real(*given, **named)
-
-    monkeypatch.setattr(main_job, step, once)
+    monkeypatch.setattr(main_job, step, _once_interrupted(getattr(main_job, step)))
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 130
     assert "interrupted" in capsys.readouterr().err
     found = _report(tmp_path / "o")
@@ -91,6 +96,31 @@ def test_an_interrupt_anywhere_in_the_main_job_leaves_what_is_finished(
     assert found["optimum"]["lower"] <= whole.upper * (1 + 1e-9)
     assert whole.optimum.lower <= found["optimum"]["upper"] * (1 + 1e-9)
     assert not (tmp_path / "o" / "certificate.json").exists()
+
+
+def test_an_interrupt_while_figures_are_drawn_leaves_all_else(
+    scenario_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Those of an earlier report do not stay beside the new numbers."""
+    out = tmp_path / "o"
+    command = ["bound", str(scenario_file), "--out", str(out), "--objective"]
+    assert run([*command, "trace"]) == 0
+    monkeypatch.setattr(report_files, "plan_figure", _raise(KeyboardInterrupt()))
+    assert run([*command, "logdet"]) == 130
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    found = _report(out)
+    assert (found["objective"], found["interrupted"]) == ("logdet", False)
+    assert "interrupted" in found["certificate"]["reason"]
+    assert sorted(os.listdir(out)) == ["certificate.json", "plan.csv", "report.html", "report.json"]
+
+
+def test_an_interrupted_report_is_written_without_drawing(
+    scenario_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(report_files, "plan_figure", _raise(AssertionError()))
+    monkeypatch.setattr(main_job, "solve_maxmin", _once_interrupted(main_job.solve_maxmin))
+    assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 130
+    assert sorted(os.listdir(tmp_path / "o")) == ["plan.csv", "report.html", "report.json"]
 
 
 def test_an_interrupt_before_there_is_a_plan_leaves_the_earlier_files(
