@@ -99,7 +99,8 @@ def track(
                 progress=say,
             )
             missions.append(mission)
-    files = write_mission(missions[0], folder, missions[1:])
+    with Step("tables, figures and animation"), _resumable(folder):
+        files = write_mission(missions[0], folder, missions[1:])
     if as_json:
         print_json(missions[0].to_dict())
     else:

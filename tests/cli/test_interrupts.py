@@ -63,6 +63,23 @@ def test_when_all_is_done_it_changes_nothing() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+AT_THE_VERY_END = """
+import signal, sys
+class Last:
+    def __del__(self, raise_signal=signal.raise_signal, number=signal.SIGINT):
+        raise_signal(number)
+sys.kept_to_the_end = Last()
+from ratt_opt.cli import main
+main()
+"""
+
+
+def test_when_the_interpreter_ends_it_changes_nothing() -> None:
+    """It resets the handlers of signals before it lets go of the last modules."""
+    done = _run(AT_THE_VERY_END, "--version")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 class _Collected:
     """Interrupted while it is collected, where Python drops the exception."""
 
