@@ -7,6 +7,9 @@ where the sets of a size can be listed.
 Elsewhere, for each size of the largest group, smallest first, the sets of that size are searched; a larger group
 contains smaller ones, so by monotonicity what bounds the smaller size bounds the larger. Whenever a set below the
 incumbent is found, the other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
+
+Where several groups are about equally good, and where there are too many vectors, prices of robots and links bound all
+families at once (``family_prices``).
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.annealed_families import annealed_families
+from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
@@ -42,14 +45,14 @@ __all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
-Where there are more, some make attacks, and the bound is that of the forced size."""
+Where there are more, some make attacks, and the bound is that of the forced size and of prices."""
 
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-ANNEALED_SHARE, ANNEALED_STARTS = 0.3, 3
-"""Where there are too many vectors, of the time that the bound of the forced size leaves, for annealed attacks of all;
-and how many. At 100 robots, (0, 4066), log-det, they leave 0.3 to 0.4 % less than exchanges in 93 vectors."""
+PRICED_SHARE, ALIKE = 0.5, 0.8
+"""Of the time left, for prices of families where vectors can be searched, too; and the value of the second best group
+of an attack, over the best, from which they are asked: below, it is the weakest largest group that decides."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -80,6 +83,7 @@ class SizeVectorSearch:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
         n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
+        self._is_relaxed = vectors is not None
         allowed = iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else iter(vectors)
         self.vectors = list(islice(allowed, MOST_VECTORS + 1))
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
@@ -110,10 +114,14 @@ class SizeVectorSearch:
         if self.bracket.is_closed:
             return Stop.CLOSED
         if not self.has_all_vectors:
-            return self._weakest_of_forced_size()
+            return FamilySearch(self.task, self.team, families).run()
         self.bounds = dict.fromkeys(self.vectors, -np.inf)
         self._decide_listed(families)
-        return self._decide_by_largest()
+        best = sorted(map(self.team.value, min(families, key=attrgetter("value")).groups()), reverse=True)
+        is_alike = len(best) > 1 and best[1] >= ALIKE * best[0]
+        if is_alike and not (self.bracket.is_closed or self._is_relaxed):
+            FamilySearch(self.task, self.team, families).price(PRICED_SHARE)
+        return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""
@@ -268,18 +276,3 @@ class SizeVectorSearch:
         if is_open:
             self.left_open.append((value, largest))
             self.least_open = min(self.least_open, value)
-
-    def _weakest_of_forced_size(self) -> Stop:
-        """Too many vectors: some group has the forced size at least, so the weakest set of that size is a bound."""
-        size = forced_group_size(len(self.team.single), self.threat.n_blinded, self.threat.alpha_c)
-        search = WeakestSetSearch(self.team, size, self.bracket.goal, self.bracket.lower)
-        for found in search.run(self.task.budget):
-            if found is not None:
-                search.threshold = min(search.threshold, self.team.value(found))
-            self.bracket.raise_lower(min(search.lower, search.threshold))
-        self.bracket.raise_lower(search.threshold)
-        if np.isfinite(self.task.budget.seconds_left) and not self.bracket.is_closed:
-            annealed = annealed_families(self.team, self.threat, self.task.budget.part(ANNEALED_SHARE))
-            for groups in islice(annealed, ANNEALED_STARTS):
-                self._accept(groups)
-        return Stop.CLOSED if self.bracket.is_closed else Stop.HEURISTIC
