@@ -7,14 +7,13 @@ where the sets of a size can be listed.
 Elsewhere, for each size of the largest group, smallest first, the sets of that size are searched; a larger group
 contains smaller ones, so by monotonicity what bounds the smaller size bounds the larger. Whenever a set below the
 incumbent is found, the other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
-
-Where several groups are about equally good, and where there are too many vectors, prices of robots and links bound all
-families at once (``family_prices``).
+Where several groups are about alike, or there are too many vectors, ``family_prices`` bounds all families at once.
 """
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import islice
 from math import comb
 from operator import attrgetter, itemgetter
@@ -28,6 +27,7 @@ from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
@@ -50,9 +50,9 @@ Where there are more, some make attacks, and the bound is that of the forced siz
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-PRICED_SHARE, ALIKE = 0.5, 0.8
-"""Of the time left, for prices of families where vectors can be searched, too; and the value of the second best group
-of an attack, over the best, from which they are asked: below, it is the weakest largest group that decides."""
+LARGEST_SHARE, PRICED_SHARE, ALIKE = 0.25, 0.6, 0.8
+"""Of the time left, for a first search by the largest group, then for prices of families; and the value of the second
+best group of an attack, over the best, from which prices are asked: below, it is the largest group that decides."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -117,11 +117,20 @@ class SizeVectorSearch:
             return FamilySearch(self.task, self.team, families).run()
         self.bounds = dict.fromkeys(self.vectors, -np.inf)
         self._decide_listed(families)
-        best = sorted(map(self.team.value, min(families, key=attrgetter("value")).groups()), reverse=True)
-        is_alike = len(best) > 1 and best[1] >= ALIKE * best[0]
-        if is_alike and not (self.bracket.is_closed or self._is_relaxed):
-            FamilySearch(self.task, self.team, families).price(PRICED_SHARE)
+        if not self.bracket.is_closed and self._is_about_families(families):
+            self._decide_in_share()
+            search = FamilySearch(self.task, self.team, families)
+            search.anneal()
+            search.price(PRICED_SHARE)
         return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
+
+    def _is_about_families(self, families: list[GroupExchanges]) -> bool:
+        """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
+        budget = self.task.budget
+        if self._is_relaxed or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
+            return False
+        second, best = sorted([0.0, *map(self.team.value, weakest_of(families))])[-2:]
+        return second >= ALIKE * best
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""
@@ -237,6 +246,19 @@ class SizeVectorSearch:
                 break
         bracket.raise_lower(min(bracket.goal, self.least_open))
         return self._pack_again()
+
+    def _decide_in_share(self) -> None:
+        """The same within a share of the time; what is still open then begins anew."""
+        task, packer, part = self.task, self.packer, self.task.budget.part(LARGEST_SHARE)
+        self.task, self.packer = replace(task, budget=part), replace(packer, budget=part)
+        try:
+            with suppress(OutOfBudget):
+                self._decide_by_largest()
+        finally:
+            self.task, self.packer = task, packer
+            task.budget.nodes += part.nodes
+        self.left_open, self.least_open, self.weakest = [], np.inf, np.inf
+        task.budget.check()
 
     def _search(self, size: int, floor: float) -> None:
         """Offer every set of this size below the goal as a largest group."""
