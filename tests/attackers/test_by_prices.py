@@ -130,7 +130,7 @@ def fitted_forms(threat, prices=None):
     """Fitted to prices (N,), as after some thousand nodes, or not yet."""
     forms = ConvexForms(threat)
     if prices is not None:
-        forms.fit(prices, len(prices))
+        forms.fit(prices, len(prices), Budget())
     return forms
 
 

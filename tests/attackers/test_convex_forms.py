@@ -19,6 +19,7 @@ from ratt_opt.attackers.by_prices.groups.size_forms import (
     FormPoints,
     open_form,
 )
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 
@@ -27,7 +28,7 @@ MAY_BE = {OPEN: (SEEING, BLINDED, OUTSIDE), ELSE: (BLINDED, OUTSIDE)}
 
 def forms_of(graph: nx.Graph, prices: np.ndarray) -> ConvexForms:
     forms = ConvexForms(Threat(CommunicationGraph(len(graph), frozenset(graph.edges)), 0, 0))
-    forms.fit(prices, len(prices))
+    forms.fit(prices, len(prices), Budget())
     return forms
 
 
@@ -52,7 +53,7 @@ def test_forms_are_convex_and_at_most_half_the_links_cut(n_robots, density):
             np.testing.assert_allclose(at_least[ends], half[ends], atol=1e-9)
             within = (sizes >= known.low[k]) & (sizes <= known.high[k])
             assert np.all(at_least[within] <= half[within] + 1e-9)
-        forms.fit(other, n_robots)
+        forms.fit(other, n_robots, Budget())
 
 
 def least_costs(graph, prices, part, most, sizes):
@@ -102,3 +103,11 @@ def test_without_forms_nothing_is_proved():
     work = (*np.zeros((3, 3)), np.arange(3))
     state = (0, np.zeros(3, dtype=np.int8), 3, 0)
     assert open_form(prices, question, FormPoints.of(2, 2, 3), state, work) == -1
+
+
+def test_a_budget_that_is_over_leaves_the_forms_as_they_were():
+    forms = forms_of(nx.path_graph(5), np.ones(5))
+    known = forms.known
+    with pytest.raises(OutOfBudget):
+        forms.fit(np.zeros(5), 5, Budget(time_limit=0))
+    assert forms.known is known

@@ -23,15 +23,17 @@ from ratt_opt.graph.link_scores import RelaxedScores
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["ConvexForms"]
 
 MOST_FORMS, FEWEST_SIZES = 15, 2
-"""Forms, and sizes of each: one for all sizes takes three times the nodes of one for two at 30 robots on hubs."""
+"""Forms at most, and sizes of each at least: at 30 robots on hubs forms of four take 1.4 times the nodes."""
 
 FIRST_STEPS, STEPS = 20, 4
-"""Of the descent of a form's multipliers, from none and from those at other prices."""
+"""Of the descent of a form's multipliers, from none and from those at other prices: at 30 robots on hubs 5, 10, 20 and
+40 first steps leave 39,000, 30,000, 21,600 and 21,100 nodes."""
 
 SHIFT, SURE = 0.02, 1e-9
 """Added to ``t``, so that ``rho`` need not be large, and to the form, so that rounding leaves it semidefinite."""
@@ -57,11 +59,17 @@ class ConvexForms:
         """How many there are once they are fitted."""
         return len(self._low)
 
-    def fit(self, prices: FloatArray, largest: int) -> None:
-        """Fit the forms of at most ``largest`` robots to prices (N,) of robots."""
+    def fit(self, prices: FloatArray, largest: int, budget: Budget) -> None:
+        """Fit the forms of at most ``largest`` robots to prices (N,) of robots.
+
+        Raises
+        ------
+        OutOfBudget : the time is up; the forms are as before.
+        """
         relaxed = RelaxedScores(self._adjacent, self._adjacent.sum(axis=1) - 2.0 * prices)
         forms = []
         for k in range(self.n_forms - 1, -1, -1):
+            budget.check()
             low, high = int(self._low[k]), int(self._high[k])
             if low <= largest and high < len(prices):
                 self._descend(relaxed, k, (low + high) / 2.0)

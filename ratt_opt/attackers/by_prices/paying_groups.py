@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["PayingGroups", "PayingSearch"]
 
 FITTED = 2_000
-"""Nodes after which forms are fitted to the prices: it takes as long as some hundreds."""
+"""Nodes after which forms are fitted to the prices: a tenth of a second at 30 robots at first, then less."""
 
 FIRST_CHUNK, GLANCE = 500, 0.05
 """Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
@@ -85,7 +85,7 @@ class PayingSearch:
         while code != FINISHED and len(groups) < room and (before := int(stack.position[1])) < nodes:
             budget.check()
             if before >= FITTED and not is_fitted:
-                self.forms.fit(prices.robot, int(prices.capacity) + question.budget)
+                self.forms.fit(prices.robot, int(prices.capacity) + question.budget, budget)
                 prices, is_fitted = prices._replace(forms=self.forms.known), True
             began, asked = monotonic(), (self.team, self.links, prices, flows, question, stack)
             code = search_seeing_sets(*asked, min(chunk, nodes - before), found)
