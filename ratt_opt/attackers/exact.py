@@ -63,8 +63,10 @@ def worst_case_attack(
       objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
       threshold). The result relies on nothing.
     - Larger teams with two-dimensional targets on a complete graph without protected links: families
-      of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set). Relies on a non-decreasing
-      objective, which the three criteria are.
+      of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set), and where several groups are
+      about equally good, prices of robots and links. Where there are too many vectors of sizes, it goes on with these
+      and with annealed attacks until the time is up, and without a limit ends ``HEURISTIC`` where it did not close.
+      Relies on a non-decreasing objective, which the three criteria are.
     - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots: partitions into
       groups and who is blinded in each (``by_partition``; a node is a group tried or a partial set), beyond 20 robots
       and where half of all links are there for a fifth of the budget. Before, on a complete graph, the bounds of the

@@ -4,7 +4,8 @@ Open ``size_vector_search.py``: exchanges find weak families of groups (``weak_f
 ``vector_search.py`` decides each vector: lists of weak sets (``low_lists.py``), a bound on families
 (``cover_bound.py``), disjoint sets (``disjoint_sets.py``). Where lists are too long, ``../weakest_set`` searches the
 largest group and ``packing.py`` packs the others.
-Where vectors are too many, families of all of them are annealed (``annealed_families.py``).
+Where vectors are too many, families of all of them are annealed (``annealed_families.py``). There, and where several
+groups are about equally good, ``family_prices/`` bounds all families at once.
 
 Other graphs are bounded by ``relaxed_teams.py``: by attackers that may cut protected links too, or may leave any groups
 of sizes that are possible on the graph; ``largest_groups.py`` then rules out sets that cannot be a largest group.

@@ -7,11 +7,13 @@ where the sets of a size can be listed.
 Elsewhere, for each size of the largest group, smallest first, the sets of that size are searched; a larger group
 contains smaller ones, so by monotonicity what bounds the smaller size bounds the larger. Whenever a set below the
 incumbent is found, the other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
+Where several groups are about alike, or there are too many vectors, ``family_prices`` bounds all families at once.
 """
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import islice
 from math import comb
 from operator import attrgetter, itemgetter
@@ -19,12 +21,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.annealed_families import annealed_families
+from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
@@ -42,14 +45,14 @@ __all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
-Where there are more, some make attacks, and the bound is that of the forced size."""
+Where there are more, some make attacks, and the bound is that of the forced size and of prices."""
 
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-ANNEALED_SHARE, ANNEALED_STARTS = 0.3, 3
-"""Where there are too many vectors, of the time that the bound of the forced size leaves, for annealed attacks of all;
-and how many. At 100 robots, (0, 4066), log-det, they leave 0.3 to 0.4 % less than exchanges in 93 vectors."""
+LARGEST_SHARE, PRICED_SHARE, ALIKE = 0.25, 0.6, 0.8
+"""Of the time left, for a first search by the largest group, then for prices of families; and the value of the second
+best group of an attack, over the best, from which prices are asked: below, it is the largest group that decides."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -80,6 +83,7 @@ class SizeVectorSearch:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
         n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
+        self._is_relaxed = vectors is not None
         allowed = iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else iter(vectors)
         self.vectors = list(islice(allowed, MOST_VECTORS + 1))
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
@@ -110,10 +114,23 @@ class SizeVectorSearch:
         if self.bracket.is_closed:
             return Stop.CLOSED
         if not self.has_all_vectors:
-            return self._weakest_of_forced_size()
+            return FamilySearch(self.task, self.team, families).run()
         self.bounds = dict.fromkeys(self.vectors, -np.inf)
         self._decide_listed(families)
-        return self._decide_by_largest()
+        if not self.bracket.is_closed and self._is_about_families(families):
+            self._decide_in_share()
+            search = FamilySearch(self.task, self.team, families)
+            search.anneal()
+            search.price(PRICED_SHARE)
+        return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
+
+    def _is_about_families(self, families: list[GroupExchanges]) -> bool:
+        """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
+        budget = self.task.budget
+        if self._is_relaxed or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
+            return False
+        second, best = sorted([0.0, *map(self.team.value, weakest_of(families))])[-2:]
+        return second >= ALIKE * best
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""
@@ -230,6 +247,19 @@ class SizeVectorSearch:
         bracket.raise_lower(min(bracket.goal, self.least_open))
         return self._pack_again()
 
+    def _decide_in_share(self) -> None:
+        """The same within a share of the time; what is still open then begins anew."""
+        task, packer, part = self.task, self.packer, self.task.budget.part(LARGEST_SHARE)
+        self.task, self.packer = replace(task, budget=part), replace(packer, budget=part)
+        try:
+            with suppress(OutOfBudget):
+                self._decide_by_largest()
+        finally:
+            self.task, self.packer = task, packer
+            task.budget.nodes += part.nodes
+        self.left_open, self.least_open, self.weakest = [], np.inf, np.inf
+        task.budget.check()
+
     def _search(self, size: int, floor: float) -> None:
         """Offer every set of this size below the goal as a largest group."""
         search = WeakestSetSearch(self.team, size, self.bracket.goal, floor)
@@ -268,18 +298,3 @@ class SizeVectorSearch:
         if is_open:
             self.left_open.append((value, largest))
             self.least_open = min(self.least_open, value)
-
-    def _weakest_of_forced_size(self) -> Stop:
-        """Too many vectors: some group has the forced size at least, so the weakest set of that size is a bound."""
-        size = forced_group_size(len(self.team.single), self.threat.n_blinded, self.threat.alpha_c)
-        search = WeakestSetSearch(self.team, size, self.bracket.goal, self.bracket.lower)
-        for found in search.run(self.task.budget):
-            if found is not None:
-                search.threshold = min(search.threshold, self.team.value(found))
-            self.bracket.raise_lower(min(search.lower, search.threshold))
-        self.bracket.raise_lower(search.threshold)
-        if np.isfinite(self.task.budget.seconds_left) and not self.bracket.is_closed:
-            annealed = annealed_families(self.team, self.threat, self.task.budget.part(ANNEALED_SHARE))
-            for groups in islice(annealed, ANNEALED_STARTS):
-                self._accept(groups)
-        return Stop.CLOSED if self.bracket.is_closed else Stop.HEURISTIC

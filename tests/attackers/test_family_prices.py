@@ -1,0 +1,203 @@
+"""Prices of families never claim more than the worst case; bounds on sets of one size, and who pays, by all sets."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from math import comb
+
+import numpy as np
+import pytest
+
+from ratt_opt.attackers.by_size import annealed_families, size_vector_search
+from ratt_opt.attackers.by_size.family_prices import family_search, threshold_bound
+from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_sets
+from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgram
+from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
+from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
+from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
+from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.problem import Attack, Problem
+from ratt_opt.stopping import Stop
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, information_data
+
+N_ROBOTS = 9
+EVERYONE = np.arange(N_ROBOTS)
+
+
+def make_team(name, seed, n_robots=N_ROBOTS):
+    objective = OBJECTIVES[name](*information_data(np.random.default_rng(seed), n_robots, 3))
+    return PlanarTeam.of(objective, np.arange(n_robots))
+
+
+def problems(name, count, n_robots=N_ROBOTS):
+    """Attacks that leave several groups: few blinded, most links cut."""
+    for seed in range(count):
+        rng = np.random.default_rng([seed, 7])
+        objective = OBJECTIVES[name](*information_data(rng, n_robots, 3))
+        links = comb(n_robots, 2)
+        budgets = int(rng.integers(0, 4)), int(rng.integers(links // 2, links - 2))
+        must = frozenset(rng.choice(n_robots, int(rng.integers(0, 2)), replace=False).tolist())
+        yield Problem(objective, np.arange(n_robots), None, *budgets, protected_robots=must)
+
+
+def as_row(robots):
+    return np.isin(EVERYONE, list(robots))
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_pairs_bound_all_sets_with_their_prices(name):
+    for seed in range(4):
+        team, rng = make_team(name, seed), np.random.default_rng(seed)
+        prices = rng.normal(size=N_ROBOTS)
+        inside, others = frozenset(range(seed)), np.arange(seed, N_ROBOTS)
+        for size in range(2, len(others) + 1):
+            sets = list(combinations(others.tolist(), size))
+            true = min(team.value({*inside, *one}) - prices[list(one)].sum() for one in sets)
+            claims = []
+            for view in views(team):
+                pairs, least = np.empty((N_ROBOTS, N_ROBOTS)), np.empty(N_ROBOTS)
+                sums = view.prior + view.information[sorted(inside)].sum(axis=0)
+                fill_pairs(view, sums, others, size, pairs)
+                claims.append(mean_of_least(pairs, prices[others], len(others), size, least))
+            assert min(claims) <= true + 1e-9
+            if size == 2:
+                assert min(claims) >= true - 1e-9  # a pair is its own average
+            weakest = min(weakest_bound(view, size) for view in views(team))
+            assert weakest <= min(team.value(one) for one in combinations(range(N_ROBOTS), size)) + 1e-9
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_who_pays_is_found_or_ruled_out(name):
+    answers = set()
+    for seed in range(12):
+        team, rng = make_team(name, seed), np.random.default_rng([seed, 1])
+        prices, threshold = rng.normal(size=N_ROBOTS), float(rng.uniform(0.3, 1.0)) * team.value(EVERYONE)
+        sets = PayingSets(team)
+        asked = list(sets.sizes(threshold, N_ROBOTS))
+        for size in range(1, N_ROBOTS + 1):
+            weak = [one for one in combinations(range(N_ROBOTS), size) if team.value(one) < threshold]
+            if size not in asked:
+                assert not weak
+                continue
+            most = max((prices[list(one)].sum() for one in weak), default=0.0)
+            for limit in (most - 0.2, most + 1e-6):
+                question = Question(threshold, prices, float(limit))
+                found = sets.of_size(question, size, Budget(), 10**6)
+                assert found.is_complete == (not found.found) == (not weak or limit > most)
+                answers.add(found.is_complete)
+                for members in found.found:
+                    assert members.sum() == size
+                    assert prices[members].sum() > limit
+                    assert team.value(np.flatnonzero(members)) < threshold * (1 + 1e-12)
+    assert answers == {False, True}
+
+
+def test_a_search_cut_short_says_so():
+    team = make_team("logdet", 0)
+    threshold, sets = 0.9 * team.value(EVERYONE), PayingSets(team)
+    size = max(sets.sizes(threshold, N_ROBOTS)) // 2
+    question = Question(threshold, np.zeros(N_ROBOTS), -1e-9)  # every weak set pays
+    budget = Budget()
+    assert not sets.of_size(question, size, budget, 1).is_complete
+    assert budget.nodes == 1
+    with pytest.raises(OutOfBudget):
+        sets.of_size(question, size, Budget(max_nodes=0), 10)
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_annealed_sets_are_weak_and_pay_what_they_say(name):
+    team, rng = make_team(name, 2), np.random.default_rng(2)
+    prices, links = rng.normal(size=N_ROBOTS), np.arange(N_ROBOTS + 1.0) ** 2 / 10
+    threshold, count = 0.6 * team.value(EVERYONE), 0
+    for view in views(team):
+        for members, paid in annealed_sets(view, threshold, prices, links, 200, rng, Budget()):
+            assert paid == pytest.approx(prices[members].sum() + links[members.sum()])
+            assert team.value(np.flatnonzero(members)) < threshold * (1 + 1e-12)
+            count += 1
+    assert count >= (team.single < threshold).sum() > 0  # one with each weak robot
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_prices_of_all_weak_sets_claim_nothing_of_what_attacks_reach(name):
+    refuted = 0
+    for problem in problems(name, 6, n_robots=5):
+        team = PlanarTeam.of(problem.objective, np.arange(5))
+        worst = brute_force_worst_case(problem, np.arange(5))
+        for share in (0.7, 0.999, 1.001):
+            program = FamilyProgram(problem.threat)
+            for size in range(1, 6):
+                for one in combinations(range(5), size):
+                    program.add(np.isin(np.arange(5), one), team.value(one))
+            prices = program.solve(share * worst)
+            assert prices is not None
+            refuted += prices.claim > 1e-3
+            if share > 1:
+                assert prices.claim <= 1e-6
+    assert refuted
+
+
+def bounded(problem, budget):
+    """The lower end by prices alone, from no attack at all."""
+    team = PlanarTeam.of(problem.objective, np.arange(problem.n_robots))
+    bracket = AttackBracket(Attack(), problem.team_value(np.arange(problem.n_robots), Attack()), 0.0)
+    try:
+        ThresholdBound(team, problem.threat).run(bracket, budget)
+    except OutOfBudget:
+        assert budget.stop() is not None
+    return bracket.lower
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_refuted_thresholds_are_below_the_worst_case(name):
+    near = []
+    for problem in problems(name, 5):
+        worst = worst_case_attack(problem, EVERYONE).upper
+        lower = bounded(problem, Budget(max_nodes=20_000))
+        assert lower <= worst + 1e-9 * abs(worst)
+        near.append(lower / worst if worst > 0 else 1.0)
+    assert max(near) > 0.97
+    assert min(near) > 0.5
+
+
+def test_wherever_it_ends_the_bound_holds():
+    problem = next(problems("logdet", 1))
+    worst = worst_case_attack(problem, EVERYONE).upper
+    lowers = [bounded(problem, Budget(max_nodes=nodes)) for nodes in (0, 1, 3, 10, 30, 100)]
+    assert lowers == sorted(lowers)
+    assert lowers[-1] <= worst
+    assert bounded(problem, Budget(time_limit=0)) == 0.0
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_with_time_left_a_search_of_all_families_goes_on(name, monkeypatch):
+    monkeypatch.setattr(annealed_families, "FIRST_MOVES", annealed_families.CHUNK)
+    monkeypatch.setattr(threshold_bound, "FIRST_MOVES", 100)
+    monkeypatch.setattr(size_vector_search, "MOST_VECTORS", 0)
+    n_robots, rng = 14, np.random.default_rng(3)
+    objective = OBJECTIVES[name](*information_data(rng, n_robots, 3))
+    problem = Problem(objective, np.arange(n_robots), None, 1, 65)
+    worst = worst_case_attack(problem, np.arange(n_robots)).upper
+    values = PlanValues(problem, np.arange(n_robots))
+    bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), 0.0)
+    task = AttackTask(problem, values, bracket, Budget(time_limit=0.5))
+    try:
+        stop = FamilySearch(task, PlanarTeam.of(objective, values.plan), []).run()
+    except OutOfBudget as out:
+        stop = out.stop
+    assert stop in {Stop.CLOSED, Stop.TIME}
+    assert bracket.lower <= worst <= bracket.upper * (1 + 1e-12)
+
+
+def test_prices_are_not_asked_of_very_large_teams(monkeypatch):
+    problem = next(problems("trace", 1))
+    values = PlanValues(problem, EVERYONE)
+    bracket = AttackBracket(Attack(), problem.team_value(EVERYONE, Attack()), 0.0)
+    search = FamilySearch(AttackTask(problem, values, bracket, Budget()), make_team("trace", 0), [])
+    monkeypatch.setattr(family_search, "LARGEST", N_ROBOTS - 1)
+    search.price(1.0)
+    assert bracket.lower == 0.0
