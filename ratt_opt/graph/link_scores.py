@@ -68,16 +68,16 @@ def link_scores(graph: CommunicationGraph, alpha_c: int, budget: Budget) -> Link
     """
     need = np.array([2.0 * (share * len(graph.links) - alpha_c) for share in SHARES])
     least = np.array([-alpha_c if share == 0.0 else -np.inf for share in SHARES])
-    most = _most_scores(graph).run(budget)
+    most = most_scores(graph).run(budget)
     return LinkScores(np.where(most < least[:, None], -np.inf, most), need, least)
 
 
 @lru_cache(maxsize=8)
-def _most_scores(graph: CommunicationGraph) -> _MostScores:
-    return _MostScores(graph)
+def most_scores(graph: CommunicationGraph) -> MostScores:
+    return MostScores(graph)
 
 
-class _MostScores:
+class MostScores:
     """Best bounds so far for every share and size, from everybody down to nobody.
 
     ``multipliers`` : (K, N + 1, N) that give them
@@ -92,7 +92,7 @@ class _MostScores:
         charges = [(1.0 - share) * degrees for share in SHARES]
         least = np.array([np.concatenate([[0.0], np.cumsum(np.sort(charge))]) for charge in charges])
         self._most = np.minimum(sizes * (sizes - 1.0), degrees.sum()) - least
-        self.relaxed = [_Relaxed(adjacent, charge) for charge in charges]
+        self.relaxed = [RelaxedScore(adjacent, charge) for charge in charges]
         self.multipliers = np.zeros((len(SHARES), n_robots + 1, n_robots))
         self._left = [(k, size) for size in range(2, n_robots) for k in range(len(SHARES))]
 
@@ -136,7 +136,7 @@ def scoring_group(
     ------
     OutOfBudget : the budget is spent.
     """
-    known, size = _most_scores(graph), int(members.sum()) + joining
+    known, size = most_scores(graph), int(members.sum()) + joining
     nodes = [(members, ~members)]
     for _ in range(NODES):
         if not nodes:
@@ -161,6 +161,15 @@ def _rounded(bound: float) -> float:
     return float(np.floor(2.0 * (bound + MARGIN * (1.0 + abs(bound)))) / 2.0)
 
 
+@dataclass(frozen=True, slots=True)
+class Top:
+    """A bound of a quadratic form on a sphere, where it is attained, and the sphere's multiplier."""
+
+    value: float
+    place: FloatArray
+    level: float
+
+
 @lru_cache(maxsize=256)
 def _across(n_robots: int) -> FloatArray:
     """(N, N - 1) orthonormal, across the vector of ones."""
@@ -169,7 +178,7 @@ def _across(n_robots: int) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True)
-class _Relaxed:
+class RelaxedScore:
     """Bounds of ``x' A x - charge' x`` over vectors of zeros and ``s`` ones."""
 
     adjacent: FloatArray
@@ -182,11 +191,11 @@ class _Relaxed:
         object.__setattr__(self, "across", across)
         object.__setattr__(self, "inner", across.T @ self.adjacent @ across)
 
-    def around(self, members: BoolArray, others: BoolArray) -> tuple[float, _Relaxed]:
+    def around(self, members: BoolArray, others: BoolArray) -> tuple[float, RelaxedScore]:
         """What these robots (N,) score alone, and what some of the others (N,) add to it."""
         ties = self.adjacent[:, members].sum(axis=1)
         alone = float(ties[members].sum() - self.charge[members].sum())
-        return alone, _Relaxed(self.adjacent[np.ix_(others, others)], self.charge[others] - 2.0 * ties[others])
+        return alone, RelaxedScore(self.adjacent[np.ix_(others, others)], self.charge[others] - 2.0 * ties[others])
 
     @staticmethod
     def rounding(multipliers: FloatArray) -> float:
@@ -203,6 +212,11 @@ class _Relaxed:
 
         Members are ``x = s / N + y`` with ``y`` across the vector of ones, ``|y|^2 = s (1 - s / N)``.
         """
+        top = self.top(multipliers, size)
+        return top.value, top.place - top.place**2
+
+    def top(self, multipliers: FloatArray, size: int) -> Top:
+        """The bound for these multipliers (N,), and where it is attained."""
         n_robots = len(multipliers)
         mean, linear = size / n_robots, multipliers - self.charge
         radius = size * (1.0 - mean)
@@ -210,12 +224,11 @@ class _Relaxed:
         fixed = mean * (mean * row_sums.sum() + linear.sum())
         levels, turn = np.linalg.eigh(self.inner - (self.across * multipliers[:, None]).T @ self.across)
         slope = turn.T @ (self.across.T @ (2.0 * mean * row_sums + linear))
-        top, place = _on_sphere(levels, slope, radius)
-        x: FloatArray = mean + self.across @ (turn @ place)
-        return fixed + top, x - x * x
+        top = _on_sphere(levels, slope, radius)
+        return Top(fixed + top.value, mean + self.across @ (turn @ top.place), top.level)
 
 
-def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> tuple[float, FloatArray]:
+def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> Top:
     """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value but for rounding; where.
 
     For every ``t > levels`` the value is at most ``t radius + sum of slope^2 / (4 (t - levels))``; the best ``t`` has
@@ -233,7 +246,7 @@ def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> tuple[fl
     place = slope / (2.0 * (best - levels))
     top = best * radius + float((slope**2 / (4.0 * (best - levels))).sum())
     place[-1] += np.sqrt(max(radius - float(place @ place), 0.0))
-    return top, place
+    return Top(top, place, best)
 
 
 def _squared(levels: FloatArray, slope: FloatArray, t: float) -> float:

@@ -22,6 +22,7 @@ from ratt_opt.certificates.verifier.lower_end.largest_groups import largest_grou
 from ratt_opt.certificates.verifier.lower_end.link_scores import LinkScores
 from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
 from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed, walk
+from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,6 +35,9 @@ __all__ = ["check_group_sizes"]
 
 LARGEST = 2**31
 """Of prices, scores and diagonals, in size."""
+
+MOST_ROBOTS = 200
+"""A characteristic polynomial of so many rows takes less than a second; one of 1,000 minutes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +56,8 @@ class _Case:
 
 def check_group_sizes(about: Statement, part: Any, worth: Worth) -> int:
     """Check the proof; returns its leaves."""
+    if about.n > MOST_ROBOTS:
+        raise UndecidedError(f"not decided: sizes of groups are for at most {MOST_ROBOTS} robots")
     names = "kind prices most size sizes bounds trees"
     _, prices, most, given, sizes, bounds, trees = fields("lower proof", part, names)
     scores = [LinkScores(about, _integers("prices", own, about.n)) for own in array("prices", prices)]

@@ -69,8 +69,10 @@ class LinkScores:
         """
         tick()
         inside, others = case
+        if count == others.bit_count():
+            inside, count = inside | others, 0
         room = bound + sum(self.price[i] - 2 * (self.near[i] & inside).bit_count() for i in robots_of(inside))
-        if count <= 0 or not others:
+        if not 0 < count < others.bit_count():
             return count != 0 or room > 0
         form = self._form(room, diagonal, inside, list(robots_of(others)))
         size = form.nrows() - 1
