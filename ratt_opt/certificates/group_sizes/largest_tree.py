@@ -111,8 +111,9 @@ class _Tree:
     def _ask_sight(self, case: _Case, i: int, stack: list[_Case]) -> None:
         self.tree.append(2 * i)
         stack.append(replace(case, others=case.others | 1 << i))
-        seeing = {"seeing": case.seeing | 1 << i, "inside": case.inside | 1 << i}
-        stack.append(replace(case, posterior=self.sets.extend(case.posterior, i), grown=True, **seeing))
+        joined, posterior = 1 << i, self.sets.extend(case.posterior, i)
+        case = replace(case, seeing=case.seeing | joined, inside=case.inside | joined)
+        stack.append(replace(case, posterior=posterior, grown=True))
 
     def _ask_place(self, case: _Case, place: FloatArray, stack: list[_Case]) -> None:
         """Of the robot that is least clearly inside or outside the best fractional group."""
