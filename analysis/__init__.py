@@ -1,1 +1,33 @@
-"""Studies that reproduce the paper and go past it; not installed."""
+"""Studies that reproduce the paper and go past it; not installed.
+
+An interrupt (Ctrl-C) ends each of its programs with one line and 130, also while modules are still imported.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+INTERRUPTED = 130
+
+
+def _end(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
+    """What nothing catches: of an interrupt one line, all else as Python shows it."""
+    if not _is_interrupt(error):
+        sys.__excepthook__(kind, error, traceback)
+        return
+    print("error: interrupted", file=sys.stderr, flush=True)
+    sys.exit(INTERRUPTED)
+
+
+def _is_interrupt(error: BaseException | None) -> bool:
+    """Whether an interrupt is what an error, such as that of an import it broke off, comes from."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None
+
+
+sys.excepthook = _end

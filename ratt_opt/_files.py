@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
 __all__ = ["MIXED", "output_directory", "output_file", "write_atomically", "write_json", "write_together"]
 
@@ -104,8 +104,12 @@ def write_json(path: str | Path, document: object) -> Path:
     return write_atomically(path, lambda file: file.write_text(text, encoding="utf-8"))
 
 
-def write_together(folder: Path, writers: Mapping[str, Callable[[Path], object]]) -> list[Path]:
+def write_together(
+    folder: Path, writers: Mapping[str, Callable[[Path], object]], *, outdated: Iterable[str] = ()
+) -> list[Path]:
     """Write files that belong together: all are made aside, then renamed into the folder one after the other.
+
+    ``outdated`` : files of an earlier set that are removed with it, where they are there.
 
     A kill between two renames leaves ``MIXED`` in the folder, whose text says what that means.
 
@@ -113,7 +117,7 @@ def write_together(folder: Path, writers: Mapping[str, Callable[[Path], object]]
     ------
     InputError : a file cannot be written there; those of an earlier set are then all left as they were.
     """
-    targets = [output_file(folder / name) for name in writers]
+    targets, gone = ([output_file(folder / name) for name in names] for names in (writers, outdated))
     mark = output_file(folder / MIXED)
     try:
         with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as aside:
@@ -122,6 +126,8 @@ def write_together(folder: Path, writers: Mapping[str, Callable[[Path], object]]
             write_atomically(mark, lambda file: file.write_text(_MIXED_TEXT, encoding="utf-8"))
             for target in targets:
                 (Path(aside) / target.name).replace(target)
+            for target in gone:
+                target.unlink(missing_ok=True)
             mark.unlink()
     except OSError as error:
         raise InputError("out", "must be a folder that can be written", f"{folder} ({_reason(error)})") from None

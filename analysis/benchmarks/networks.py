@@ -1,16 +1,17 @@
 """Exact attacks and best plans on the networks that radio teams have; attacks also against plain annealing.
 
 Run as ``python -m analysis.benchmarks.networks [attack maxmin] [--robots 24 30 50 100] [--families dense ...]
-[--seeds K] [--first-seed K] [--seconds S] [--processor] [--plain-seconds P] [--objective trace] [--earlier TREE]
-[--log FILE]``. Attacked are RATT's plans, under three pairs of budgets: a fifth of the robots and 15 % of the links, a
-third and 30 %, and random ones. ``--earlier`` attacks the same plans with the edition in another source tree, too.
-Limits are wall time, or, with ``--processor``, what a busy machine gave.
+[--budgets fifth third random] [--seeds K] [--first-seed K] [--seconds S] [--processor] [--plain-seconds P]
+[--objective trace] [--earlier TREE] [--log FILE]``. Attacked are RATT's plans, under three pairs of budgets: a fifth of
+the robots and 15 % of the links, a third and 30 %, and random ones. ``--earlier`` attacks the same plans with the
+edition in another source tree, too. Limits are wall time, or, with ``--processor``, what a busy machine gave.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,12 +25,12 @@ from ratt_opt._rounding import relative_gap
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from ratt_opt import Problem
 
 TARGETS = {24: 25, 30: 25, 50: 30, 100: 100}
-SHARES = ((0.2, 0.15), (1 / 3, 0.3), None)
+SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
 """Of the robots blinded and of the links cut; ``None`` draws both up to twice a third of them."""
 GAP = 1e-6
 """That a max-min search is asked for."""
@@ -37,17 +38,16 @@ WARM = 24
 """Robots of the first problems of each objective, not counted: what is compiled is loaded then."""
 
 
-def instances(robots: list[int], families: list[str], seeds: range, objective: str) -> Iterator[tuple[Any, ...]]:
+def instances(
+    robots: list[int], families: list[str], seeds: range, objective: str, budgets: Iterable[str] = tuple(SHARES)
+) -> Iterator[tuple[Any, ...]]:
     """Yield (robots, family, seed, problem)."""
-    for n_robots in robots:
-        for family in families:
-            for seed in seeds:
-                for shares in SHARES:
-                    rng = np.random.default_rng([n_robots, seed])
-                    alpha_s, alpha_c = shares or rng.uniform(0, 2 / 3, 2).tolist()
-                    options: dict[str, Any] = {"alpha_s": float(alpha_s), "alpha_c": float(alpha_c), "seed": seed}
-                    scenario = ro.network_scenario(family, n_robots, TARGETS[n_robots], **options)
-                    yield n_robots, family, seed, scenario.problem(objective)
+    for n_robots, family, seed, name in product(robots, families, seeds, budgets):
+        rng = np.random.default_rng([n_robots, seed])
+        alpha_s, alpha_c = SHARES[name] or rng.uniform(0, 2 / 3, 2).tolist()
+        options: dict[str, Any] = {"alpha_s": float(alpha_s), "alpha_c": float(alpha_c), "seed": seed}
+        scenario = ro.network_scenario(family, n_robots, TARGETS[n_robots], **options)
+        yield n_robots, family, seed, scenario.problem(objective)
 
 
 def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:
@@ -100,6 +100,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("what", nargs="*", default=["attack"], help="attack, maxmin")
     parser.add_argument("--robots", type=int, nargs="*", default=[24, 30], choices=sorted(TARGETS))
     parser.add_argument("--families", nargs="*", default=list(NETWORK_FAMILIES), choices=list(NETWORK_FAMILIES))
+    parser.add_argument("--budgets", nargs="*", default=list(SHARES), choices=list(SHARES))
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one call")
@@ -119,7 +120,8 @@ def main() -> None:
     warm_up(options.objective)
     rows: dict[str, list[dict[str, object]]] = {what: [] for what in options.what}
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    for n_robots, family, seed, problem in instances(options.robots, options.families, seeds, options.objective):
+    asked = instances(options.robots, options.families, seeds, options.objective, options.budgets)
+    for n_robots, family, seed, problem in asked:
         for what, table in rows.items():
             row = {"robots": n_robots, "family": family, "seed": seed} | measured(what, problem, seed, options)
             table.append(row)

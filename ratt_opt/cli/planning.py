@@ -23,6 +23,8 @@ DEMO_SEED = 14
 """A scenario on which the planners differ; on many others RATT and greedy find the same plan."""
 PROOF, EARLIER_PROOF = "certificate.json", "certificate.earlier.json"
 """The certificate of a folder's report, and that of an earlier report when a later one has none."""
+NOT_DRAWN = "without plan.png and plan.svg, which the same command draws once it ends; report.html has the map"
+"""After an interrupt: drawing takes a second or two, most of them to load what draws."""
 
 
 def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> None:
@@ -76,7 +78,7 @@ def _bound(
     from ratt_opt.main_job.bound import CERTIFICATE_SHARE
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.tables import report_tables
-    from ratt_opt.report.write import FILES, write_report
+    from ratt_opt.report.write import FILES, write_numbers
     from ratt_opt.solvers.maxmin.solve import check_limits
 
     folder = output_directory(out, PROOF, EARLIER_PROOF, *FILES)
@@ -86,8 +88,10 @@ def _bound(
     report = main_job(source, objective=objective, time_limit=searching, gap=gap, workers=workers)
     left = max(0.0, time_limit - (monotonic() - began))
     wanted = certificate and not report.interrupted
-    with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report and figure"):
-        files = write_report(replace(report, certificate=PENDING) if wanted else report, folder)
+    with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report"):
+        files = write_numbers(replace(report, certificate=PENDING) if wanted else report, folder)
+    if not report.interrupted:
+        files += _drawn(report, folder, wanted=wanted)
     if wanted:
         with Step("certificate"):
             report = _certified(report, folder, left)
@@ -100,13 +104,30 @@ def _bound(
         print_tables(report_tables(report))
         print_lines(["written: " + ", ".join(printable(str(file)) for file in files)])
     if report.interrupted:
-        raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then")
+        raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then, {NOT_DRAWN}")
+
+
+def _drawn(report: "BoundReport", folder: Path, *, wanted: bool) -> list[Path]:
+    """The figures, drawn once all else is written; interrupted, the report says that its proof was not begun.
+
+    Raises WorkInterrupted.
+    """
+    from ratt_opt.certificates.certification import INTERRUPTED
+    from ratt_opt.report.write import write_figures, write_verdict
+
+    try:
+        with Step("figure"):
+            return write_figures(report, folder)
+    except KeyboardInterrupt:
+        if wanted:
+            write_verdict(replace(report, certificate=INTERRUPTED), folder)
+        raise WorkInterrupted(f"interrupted; {folder} holds the report, {NOT_DRAWN}") from None
 
 
 def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "BoundReport":
     """The report with its certificate, or why there is none, written over the one in the folder.
 
-    Raises ProofError for a fault in our own proof, and KeyboardInterrupt; the report in the folder then says so.
+    Raises ProofError for a fault in our own proof, and WorkInterrupted; the report in the folder then says so.
     """
     from ratt_opt.budget import Budget
     from ratt_opt.certificates.certification import INTERRUPTED, Certification
@@ -115,13 +136,16 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "Bound
 
     began = monotonic()
     budget = Budget(time_limit)
-    failure: BaseException | None = None
+    failure: Exception | None = None
     try:
         proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, budget, source=report.source)
     except ProofError as error:
         proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
-    except KeyboardInterrupt as error:
-        proof, failure = INTERRUPTED, error
+    except KeyboardInterrupt:
+        proof, failure = (
+            INTERRUPTED,
+            WorkInterrupted(f"interrupted; {folder} holds the report, not yet its certificate"),
+        )
     seconds = {**report.seconds, "certificate": monotonic() - began}
     report = replace(report, certificate=proof, seconds=seconds)
     write_verdict(report, folder)

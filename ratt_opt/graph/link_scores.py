@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import CommunicationGraph
 
-__all__ = ["SHARES", "LinkScores", "link_scores", "scoring_group"]
+__all__ = ["SHARES", "LinkScores", "MostScores", "RelaxedScores", "Top", "link_scores", "most_scores", "scoring_group"]
 
 SHARES = (1.0, 0.5, 0.0)
 """Shares ``w``: links inside, links cut, and one between, whose scores are multiples of a half too."""
@@ -74,6 +74,7 @@ def link_scores(graph: CommunicationGraph, alpha_c: int, budget: Budget) -> Link
 
 @lru_cache(maxsize=8)
 def most_scores(graph: CommunicationGraph) -> MostScores:
+    """What is known of a graph; the same each time for the last few, so that what one search finds out others use."""
     return MostScores(graph)
 
 
@@ -92,7 +93,7 @@ class MostScores:
         charges = [(1.0 - share) * degrees for share in SHARES]
         least = np.array([np.concatenate([[0.0], np.cumsum(np.sort(charge))]) for charge in charges])
         self._most = np.minimum(sizes * (sizes - 1.0), degrees.sum()) - least
-        self.relaxed = [RelaxedScore(adjacent, charge) for charge in charges]
+        self.relaxed = [RelaxedScores(adjacent, charge) for charge in charges]
         self.multipliers = np.zeros((len(SHARES), n_robots + 1, n_robots))
         self._left = [(k, size) for size in range(2, n_robots) for k in range(len(SHARES))]
 
@@ -178,7 +179,7 @@ def _across(n_robots: int) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True)
-class RelaxedScore:
+class RelaxedScores:
     """Bounds of ``x' A x - charge' x`` over vectors of zeros and ``s`` ones."""
 
     adjacent: FloatArray
@@ -191,23 +192,23 @@ class RelaxedScore:
         object.__setattr__(self, "across", across)
         object.__setattr__(self, "inner", across.T @ self.adjacent @ across)
 
-    def around(self, members: BoolArray, others: BoolArray) -> tuple[float, RelaxedScore]:
+    def around(self, members: BoolArray, others: BoolArray) -> tuple[float, RelaxedScores]:
         """What these robots (N,) score alone, and what some of the others (N,) add to it."""
         ties = self.adjacent[:, members].sum(axis=1)
         alone = float(ties[members].sum() - self.charge[members].sum())
-        return alone, RelaxedScore(self.adjacent[np.ix_(others, others)], self.charge[others] - 2.0 * ties[others])
+        return alone, RelaxedScores(self.adjacent[np.ix_(others, others)], self.charge[others] - 2.0 * ties[others])
 
     @staticmethod
     def rounding(multipliers: FloatArray) -> float:
         """More than what a bound by these is off by, where it is not much larger than 1."""
         return ROUNDING * len(multipliers) * float(np.abs(multipliers).max(initial=0.0))
 
-    def descend(self, size: int, start: FloatArray) -> tuple[float, FloatArray]:
+    def descend(self, size: float, start: FloatArray, steps: int = STEPS) -> tuple[float, FloatArray]:
         """A better bound for groups of ``size`` and its multipliers (N,), by quasi-Newton steps."""
-        found = minimize(self.bound, start, args=(size,), jac=True, method="L-BFGS-B", options={"maxiter": STEPS})
+        found = minimize(self.bound, start, args=(size,), jac=True, method="L-BFGS-B", options={"maxiter": steps})
         return float(found.fun) + self.rounding(found.x), found.x
 
-    def bound(self, multipliers: FloatArray, size: int) -> tuple[float, FloatArray]:
+    def bound(self, multipliers: FloatArray, size: float) -> tuple[float, FloatArray]:
         """The bound for these multipliers (N,), and its gradient.
 
         Members are ``x = s / N + y`` with ``y`` across the vector of ones, ``|y|^2 = s (1 - s / N)``.
@@ -215,7 +216,7 @@ class RelaxedScore:
         top = self.top(multipliers, size)
         return top.value, top.place - top.place**2
 
-    def top(self, multipliers: FloatArray, size: int) -> Top:
+    def top(self, multipliers: FloatArray, size: float) -> Top:
         """The bound for these multipliers (N,), and where it is attained."""
         n_robots = len(multipliers)
         mean, linear = size / n_robots, multipliers - self.charge

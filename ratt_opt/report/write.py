@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import shutil
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json, write_together
@@ -13,36 +14,27 @@ from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ratt_opt.main_job.result import BoundReport
 
-__all__ = ["FILES", "write_report", "write_verdict"]
+__all__ = ["FIGURES", "FILES", "write_figures", "write_numbers", "write_report", "write_verdict"]
 
-FILES = ("report.json", "report.html", "plan.csv", "plan.png", "plan.svg")
+NUMBERS, FIGURES = ("report.json", "report.html", "plan.csv"), ("plan.png", "plan.svg")
+FILES = (*NUMBERS, *FIGURES)
 """All that :func:`write_report` writes beside the certificate."""
 
 
 def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
     """Write ``report.json``, ``report.html``, ``plan.csv``, ``plan.png``, ``plan.svg`` and return the files.
 
-    The certificate, where there is one, is copied beside them.
+    The certificate, where there is one, is copied beside them. Drawing takes a second or two; an interrupt, or a fault,
+    of that leaves the numbers.
 
     Raises
     ------
     InputError : the folder cannot be written.
     """
-    out = output_directory(folder)
-    figure = plan_figure(report, picture_of(report.source, report))
-    page = report_page(report)
-    writers = (
-        lambda file: write_json(file, report.to_dict()),
-        lambda file: file.write_text(page, encoding="utf-8"),
-        lambda file: _write_plan(report, file),
-        lambda file: save_figure(figure, file),
-        lambda file: save_figure(figure, file),
-    )
-    files = write_together(out, dict(zip(FILES, writers, strict=True)))
+    files = [*write_numbers(report, folder), *write_figures(report, folder)]
+    out = Path(folder)
     proof = report.certificate.certificate
     if proof is not None:
         copy = out / "certificate.json"
@@ -52,6 +44,23 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
     return files
 
 
+def write_numbers(report: BoundReport, folder: str | Path) -> list[Path]:
+    """Write all but the figures, and remove those of an earlier report: milliseconds."""
+    page = report_page(report)
+    writers = (
+        lambda file: write_json(file, report.to_dict()),
+        lambda file: file.write_text(page, encoding="utf-8"),
+        lambda file: _write_plan(report, file),
+    )
+    return write_together(output_directory(folder), dict(zip(NUMBERS, writers, strict=True)), outdated=FIGURES)
+
+
+def write_figures(report: BoundReport, folder: str | Path) -> list[Path]:
+    """Draw the figures of a report whose numbers are there: a second or two, most of them to load what draws."""
+    figure = plan_figure(report, picture_of(report.source, report))
+    return write_together(Path(folder), dict.fromkeys(FIGURES, lambda file: save_figure(figure, file)))
+
+
 def write_verdict(report: BoundReport, folder: Path) -> None:
     """Write again what shows the certificate's verdict: ``report.json`` and ``report.html``."""
     page = report_page(report)
@@ -59,7 +68,7 @@ def write_verdict(report: BoundReport, folder: Path) -> None:
         lambda file: write_json(file, report.to_dict()),
         lambda file: file.write_text(page, encoding="utf-8"),
     )
-    write_together(folder, dict(zip(FILES[: len(writers)], writers, strict=True)))
+    write_together(folder, dict(zip(NUMBERS[: len(writers)], writers, strict=True)))
 
 
 def _write_plan(report: BoundReport, path: Path) -> None:

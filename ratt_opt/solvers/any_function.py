@@ -19,6 +19,7 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.bounds.guarantees import pattern_free_bound
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.curvatures.domains import domain_of
@@ -28,7 +29,7 @@ from ratt_opt.graph.outcomes import count_outcomes
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt.solvers.ratt import alpha_cs_in_share, ratt
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -41,13 +42,16 @@ __all__ = ["check_small_monotone", "search_any"]
 
 CHECKED_SETS, CHECKED_TABLE = 2**12, 2**18
 """Feasible sets up to which a function, and one given as a table, is checked to be non-decreasing: milliseconds."""
-ENUMERATION_SHARE, PLAN_SHARE, ATTACK_SHARE = 0.5, 0.3, 0.2
-"""Shares of the seconds and values left: for the enumeration of a small problem, for RATT's plan, and for each attack
-on a plan. Not measured."""
+ENUMERATION_SHARE, PLAN_SHARE, ATTACK_SHARE, CLIMB_SHARE = 0.5, 0.3, 0.2, 0.5
+"""Shares of the seconds and values left: for the enumeration of a small problem, for RATT's plan, for each attack
+on a plan, and for climbing from plan to plan with such attacks; then those that their share ended go on. Not tuned."""
+FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
+"""So many seconds at least for the first attack, if that is no more than this share of those left: with a fifth of one
+second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
 MOST_OUTCOMES = 200_000
 """Outcomes that are gone through: some seconds where plans are few."""
 ROUNDS = 50
-"""Plans that are climbed to and attacked, where no limit ends it before."""
+"""Times that plans are climbed to, where no limit ends it before."""
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
@@ -68,8 +72,8 @@ def check_small_monotone(problem: Problem, budget: Budget) -> None:
         return
 
 
-def search_any(problem: Problem, budget: Budget, gap: float = 1e-9) -> MaxMinResult:
-    """Bracket the optimum of any non-decreasing function.
+def search_any(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: int | None = None) -> MaxMinResult:
+    """Bracket the optimum of any non-decreasing function; ``alpha_cs`` : what RATT was asked before, if it was.
 
     Relies on that (checked where it is small). A spent budget or an interrupt returns the bracket.
 
@@ -84,7 +88,7 @@ def search_any(problem: Problem, budget: Budget, gap: float = 1e-9) -> MaxMinRes
         if found is not None and found.stop in DONE:
             return found
         search = _Search(problem, budget, found)
-        stop = search.run(gap)
+        stop = search.run(gap, alpha_cs)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -120,30 +124,62 @@ class _Search:
         self.worst_case: AttackResult | None = None
         self._attacks: dict[Attack, list[frozenset[int]]] = {}
         self._known: dict[frozenset[int], float] = {}
+        self._begun: dict[bytes, AttackMemory] = {}
+        """Attacks that a share of the budget ended: on RATT's plan, and on the last other one."""
+        self._first = b""
+        self._asked = self._problem.objective
 
-    def run(self, gap: float) -> Stop:
+    def run(self, gap: float, alpha_cs: int | None) -> Stop:
         """RATT's plan first, then bounds on all plans, then climbing and attacking in turn."""
-        planned = self._planned()
-        first = self._attack(self.elements if planned is None else planned)
+        planned = self._planned(alpha_cs)
+        plan = self.elements if planned is None else planned
+        self._first = plan.tobytes()
+        first = self._attack(plan, self._first_part())
         self._bound_by_pooling()
         if planned is not None:
             self._bound_by_guarantee(first)
-        current = self.elements
+        current = plan
         for _ in range(ROUNDS):
-            if self.upper - self.lower <= gap * abs(self.upper):
-                return Stop.CLOSED
-            current = self._climbed(current)
             known = len(self._attacks)
-            self._attack(current)
+            current = self._improved(current, gap)
+            for one in (plan, current):
+                self._go_on(one)
+            if self._is_closed(gap):
+                return Stop.CLOSED
             if len(self._attacks) == known:
                 break
         return self._budget.stop() or Stop.HEURISTIC
 
-    def _planned(self) -> IntArray | None:
+    def _first_part(self) -> Budget:
+        seconds = min(FIRST_SECONDS, SHORT_SHARE * self._budget.seconds_left)
+        # Of evaluations it does not need what a short time may not do for: a table takes a known number of them.
+        share = ATTACK_SHARE if np.isinf(self._budget.evaluations_left) else SHORT_SHARE
+        return self._budget.part(share, at_least=seconds)
+
+    def _is_closed(self, gap: float) -> bool:
+        return self.upper - self.lower <= gap * abs(self.upper)
+
+    def _improved(self, current: IntArray, gap: float) -> IntArray:
+        """Climb from a plan, attack the one that is reached, climb on, until an attack teaches nothing."""
+        part, known = self._budget.part(CLIMB_SHARE), -1
+        while known < len(self._attacks) and not (self._is_closed(gap) or part.is_over):
+            known = len(self._attacks)
+            current = self._climbed(current, part)
+            if not part.is_over:
+                self._attack(current, part.part(ATTACK_SHARE))
+        return current
+
+    def _go_on(self, elements: IntArray) -> None:
+        """Attack a plan with all that is left where a share ended its last attack."""
+        if elements.tobytes() in self._begun and not self._budget.is_over:
+            self._attack(elements, self._budget.part())
+
+    def _planned(self, alpha_cs: int | None) -> IntArray | None:
         """RATT's plan; ``None`` where its share of the budget does not do for it."""
         part = self._budget.part(PLAN_SHARE)
         try:
-            plan = ratt(metered_problem(self._problem, part), budget=part).elements
+            alpha_cs = alpha_cs_in_share(self._given, part) if alpha_cs is None else alpha_cs
+            plan = ratt(metered_problem(self._problem, part), alpha_cs=alpha_cs, budget=part).elements
         except OutOfBudget as out:
             if out.stop is Stop.INTERRUPTED:
                 raise
@@ -162,9 +198,15 @@ class _Search:
             worst_case=self.worst_case,
         )
 
-    def _attack(self, elements: IntArray) -> AttackResult:
-        """Attack a plan; keep it where more is proved of it than of the one kept."""
-        result = worst_case_attack(self._problem, elements, budget=self._budget.part(ATTACK_SHARE))
+    def _attack(self, elements: IntArray, part: Budget) -> AttackResult:
+        """Attack a plan, from where that ended; keep it where more is proved of it than of the one kept."""
+        key = elements.tobytes()
+        memory = self._begun.pop(key, None) or AttackMemory()
+        aim = -np.inf if self.worst_case is None else self.lower  # a plan that keeps no more is of no use
+        result = worst_case_attack(self._problem, elements, budget=part, aim=aim, memory=memory)
+        if result.stop in {Stop.TIME, Stop.EVALUATIONS}:
+            first = {k: self._begun[k] for k in [self._first] if k in self._begun}
+            self._begun = first | {key: memory}  # some megabytes each
         self._attacks.setdefault(result.attack, self._given.groups_left(result.attack))
         if self.worst_case is None or result.lower > self.lower:
             self.elements, self.lower, self.worst_case = elements.copy(), max(result.lower, self.lower), result
@@ -172,18 +214,22 @@ class _Search:
             raise OutOfBudget(result.stop)
         return result
 
-    def _climbed(self, elements: IntArray) -> IntArray:
-        """Change one robot's element at a time while the known attacks leave more."""
-        current, value = elements.copy(), self._value(elements)
-        unchanged = i = 0
-        while unchanged < len(current):
-            unchanged += 1
-            for e in self._given.choices[i]:
-                other = current.copy()
-                other[i] = e
-                if e != current[i] and (better := self._value(other)) > value:
-                    current, value, unchanged = other, better, 0
-            i = (i + 1) % len(current)
+    def _climbed(self, elements: IntArray, part: Budget) -> IntArray:
+        """Change one robot's element at a time while the known attacks leave more, within a part of the budget."""
+        self._asked = metered_problem(self._problem, part).objective
+        current = elements.copy()
+        try:
+            value, unchanged, i = self._value(elements), 0, 0
+            while unchanged < len(current):
+                unchanged += 1
+                for e in self._given.choices[i]:
+                    other = current.copy()
+                    other[i] = e
+                    if e != current[i] and (better := self._value(other)) > value:
+                        current, value, unchanged = other, better, 0
+                i = (i + 1) % len(current)
+        except OutOfBudget:
+            self._budget.check()
         return current
 
     def _value(self, elements: IntArray) -> float:
@@ -193,7 +239,7 @@ class _Search:
     def _worth(self, elements: IntArray, group: frozenset[int]) -> float:
         chosen = frozenset(elements[sorted(group)].tolist())
         if chosen not in self._known:
-            self._known[chosen] = self._problem.objective(chosen)
+            self._known[chosen] = self._asked(chosen)
         return self._known[chosen]
 
     def _bound_by_pooling(self) -> None:

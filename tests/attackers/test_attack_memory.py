@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,8 @@ from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, Pla
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attackers.test_by_prices import check, team_problem
 from tests.oracles import brute_force_worst_case
+from tests.solvers.test_any_function import Opaque
+from tests.strategies import random_elements, random_problem
 
 PIECES = 20_000
 """Budgets after which a search that learns nothing from one to the next would still not have ended."""
@@ -78,3 +82,30 @@ def test_what_is_remembered_of_another_plan_is_refused() -> None:
     with pytest.raises(ro.InputError, match="memory"):
         ro.worst_case_attack(problem, other, memory=memory)
     assert ro.worst_case_attack(problem, plan, memory=memory).upper == first.upper
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_thresholds_in_pieces_never_prove_less_than_before(seed: int) -> None:
+    """A table of all sets must not drop what was proved without it, and is not made twice."""
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, n_robots=5, kind=["trace", "logdet"][seed % 2])
+    opaque = replace(problem, objective=Opaque(problem.objective))
+    plan, memory = random_elements(rng, problem), AttackMemory()
+    truth = brute_force_worst_case(problem, plan)
+    parts = [ro.worst_case_attack(opaque, plan, max_evaluations=20, memory=memory)]
+    while parts[-1].stop is not ro.Stop.EXHAUSTED:
+        parts.append(ro.worst_case_attack(opaque, plan, max_nodes=1, memory=memory))
+        assert parts[-2].lower * (1 - 1e-8) <= parts[-1].lower <= truth * (1 + 1e-9) + 1e-10
+        assert truth * (1 - 1e-9) <= parts[-1].upper <= parts[-2].upper
+    assert parts[-1].upper == pytest.approx(truth, rel=1e-9, abs=1e-10)
+    assert opaque.objective.asked < 2 * 60
+
+
+def test_a_bound_that_a_table_refutes_is_dropped() -> None:
+    """Bounds found before rely on a function that never falls; one that does is answered from its table."""
+    values = np.array([0.0, 3.0, 3.0, 1.0])
+    problem = ro.Problem(Opaque(ro.TableFunction(values)), np.arange(2), None, 0, 0)
+    memory = AttackMemory()
+    first = ro.worst_case_attack(problem, [0, 1], max_evaluations=2, memory=memory)
+    found = ro.worst_case_attack(problem, [0, 1], memory=memory)
+    assert first.lower <= found.lower == found.upper == 1.0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups import cover
 from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, WEAK, weak_subset
@@ -16,7 +17,7 @@ from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SE
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
+from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
@@ -125,6 +126,14 @@ def test_weak_subsets_against_all_of_them(seed):
                 assert problem.objective(left) < threshold
 
 
+def fitted_forms(threat, prices=None):
+    """Fitted to prices (N,), as after some thousand nodes, or not yet."""
+    forms = ConvexForms(threat)
+    if prices is not None:
+        forms.fit(prices, len(prices))
+    return forms
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_the_enumeration_lists_every_group_that_pays(seed):
     """Against all connected groups and all blindings, at random prices."""
@@ -135,9 +144,10 @@ def test_the_enumeration_lists_every_group_that_pays(seed):
     threshold, blinded, robot = whole * rng.uniform(0.4, 0.9), rng.uniform(0.2, 2), rng.uniform(0, 2, 7)
     sets = [s for k in range(8) for s in combinations(range(7), k)]
     largest = max(len(s) for s in sets if problem.objective(plan[list(s)]) < threshold)
-    prices = Prices(robot, blinded, np.ones(7), float(largest), blinded, np.array([1.0, 0.5, 0.0]))
+    forms = fitted_forms(problem.threat, robot if seed % 2 else None)
+    prices = Prices(robot, blinded, np.ones(7), float(largest), blinded, np.array([1.0, 0.5, 0.0]), forms.known)
     question = Question(threshold, problem.threat.n_blinded, 0.5, rng.permutation(7), 10**6, 10**6)
-    stack = Stack.of(7, len(links.robot), 3)
+    stack = Stack.of(7, len(links.robot), (3, forms.n_forms))
     listed = (np.zeros((200, 7), np.bool_), np.zeros((200, 7), np.bool_), np.zeros((200, 2), np.int64), np.zeros(200))
     assert enumerate_groups(team, links, prices, question, stack, 10**6, listed) == FINISHED
     found = {tuple(np.flatnonzero(row)): need for row, need in zip(listed[0], listed[2], strict=True) if row.any()}
@@ -282,6 +292,10 @@ def least_cost(problem, plan, threshold, prices):
     return least
 
 
+def paying_search(team, links, threat, forms_at=None):
+    return PayingSearch(team, links, fitted_forms(threat, forms_at))
+
+
 @pytest.mark.parametrize("seed", range(24))
 def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed):
     rng = np.random.default_rng(seed)
@@ -293,16 +307,17 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
     prices = (prices[0] + raised, prices[1])
     least = least_cost(problem, plan, threshold, prices)
     assert least < 0
-    at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1))
+    at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1), ConvexForms(threat).known)
+    search = paying_search(team, links, threat, forms_at=prices[0] if seed % 2 else None)
     for limit, room in ((least - 1e-6, 5), (least + 1e-6, 5), (-1e-6, 3)):
         question = Question(threshold, threat.n_blinded, limit, np.arange(6), 0, 0)
-        found = find_paying_groups(team, links, at, question, Budget(), nodes=10**6, room=room)
+        found = search.find(at, question, Budget(), nodes=10**6, room=room)
         assert (len(found.groups) > 0) == (least <= limit)
         assert found.is_complete or len(found.groups) == room
         for group in found.groups:
             assert group.need <= threat.n_blinded
             assert reduced_cost(problem, group.robots.astype(int), (prices[0], 0.0)) + prices[1] * group.need <= limit
-    assert not find_paying_groups(team, links, at, question, Budget(), nodes=0, room=3).is_complete
+    assert not search.find(at, question, Budget(), nodes=0, room=3).is_complete
 
 
 @pytest.mark.parametrize("seed", range(24))
@@ -316,11 +331,12 @@ def test_prices_fall_for_groups_that_pay_until_none_does(seed):
     robot = rng.uniform(0, 2, 6)
     robot += max(least_cost(problem, plan, threshold, (robot, blinded)), 0) + 0.5  # some groups pay
     first = PriceVector(robot=robot.copy(), blinded=blinded, links=float(robot.sum() - blinded * threat.n_blinded))
-    at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1))
+    at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1), ConvexForms(threat).known)
     question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
+    search = paying_search(team, links, threat, forms_at=robot if seed % 2 else None)
     for least in (-1e9, first.links - 0.5):
         falling = FallingPrices(program=GroupPrices(threat), threshold=threshold, prices=first, links=least)
-        found = find_paying_groups(team, links, at, question, Budget(), falling, nodes=10**6, room=10**6)
+        found = search.find(at, question, Budget(), falling, nodes=10**6, room=10**6)
         left = falling.prices
         assert falling.learned > 0
         assert np.all(left.robot <= robot + 1e-9)

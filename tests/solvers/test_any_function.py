@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import ratt_opt as ro
 from ratt_opt.errors import InputError
 from tests.oracles import brute_force_optimum, brute_force_worst_case
-from tests.strategies import SEEDED, Drawn, monotone_table, random_problem
+from tests.strategies import SEEDED, Drawn, information_data, monotone_table, random_problem
 
 
 class Opaque(ro.SetFunction):
@@ -183,3 +183,17 @@ def test_large_modular_teams_without_link_attacks_close(robots, data):
     truth = np.sort(weights)[: robots - blinded].sum()
     assert attack.lower == attack.upper == truth
     assert ro.solve_maxmin(problem).upper == truth
+
+
+@pytest.mark.parametrize("n_robots", [8, 9])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_limited_search_proves_what_an_attack_on_ratt_s_plan_alone_does(n_robots, seed):
+    """With twice the values that close that attack: the share it has first must do for it."""
+    prior, information = information_data(np.random.default_rng(seed), 8 * n_robots, 4, 3)
+    objective = Opaque(ro.TraceObjective(prior, information))
+    problem = ro.Problem(objective, np.repeat(np.arange(n_robots), 8), None, 2, 4)
+    most = 3 * 2**n_robots
+    alone = ro.worst_case_attack(problem, ro.ratt(problem).elements, max_evaluations=most // 2)
+    found = ro.solve_maxmin(problem, max_evaluations=most)
+    assert alone.stop is ro.Stop.EXHAUSTED
+    assert found.lower >= alone.lower

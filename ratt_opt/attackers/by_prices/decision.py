@@ -19,11 +19,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
+from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, cheap_group
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
-from ratt_opt.attackers.by_prices.paying_groups import find_paying_groups
+from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.starts import Partition
 
@@ -40,9 +41,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ThresholdDecision"]
 
-SHARES = np.array([1.0, 0.75, 0.5, 0.25, 0.0])
+SHARES, FEW_SHARES = np.array([1.0, 0.75, 0.5, 0.25, 0.0]), np.array([1.0, 0.0])
 """Mixtures of the two bounds of the enumeration. Measured at 24 robots: five flows visit a half to a seventh of the
-nodes of two."""
+nodes of two; beside forms two are enough."""
 
 MARGIN = 1e-3
 """Links that scaled prices claim beyond the budget; well above rounding, well below one link."""
@@ -55,8 +56,9 @@ RESERVE = 0.3
 """Share of the links that could be claimed beyond the budget that prices claim, too, to be lowered for groups that pay.
 Measured at hubs of 30 robots (10, 31) and 97 % of the attack: two searches instead of five, of 60,000 nodes."""
 
-LOWERED = 0.01
-"""By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
+LOWERED, FALL = 0.003, 0.1
+"""By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative; and links
+by which prices that claim too few may fall for groups before."""
 
 FIRST_ATTEMPT, LONGER = 50_000, 3
 """Nodes of the first search over seeing robots at each of a few prices, and their growth while none of them ends."""
@@ -97,6 +99,7 @@ class ThresholdDecision:
         self.team, self.links, self.threat = team, links, threat
         self._sizes = sizes
         self.prices = GroupPrices(threat)
+        self._paying = PayingSearch(team, links, ConvexForms(threat))
         self._n_robots = len(team.single)
         self._rng, self._shuffled = np.random.default_rng(0), False
         self._attempt = FIRST_ATTEMPT
@@ -137,7 +140,8 @@ class ThresholdDecision:
             if answer is None:
                 self._attempt *= LONGER
             elif answer.verdict is Threshold.REFUTED:
-                return self._cover(found.lowered(LOWERED), threshold, size, budget, nodes)
+                assert answer.prices is not None
+                return self._cover(answer.prices.lowered(LOWERED), threshold, size, budget, nodes)
             elif answer.verdict is Threshold.OPEN:
                 break
         return Answer(verdict=Threshold.OPEN)
@@ -186,9 +190,10 @@ class ThresholdDecision:
         threshold, size, limit = asked
         if self.prices.add(self._cheap(prices, threshold, budget)):
             return Answer(verdict=Threshold.REACHED)
-        (at, question), least, nodes = self._asked(prices, asked), self.threat.alpha_c + MARGIN, self._attempt
+        (at, question), nodes, least = self._asked(prices, asked), self._attempt, self.threat.alpha_c + MARGIN
+        least = least if prices.links > least - TOLERANCE else prices.links - FALL
         falling = FallingPrices(program=self.prices, threshold=threshold, prices=prices, links=least)
-        found = find_paying_groups(self.team, self.links, at, question, budget, falling, nodes=nodes, room=NEW_GROUPS)
+        found = self._paying.find(at, question, budget, falling, nodes=nodes, room=NEW_GROUPS)
         if found.groups:
             is_new = self.prices.add(found.groups) or falling.learned
             return Answer(verdict=Threshold.REACHED if is_new else Threshold.OPEN)
@@ -202,7 +207,9 @@ class ThresholdDecision:
     def _asked(self, prices: PriceVector, asked: tuple[float, int, float]) -> tuple[Prices, Question]:
         """The compiled searches' arguments for ``asked`` = (threshold, largest weak size, limit)."""
         threshold, size, limit = asked
-        at = Prices(prices.robot, prices.blinded, np.ones(self._n_robots), float(size), prices.blinded, SHARES)
+        known, ones = self._paying.forms.known, np.ones(self._n_robots)
+        shares = FEW_SHARES if len(known.constant) else SHARES
+        at = Prices(prices.robot, prices.blinded, ones, float(size), prices.blinded, shares, known)
         order = np.argsort(-prices.robot, kind="stable")
         if self._shuffled:  # the groups listed last all began with the same robots
             order = self._rng.permutation(self._n_robots)
@@ -241,7 +248,7 @@ class ThresholdDecision:
         """Groups of ``asked`` = (threshold, largest weak size, limit), within ``most`` = (nodes, groups)."""
         n_robots, (nodes, room) = self._n_robots, most
         at, question = self._asked(prices, asked)
-        stack = Stack.of(n_robots, len(self.links.robot), len(SHARES))
+        stack = Stack.of(n_robots, len(self.links.robot), (len(SHARES), self._paying.forms.n_forms))
         shape = (room, n_robots)
         listed = (np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros((room, 2), np.int64), np.zeros(room))
         code, chunk = PAUSED, FIRST_CHUNK

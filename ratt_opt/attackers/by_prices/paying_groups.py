@@ -21,12 +21,16 @@ from ratt_opt.attackers.by_prices.groups.seeing_sets import (
 from ratt_opt.attackers.by_prices.prices import KnownGroup
 
 if TYPE_CHECKING:
+    from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
     from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
     from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
     from ratt_opt.attackers.by_prices.team import Links, PricedTeam
     from ratt_opt.budget import Budget
 
-__all__ = ["PayingGroups", "find_paying_groups"]
+__all__ = ["PayingGroups", "PayingSearch"]
+
+FITTED = 2_000
+"""Nodes after which forms are fitted to the prices: it takes as long as some hundreds."""
 
 FIRST_CHUNK, GLANCE = 500, 0.05
 """Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
@@ -44,56 +48,69 @@ class PayingGroups:
     is_complete: bool
 
 
-def find_paying_groups(  # noqa: PLR0917
-    team: PricedTeam,
-    links: Links,
-    prices: Prices,
-    question: Question,
-    budget: Budget,
-    falling: FallingPrices | None = None,
-    *,
-    nodes: int,
-    room: int,
-) -> PayingGroups:
-    """Search for so many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
+@dataclass(frozen=True, slots=True)
+class PayingSearch:
+    """Searches for groups of one team that pay; ``forms`` : what groups of each size cut, learned while it searches."""
 
-    ``falling`` : the same prices, if they may fall for groups that pay, as far as they can; the search goes on for the
-    groups left over.
+    team: PricedTeam
+    links: Links
+    forms: ConvexForms
 
-    Raises
-    ------
-    OutOfBudget : the time is up.
-    """
-    prices = prices._replace(robot=prices.robot.copy())
-    n_robots, flows = len(prices.robot), _flows(prices, question.budget)
-    stack = SeeingStack.of(len(links.robot), len(flows.share), team.prior, n_robots)
-    found = (np.zeros(n_robots, dtype=np.bool_), np.zeros(n_robots, dtype=np.bool_))
-    code, chunk, nodes = PAUSED, FIRST_CHUNK, budget.nodes_left(nodes)
-    below, groups = float(np.nextafter(question.threshold, -np.inf)), list[KnownGroup]()
-    while code != FINISHED and len(groups) < room and (before := int(stack.position[1])) < nodes:
-        budget.check()
-        began = monotonic()
-        code = search_seeing_sets(team, links, prices, flows, question, stack, min(chunk, nodes - before), found)
-        budget.nodes += int(stack.position[1]) - before
-        if code == FOUND:
-            group = KnownGroup(robots=found[0].copy(), need=int(found[1].sum()), value=below)
-            if falling is not None and not groups and falling.fall(group, budget):
-                lower_prices(stack, prices.robot, falling.prices.robot)
+    def find(
+        self,
+        prices: Prices,
+        question: Question,
+        budget: Budget,
+        falling: FallingPrices | None = None,
+        *,
+        nodes: int,
+        room: int,
+    ) -> PayingGroups:
+        """Search for so many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
+
+        ``falling`` : the same prices, if they may fall for groups that pay, as far as they can; the search goes on for
+        the groups left over.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        prices = prices._replace(robot=prices.robot.copy(), forms=self.forms.known)
+        n_robots, flows = len(prices.robot), _flows(prices, question.budget)
+        n_bounds = len(flows.share), self.forms.n_forms
+        stack = SeeingStack.of(len(self.links.robot), n_bounds, self.team.prior, n_robots)
+        found = (np.zeros(n_robots, dtype=np.bool_), np.zeros(n_robots, dtype=np.bool_))
+        code, chunk, nodes, is_fitted = PAUSED, FIRST_CHUNK, budget.nodes_left(nodes), False
+        below, groups = float(np.nextafter(question.threshold, -np.inf)), list[KnownGroup]()
+        while code != FINISHED and len(groups) < room and (before := int(stack.position[1])) < nodes:
+            budget.check()
+            if before >= FITTED and not is_fitted:
+                self.forms.fit(prices.robot, int(prices.capacity) + question.budget)
+                prices, is_fitted = prices._replace(forms=self.forms.known), True
+            began, asked = monotonic(), (self.team, self.links, prices, flows, question, stack)
+            code = search_seeing_sets(*asked, min(chunk, nodes - before), found)
+            budget.nodes += int(stack.position[1]) - before
+            if code == FOUND:
+                group = KnownGroup(robots=found[0].copy(), need=int(found[1].sum()), value=below)
+                if falling is not None and not groups and falling.fall(group, budget):
+                    lower_prices(stack, prices.robot, falling.prices.robot)
+                else:
+                    groups.append(group)
+                    leave_node(stack)
+            elif monotonic() - began < GLANCE:
+                chunk *= 2
             else:
-                groups.append(group)
-                leave_node(stack)
-        elif monotonic() - began < GLANCE:
-            chunk *= 2
-        else:
-            chunk = max(chunk // 2, 1)
-    return PayingGroups(groups=groups, is_complete=code == FINISHED)
+                chunk = max(chunk // 2, 1)
+        return PayingGroups(groups=groups, is_complete=code == FINISHED)
 
 
 def _flows(prices: Prices, n_blinded: int) -> Flows:
-    """Half of the robots' share and all of it, with the surcharge and without."""
+    """All of the robots' share, and none; without forms also half, and both ends with the surcharge."""
+    mu = prices.blinded
+    if len(prices.forms.constant):
+        return Flows(np.array([1.0, 0.0]), np.array([mu, mu]))
     n_robots = len(prices.robot)
     least = n_robots - int(prices.capacity)  # the whole team as one group blinds so many at least
-    excess = float(prices.robot.sum()) - prices.blinded * least
-    dear = prices.blinded + SURCHARGE + max(excess / max(least - n_blinded, 1), 0.0)
-    mu = prices.blinded
+    excess = float(prices.robot.sum()) - mu * least
+    dear = mu + SURCHARGE + max(excess / max(least - n_blinded, 1), 0.0)
     return Flows(np.array([1.0, 0.5, 1.0, 0.0, 0.0]), np.array([mu, mu, dear, dear, mu]))

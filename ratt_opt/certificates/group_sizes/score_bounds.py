@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.threatened import Team
     from ratt_opt.certificates.verifier.lower_end.largest_groups import LargestGroup
     from ratt_opt.graph.communication import CommunicationGraph
-    from ratt_opt.graph.link_scores import RelaxedScore, Top
+    from ratt_opt.graph.link_scores import RelaxedScores, Top
 
 __all__ = ["CaseBounds", "Looked", "ScoreBounds"]
 
@@ -134,7 +134,7 @@ class CaseBounds:
             group[leaving[best // len(entering)]], group[entering[best % len(entering)]] = False, True
 
 
-def _lowered(relaxed: RelaxedScore, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, Top]:
+def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, Top]:
     """Multipliers of a bound that is lower, until it is below, and that bound."""
     best = start, relaxed.top(start, joining)
 

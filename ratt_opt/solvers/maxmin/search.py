@@ -179,7 +179,10 @@ class BranchAndBound:
             if not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls:
                 if nodes & (nodes - 1) == 0:  # the first nodes, and ever fewer
                     self.incumbent.improve(plan)
-                self.division.divide(node, relaxed)
+                if self.rule.closes(node.bound):  # by a plan found just now
+                    self.frontier.close(node)
+                else:
+                    self.division.divide(node, relaxed)
                 return None
 
     def _narrow(self, node: TreeNode) -> TreeNode | None:

@@ -26,7 +26,7 @@ from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
-from ratt_opt.solvers.ratt import QUICK, equivalent_sensing_attacks, greedy, myopic, ratt
+from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
 from ratt_opt.stopping import Stop
 
@@ -94,9 +94,10 @@ def solve_maxmin(
     check_workers(check_problem(problem), workers)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
-        return search_any(problem, budget, gap)
+        return search_any(problem, budget, gap, alpha_cs)
     warm = WarmStart.of(problem, start)
-    first = _ratt_in_share(problem, alpha_cs, budget)
+    alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
+    first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
     search: Descent | None = None
@@ -116,20 +117,6 @@ def solve_maxmin(
     except KeyboardInterrupt:
         stop = budget.interrupt()
     return _result(problem, incumbent, search, stop, gap)
-
-
-FIRST_SHARE, SHORT_SHARE = 0.02, 0.1
-"""Of the time for ``n_max``, and where that is less than two seconds: on networks of 30 robots a tenth of 120 seconds
-went there and no plan was better for it; of one second nothing was left. Where no time is set nothing is cut short."""
-
-
-def _ratt_in_share(problem: Problem, alpha_cs: int | None, budget: Budget) -> IntArray:
-    """RATT's plan, with ``alpha_cs`` as far as it is found in a share of the time, if that is not known."""
-    if alpha_cs is None:
-        seconds = budget.seconds_left
-        part = budget.part(min(max(FIRST_SHARE, QUICK / max(seconds, QUICK)), SHORT_SHARE))
-        alpha_cs = equivalent_sensing_attacks(problem, part, quick=part.seconds_left)
-    return ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
 
 
 def _first_plans(

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ratt_opt import Problem, TraceObjective, network_scenario, solve_maxmin
 from ratt_opt.solvers.maxmin.division import divide_by_scores, rounding_losses
+from tests.strategies import information_data
 
 
 def mixture(rng: np.random.Generator) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
@@ -53,3 +55,12 @@ def test_a_division_separates_the_two_heaviest_elements_and_keeps_the_alike_toge
     assert choice[0] in parts[0]
     assert choice[1] in parts[1]
     assert len(choice) == 2 or choice[-1] in parts[0]
+
+
+def test_a_node_that_the_last_plan_closes_is_not_divided() -> None:
+    """Plans improve on the way to a division; then a node may be bounded below them, and have nothing to divide."""
+    graph = network_scenario("hubs", 10, 1, alpha_s=0, alpha_c=0, seed=0).problem().graph
+    prior, information = information_data(np.random.default_rng([10, 0]), 60, 10, 3)
+    problem = Problem(TraceObjective(prior, 0.1 * information), np.repeat(np.arange(10), 6), graph, 3, 7)
+    found = solve_maxmin(problem, max_nodes=5)
+    assert 0 < found.lower <= found.upper

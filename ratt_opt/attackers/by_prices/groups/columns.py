@@ -10,7 +10,8 @@ at most a limit. Two bounds prune it, both by flows (``flow.py``):
 - ``need`` does not fall when robots join, so what the robots already inside need is paid.
 
 The first is strong for large groups and the second for small ones. Any mixture of them is a bound too, and one in
-the middle is better than both while the size of the group is open: a flow for each of a few ``shares``.
+the middle is better than both while the size of the group is open: a flow for each of a few ``shares``. Convex forms
+bound groups of a few sizes each (``size_forms.py``).
 
 Imported only where compiled loops are used.
 """
@@ -24,6 +25,7 @@ import numpy as np
 from ratt_opt.attackers.by_prices.groups.compiled import copy_row
 from ratt_opt.attackers.by_prices.groups.flow import always, augment, copy_flows, open_flow
 from ratt_opt.attackers.by_prices.groups.needs import admit, blind_fewer, inside_of, knapsack_need, settle
+from ratt_opt.attackers.by_prices.groups.size_forms import OPEN, OUTSIDE, SEEING, FormPoints, copy_points, open_form
 from ratt_opt.compiling import numba
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]
@@ -35,7 +37,7 @@ class Prices(NamedTuple):
     """Prices, and the knapsack that bounds what a group needs.
 
     ``robot`` : (N,) pi; ``blinded`` : mu; ``weight`` : (N,), ``capacity``, ``multiplier`` : of the knapsack;
-    ``shares`` : (K,) of the knapsack's bound in each flow's, in [0, 1]
+    ``shares`` : (K,) of the knapsack's bound in each flow's, in [0, 1]; ``forms`` : of sizes, or of none
     """
 
     robot: Any
@@ -44,6 +46,7 @@ class Prices(NamedTuple):
     capacity: float
     multiplier: float
     shares: Any
+    forms: Any
 
 
 class Question(NamedTuple):
@@ -64,8 +67,9 @@ class Question(NamedTuple):
 class Stack(NamedTuple):
     """Open nodes of the search; ``position`` : first robot, open nodes, nodes so far, groups listed.
 
-    For each open node: ``side`` (N,) 0 open, 1 inside, 2 outside; K flows; ``blind`` (N,) blinded robots
-    that leave what is inside below the threshold; ``need`` least and found numbers of them; ``bound`` of the flows.
+    For each open node: ``side`` (N,) OPEN, SEEING (inside, whether it sees or not) or OUTSIDE; K flows; ``blind`` (N,)
+    blinded robots that leave what is inside below the threshold; ``need`` least and found numbers of them; ``bound`` of
+    the flows; ``points`` of the forms.
     """
 
     position: Any
@@ -76,11 +80,12 @@ class Stack(NamedTuple):
     blind: Any
     need: Any
     bound: Any
+    points: Any
 
     @classmethod
-    def of(cls, n_robots: int, n_arcs: int, n_flows: int) -> Stack:
-        """A search that has not begun."""
-        depth = n_robots + 2
+    def of(cls, n_robots: int, n_arcs: int, n_bounds: tuple[int, int]) -> Stack:
+        """A search that has not begun; ``n_bounds`` : flows, and forms."""
+        depth, (n_flows, n_forms) = n_robots + 2, n_bounds
         return cls(
             position=np.zeros(4, dtype=np.int64),
             side=np.zeros((depth, n_robots), dtype=np.int8),
@@ -90,6 +95,7 @@ class Stack(NamedTuple):
             blind=np.zeros((depth, n_robots), dtype=np.bool_),
             need=np.zeros((depth, 2), dtype=np.int64),
             bound=np.zeros((depth, n_flows)),
+            points=FormPoints.of(depth, n_forms, n_robots),
         )
 
 
@@ -99,6 +105,7 @@ def _copy(stack: Any, source: int, target: int) -> None:
     copy_row(stack.side[target], stack.side[source])
     copy_row(stack.blind[target], stack.blind[source])
     copy_row(stack.need[target], stack.need[source])
+    copy_points(stack.points, source, target)
 
 
 @numba.njit(cache=True)
@@ -117,11 +124,29 @@ def _least(links: Any, prices: Any, question: Any, stack: Any, node: int, work: 
 
 
 @numba.njit(cache=True)
+def _may_cost(prices: Any, question: Any, stack: Any, node: int, tangents: Any) -> bool:
+    """Whether the forms leave a group of a node within the limit, seeing robots being as many as the knapsack holds."""
+    n_robots = len(question.order)
+    inside, most = 0, n_robots
+    for i in range(n_robots):
+        inside += int(stack.side[node, i] == SEEING)
+    least = prices.weight.min()
+    if least > 0.0:
+        most = int(min(prices.capacity / least, most))
+    need = max(stack.need[node, 0], inside - most)
+    if need > question.budget:
+        return False
+    state = node, stack.side[node], most + need - inside, need
+    return bool(open_form(prices, question, stack.points, state, tangents) != len(prices.forms.constant))
+
+
+@numba.njit(cache=True)
 def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: Any, sums: Any) -> bool:  # noqa: PLR0917
     """The node of all groups whose first robot in the order is the next one; false where it is pruned."""
     place, node = stack.position[0], stack.position[1]
     n_robots = len(question.order)
-    stack.side[node], stack.blind[node], stack.need[node] = 0, False, 0
+    stack.side[node], stack.blind[node], stack.need[node] = OPEN, False, 0
+    stack.points.at[node], stack.points.paid[node], stack.points.done[node] = 0.0, 0.0, False
     cost = np.empty(n_robots)
     for kind, share in enumerate(prices.shares):
         for i in range(n_robots):
@@ -131,7 +156,7 @@ def _first(team: Any, links: Any, prices: Any, question: Any, stack: Any, work: 
         flow = (stack.into[node, kind], stack.out[node, kind], stack.along[node, kind])
         stack.bound[node, kind] = open_flow(links, cost, flow)
     for k in range(place):
-        stack.side[node, question.order[k]] = 2
+        stack.side[node, question.order[k]] = OUTSIDE
         always(stack.out[node], question.order[k])
     if not admit(team, links, question, stack, node, question.order[place], sums):
         return False
@@ -143,13 +168,13 @@ def _next_robot(links: Any, side: Any) -> int:
     """The open robot next to the group with the most links to decided ones; -1 where there is none."""
     best, most = -1, 0
     for i in range(len(side)):
-        if side[i] != 0:
+        if side[i] != OPEN:
             continue
         decided, inside = 0, False
         for a in range(links.start[i], links.start[i + 1]):
             other = side[links.robot[a]]
-            decided += other != 0
-            inside = inside or other == 1
+            decided += other != OPEN
+            inside = inside or other == SEEING
         if inside and decided > most:
             best, most = i, decided
     return best
@@ -159,10 +184,10 @@ def _next_robot(links: Any, side: Any) -> int:
 def _cost(links: Any, prices: Any, side: Any, need: int) -> float:
     total = prices.blinded * need
     for i in range(len(side)):
-        if side[i] == 1:
+        if side[i] == SEEING:
             total -= prices.robot[i]
             for a in range(links.start[i], links.start[i + 1]):
-                total += 0.5 if side[links.robot[a]] != 1 else 0.0
+                total += 0.5 if side[links.robot[a]] != SEEING else 0.0
     return float(total)
 
 
@@ -197,6 +222,7 @@ def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: A
     n_robots, position = len(question.order), stack.position
     work = (np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64))
     sums = np.empty_like(team.prior)
+    tangents = (np.zeros(n_robots), np.zeros(n_robots), np.zeros(n_robots), np.arange(n_robots))
     stop = position[2] + nodes
     while True:
         if position[3] >= len(listed[3]):
@@ -218,11 +244,14 @@ def enumerate_groups(team: Any, links: Any, prices: Any, question: Any, stack: A
             continue
         position[2] += 2
         _copy(stack, node, node + 1)
-        joins = admit(team, links, question, stack, node + 1, robot, sums)
+        stack.side[node + 1, robot], stack.side[node, robot] = SEEING, OUTSIDE
+        joins = _may_cost(prices, question, stack, node + 1, tangents)
+        joins = joins and admit(team, links, question, stack, node + 1, robot, sums)
+        joins = joins and _may_cost(prices, question, stack, node + 1, tangents)
         joins = joins and _least(links, prices, question, stack, node + 1, work) <= question.limit
-        stack.side[node, robot] = 2
         always(stack.out[node], robot)
-        stays = _least(links, prices, question, stack, node, work) <= question.limit
+        stays = _may_cost(prices, question, stack, node, tangents)
+        stays = stays and _least(links, prices, question, stack, node, work) <= question.limit
         if joins and not stays:
             _copy(stack, node + 1, node)
         position[1] += int(joins) + int(stays) - 1

@@ -4,8 +4,9 @@ A group ``g`` whose seeing robots are ``S`` costs ``cut(g) / 2 + mu |g - S| - pi
 do not (they are blinded or outside, as a minimum cut finds best), and some are open. At most ``room`` open robots can
 still see, or the group would be worth the threshold, and at most ``budget`` are blinded. A flow bounds all groups of
 the node: a blinded robot pays ``mu`` and a surcharge, which is paid back ``budget`` times; an open robot pays a share
-of both, which is paid back ``room`` times. Seeing robots are few where values saturate early, while groups may be
-large: ``columns.py`` decides who is inside instead.
+of both, which is paid back ``room`` times. Convex forms bound the groups of a few sizes each (``size_forms.py``), with
+room and budget kept exactly. Seeing robots are few where values saturate early, while groups may be large:
+``columns.py`` decides who is inside instead.
 
 Imported only where compiled loops are used.
 """
@@ -18,17 +19,28 @@ import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, always, augment, copy_flows, open_flow
+from ratt_opt.attackers.by_prices.groups.size_forms import (
+    BLINDED,
+    ELSE,
+    OPEN,
+    OUTSIDE,
+    SEEING,
+    FormPoints,
+    copy_points,
+    open_form,
+)
 from ratt_opt.compiling import numba
 
 __all__ = ["Flows", "SeeingStack", "leave_node", "lower_prices", "search_seeing_sets"]
 
 FINISHED, PAUSED, FOUND = 0, 1, 2
 
-OPEN, SEEING, ELSE, BLINDED, OUTSIDE = 0, 1, 2, 3, 4
-"""What a robot of a node is: ELSE is blinded or outside the group."""
-
 SURE = 1e-9
 """Relative: averages must exceed the threshold by so much to prove that no more robots fit; above their rounding."""
+
+
+UNLIKELY = 1e-3
+"""Added to the share of a robot that is inside at a form's point."""
 
 
 class Flows(NamedTuple):
@@ -46,7 +58,7 @@ class SeeingStack(NamedTuple):
 
     For each open node: ``part`` (N,) what robots are; K flows; ``sums`` (M, T) of the seeing robots; ``worth`` (N,)
     value with one robot more; ``room`` further robots that may see; ``bound`` (K,) of the flows; ``grown`` whether the
-    last robot decided sees
+    last robot decided sees; ``points`` of the forms
     """
 
     position: Any
@@ -59,11 +71,12 @@ class SeeingStack(NamedTuple):
     room: Any
     bound: Any
     grown: Any
+    points: Any
 
     @classmethod
-    def of(cls, n_arcs: int, n_flows: int, prior: Any, n_robots: int) -> SeeingStack:
-        """A search that has not begun."""
-        depth = n_robots + 2
+    def of(cls, n_arcs: int, n_bounds: tuple[int, int], prior: Any, n_robots: int) -> SeeingStack:
+        """A search that has not begun; ``n_bounds`` : flows, and forms at most."""
+        depth, (n_flows, n_forms) = n_robots + 2, n_bounds
         return cls(
             position=np.array([-1, 0], dtype=np.int64),
             part=np.zeros((depth, n_robots), dtype=np.int8),
@@ -75,6 +88,7 @@ class SeeingStack(NamedTuple):
             room=np.zeros(depth, dtype=np.int64),
             bound=np.zeros((depth, n_flows)),
             grown=np.zeros(depth, dtype=np.bool_),
+            points=FormPoints.of(depth, n_forms, n_robots),
         )
 
 
@@ -187,8 +201,28 @@ def _branch(stack: Any, sides: Any, budget: int) -> int:
 
 
 @numba.njit(cache=True)
+def _blinded(part: Any) -> int:
+    count = 0
+    for i in range(len(part)):
+        count += int(part[i] == BLINDED)
+    return count
+
+
+@numba.njit(cache=True)
+def _most_inside(stack: Any, form: int) -> int:
+    """The open robot that is worth most times its share inside at a form's point; -1 where there is none."""
+    node, chosen, most = stack.position[0], -1, 0.0
+    for i in range(stack.part.shape[1]):
+        score = stack.worth[node, i] * (UNLIKELY + stack.points.at[node, form, i])
+        if stack.part[node, i] == OPEN and (chosen < 0 or score > most):
+            chosen, most = i, score
+    return int(chosen)
+
+
+@numba.njit(cache=True)
 def _copy(stack: Any, node: int, child: int) -> None:
     copy_flows(stack, node, child)
+    copy_points(stack.points, node, child)
     copy(stack.sums[child], stack.sums[node])
     copy_row(stack.part[child], stack.part[node])
     copy_row(stack.worth[child], stack.worth[node])
@@ -208,6 +242,7 @@ def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
         add(stack.sums[child], stack.sums[child], 1.0, team, robot)
         stack.room[child] -= 1
         stack.part[child, robot] = SEEING
+        stack.points.at[node, :, robot] = 0.0
         _close(links, flows, stack, node, robot)
     else:
         stack.part[child, robot], stack.part[node, robot] = BLINDED, OUTSIDE
@@ -245,6 +280,7 @@ def search_seeing_sets(  # noqa: PLR0917
     n_robots, position = len(prices.robot), stack.position
     work = (np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64))
     sides = np.zeros((len(flows.share), n_robots), dtype=np.bool_)
+    tangents = (np.zeros(n_robots), np.zeros(n_robots), np.zeros(n_robots), np.arange(n_robots))
     if position[0] < 0 and position[1] == 0:
         _begin(team, links, prices, flows, stack)
     for _ in range(nodes):
@@ -253,10 +289,15 @@ def search_seeing_sets(  # noqa: PLR0917
             return FINISHED
         position[1] += 1
         _fill(team, links, flows, question.threshold, stack, node)
-        if _bounds(links, prices, flows, question, stack, sides, work) > question.limit:
+        state = node, stack.part[node], stack.room[node], _blinded(stack.part[node])
+        form = open_form(prices, question, stack.points, state, tangents)
+        done = form == len(prices.forms.constant)
+        if done or _bounds(links, prices, flows, question, stack, sides, work) > question.limit:
             position[0] -= 1
             continue
         robot = _branch(stack, sides, question.budget)
+        if form >= 0 and robot >= 0 and stack.part[node, robot] == OPEN:
+            robot = _most_inside(stack, form)
         if robot >= 0:
             _descend(team, links, flows, stack, robot)
             continue
