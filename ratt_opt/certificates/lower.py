@@ -6,12 +6,14 @@ first, so that the cases in which strong robots see close early.
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.attack_tree import AttackTree
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
+from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.size_tree import size_tree
 from ratt_opt.certificates.verifier.work import limited, seconds_left
@@ -49,8 +51,9 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 
     Returns
     -------
-    A ``forced_size`` proof where the complete graph allows one, else an ``attack_tree``, a ``forced_size`` proof by
-    trees of links, ``group_prices`` or ``group_covers``, else ``ENUMERATED``.
+    A ``forced_size`` proof where the complete graph allows one, or ``group_sizes`` where most links are there, else an
+    ``attack_tree``, a ``forced_size`` proof by trees of links, ``group_prices``, ``group_sizes`` or ``group_covers``,
+    else ``ENUMERATED``.
     """
 
     def sets() -> PlanSets:
@@ -73,8 +76,14 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     def by_covers() -> dict[str, Any]:
         return group_cover_proof(sets(), max_nodes)
 
+    def by_scores() -> dict[str, Any]:
+        return group_size_proof(sets(), max_nodes)
+
     ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices]
-    ways = [by_size, *ways] if problem.communication.is_complete else [*ways, by_covers]
+    if problem.communication.is_complete:
+        ways = [by_size, *ways]
+    else:
+        ways = [by_scores, *ways, by_covers] if _is_dense(problem) else [*ways, by_scores, by_covers]
     for way in ways:
         try:
             with limited(seconds_left() * (1.0 if way is ways[-1] else SHARE_OF_OTHERS)):
@@ -87,15 +96,22 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 def weaker_lower_proof(
     problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE
 ) -> tuple[float, Any]:
-    """A threshold that is lower by one of ``LOWERED``, with its proof by covers of groups.
+    """A threshold that is lower by one of ``LOWERED``, with its proof by sizes of groups where most links are there, or
+    by covers of groups.
 
     Parameters are those of :func:`lower_proof`; where none is proved, the threshold itself comes with ``ENUMERATED``.
     """
-    for share in LOWERED if not problem.communication.is_complete else ():
+    ways = (group_size_proof, group_cover_proof) if _is_dense(problem) else (group_cover_proof,)
+    for share, way in product(LOWERED, ways) if not problem.communication.is_complete else ():
         lower = threshold * (1 - share)
         try:
             with limited(seconds_left() * SHARE_OF_OTHERS):
-                return lower, group_cover_proof(PlanSets(problem, elements, lower), max_nodes)
+                return lower, way(PlanSets(problem, elements, lower), max_nodes)
         except (NotClosedError, UndecidedError):
             continue
     return threshold, ENUMERATED
+
+
+def _is_dense(problem: Problem) -> bool:
+    """Whether half of all links are there: on such graphs attacks close by sizes, too."""
+    return 4 * len(problem.communication.links) >= problem.n_robots * (problem.n_robots - 1)

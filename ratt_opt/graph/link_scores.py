@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import CommunicationGraph
 
-__all__ = ["SHARES", "LinkScores", "RelaxedScores", "link_scores", "scoring_group"]
+__all__ = ["SHARES", "LinkScores", "MostScores", "RelaxedScores", "Top", "link_scores", "most_scores", "scoring_group"]
 
 SHARES = (1.0, 0.5, 0.0)
 """Shares ``w``: links inside, links cut, and one between, whose scores are multiples of a half too."""
@@ -68,16 +68,17 @@ def link_scores(graph: CommunicationGraph, alpha_c: int, budget: Budget) -> Link
     """
     need = np.array([2.0 * (share * len(graph.links) - alpha_c) for share in SHARES])
     least = np.array([-alpha_c if share == 0.0 else -np.inf for share in SHARES])
-    most = _most_scores(graph).run(budget)
+    most = most_scores(graph).run(budget)
     return LinkScores(np.where(most < least[:, None], -np.inf, most), need, least)
 
 
 @lru_cache(maxsize=8)
-def _most_scores(graph: CommunicationGraph) -> _MostScores:
-    return _MostScores(graph)
+def most_scores(graph: CommunicationGraph) -> MostScores:
+    """What is known of a graph; the same each time for the last few, so that what one search finds out others use."""
+    return MostScores(graph)
 
 
-class _MostScores:
+class MostScores:
     """Best bounds so far for every share and size, from everybody down to nobody.
 
     ``multipliers`` : (K, N + 1, N) that give them
@@ -136,7 +137,7 @@ def scoring_group(
     ------
     OutOfBudget : the budget is spent.
     """
-    known, size = _most_scores(graph), int(members.sum()) + joining
+    known, size = most_scores(graph), int(members.sum()) + joining
     nodes = [(members, ~members)]
     for _ in range(NODES):
         if not nodes:
@@ -159,6 +160,15 @@ def scoring_group(
 def _rounded(bound: float) -> float:
     """Scores are multiples of a half."""
     return float(np.floor(2.0 * (bound + MARGIN * (1.0 + abs(bound)))) / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Top:
+    """A bound of a quadratic form on a sphere, where it is attained, and the sphere's multiplier."""
+
+    value: float
+    place: FloatArray
+    level: float
 
 
 @lru_cache(maxsize=256)
@@ -203,6 +213,11 @@ class RelaxedScores:
 
         Members are ``x = s / N + y`` with ``y`` across the vector of ones, ``|y|^2 = s (1 - s / N)``.
         """
+        top = self.top(multipliers, size)
+        return top.value, top.place - top.place**2
+
+    def top(self, multipliers: FloatArray, size: float) -> Top:
+        """The bound for these multipliers (N,), and where it is attained."""
         n_robots = len(multipliers)
         mean, linear = size / n_robots, multipliers - self.charge
         radius = size * (1.0 - mean)
@@ -210,12 +225,11 @@ class RelaxedScores:
         fixed = mean * (mean * row_sums.sum() + linear.sum())
         levels, turn = np.linalg.eigh(self.inner - (self.across * multipliers[:, None]).T @ self.across)
         slope = turn.T @ (self.across.T @ (2.0 * mean * row_sums + linear))
-        top, place = _on_sphere(levels, slope, radius)
-        x: FloatArray = mean + self.across @ (turn @ place)
-        return fixed + top, x - x * x
+        top = _on_sphere(levels, slope, radius)
+        return Top(fixed + top.value, mean + self.across @ (turn @ top.place), top.level)
 
 
-def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> tuple[float, FloatArray]:
+def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> Top:
     """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value but for rounding; where.
 
     For every ``t > levels`` the value is at most ``t radius + sum of slope^2 / (4 (t - levels))``; the best ``t`` has
@@ -233,7 +247,7 @@ def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> tuple[fl
     place = slope / (2.0 * (best - levels))
     top = best * radius + float((slope**2 / (4.0 * (best - levels))).sum())
     place[-1] += np.sqrt(max(radius - float(place @ place), 0.0))
-    return top, place
+    return Top(top, place, best)
 
 
 def _squared(levels: FloatArray, slope: FloatArray, t: float) -> float:

@@ -25,6 +25,7 @@ from ratt_opt import (
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
+from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.certificates.plan_sets import PlanSets
 from tests.strategies import information_data
@@ -66,12 +67,15 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     low = made["trace, path"]["claim"] | {"lower": 0.0}
     sized = forced_size_proof(PlanSets(problem, plan, 0.0), 1000)
     made["trees"] = made["trace, path"] | {"claim": low, "lower": sized}
+    scored = group_size_proof(PlanSets(problem, plan, 0.0), 1000)
+    scored["bounds"] = [{"vector": 0, "diagonal": [0, 0, 0]}]
+    made["group_sizes"] = made["trace, path"] | {"claim": low, "lower": scored}
     return made
 
 
 def test_every_kind_is_covered(documents: dict[str, Any], schema: jsonschema.Draft202012Validator) -> None:
     assert {document["lower"]["kind"] for document in documents.values()} == {
-        "forced_size", "attack_tree", "group_prices", "group_covers", "enumerated",
+        "forced_size", "attack_tree", "group_prices", "group_covers", "group_sizes", "enumerated",
     }  # fmt: skip
     assert any("attack" in node for document in documents.values() for node in document["upper"]["tree"])
     for document in documents.values():

@@ -6,7 +6,6 @@ fractional. Then the groups that cost no more than what is left are listed by a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
+from ratt_opt.certificates.threatened import Team
 from ratt_opt.certificates.verifier.lower_end.group_costs import Group, Groups
 from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.group_covers.group_tree import Found
     from ratt_opt.certificates.group_covers.weak_sets import WeakSets
     from ratt_opt.certificates.plan_sets import PlanSets
-    from ratt_opt.graph.threat import Threat
 
 __all__ = ["LARGEST_TEAM", "group_cover_proof"]
 
@@ -173,7 +172,7 @@ class _CoverProof:
         """
         cover: list[Group] | None = []
         while cover is not None:
-            groups = Groups(_Threat.of(self.threat), *(record[name] for name in ("half_link", "robots", "blinded")))
+            groups = Groups(Team.of(self.threat), *(record[name] for name in ("half_link", "robots", "blinded")))
             groups.sets = list(zip(self.weak.robots, self.weak.room, strict=True))
             groups.add(record["group"], record["triples"])
             groups.flows = [groups.carried(flow) for flow in record["flows"]]
@@ -196,29 +195,6 @@ class _CoverProof:
         arcs = {arc: a for a, arc in enumerate(sorted([*ends, *((j, i) for i, j in ends)]))}
         own = [arcs[link] for link in ends]
         return [flows[flow][own].tolist() for flow in place]
-
-
-@dataclass(slots=True)
-class _Threat:
-    """A threat in the verifier's terms."""
-
-    n: int
-    near: list[set[int]]
-    safe_robots: frozenset[int]
-    safe_links: frozenset[tuple[int, int]]
-    links: frozenset[tuple[int, int]]
-    alpha_s: int
-    alpha_c: int
-
-    @classmethod
-    def of(cls, threat: Threat) -> _Threat:
-        """The same threat."""
-        graph, near = threat.graph, [set[int]() for _ in range(threat.graph.n_robots)]
-        for i, j in graph.links:
-            near[i].add(j)
-            near[j].add(i)
-        safe = threat.protected_robots, threat.protected_links
-        return cls(graph.n_robots, near, *safe, graph.links, threat.alpha_s, threat.alpha_c)
 
 
 def _members(mask: int) -> list[int]:

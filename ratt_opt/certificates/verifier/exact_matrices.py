@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from flint import ctx, fmpq, fmpq_mat, fmpz
+from flint import ctx, fmpq, fmpq_mat, fmpz, fmpz_mat
 
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import ProofError
@@ -12,7 +12,16 @@ from ratt_opt.errors import ProofError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["defect_of", "definite", "largest_of_inverse", "output_trace", "total", "trace", "trace_of_inverse"]
+__all__ = [
+    "defect_of",
+    "definite",
+    "is_positive",
+    "largest_of_inverse",
+    "output_trace",
+    "total",
+    "trace",
+    "trace_of_inverse",
+]
 
 
 def total(terms: Iterable[Any]) -> Any:
@@ -63,6 +72,16 @@ def definite(matrix: fmpq_mat) -> int:
             factor = row[k] / pivot
             row[k:] = [a - factor * b for a, b in zip(row[k:], first[k:], strict=True)]
     return strict
+
+
+def is_positive(matrix: fmpz_mat) -> bool:
+    """Whether a symmetric matrix of integers is positive definite.
+
+    Its eigenvalues are real, and all of them positive if and only if the signs of its characteristic polynomial's
+    coefficients alternate.
+    """
+    signs = [coefficient * (-1) ** k for k, coefficient in enumerate(reversed(matrix.charpoly().coeffs()))]
+    return all(value > 0 for value in signs)
 
 
 def defect_of(matrix: fmpq_mat, identity: fmpq_mat) -> Any:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced, is_forced_by_trees
 from ratt_opt.certificates.verifier.lower_end.group_covers import check_group_covers
 from ratt_opt.certificates.verifier.lower_end.group_prices import check_group_prices
+from ratt_opt.certificates.verifier.lower_end.group_sizes import check_group_sizes
 from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
 from ratt_opt.certificates.verifier.lower_end.worth import Worth
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
@@ -41,8 +42,10 @@ class LowerCheck:
             return check_group_prices(self.about, part, Worth(self.about, lower))
         if kind == "group_covers":
             return check_group_covers(self.about, part, Worth(self.about, lower))
+        if kind == "group_sizes":
+            return check_group_sizes(self.about, part, Worth(self.about, lower))
         fields("lower proof", part, "kind")
-        kinds = "attack_tree, forced_size, group_prices, group_covers or enumerated"
+        kinds = "attack_tree, forced_size, group_prices, group_covers, group_sizes or enumerated"
         need(kind == "enumerated", f"lower proof: the kind must be {kinds}")
         return 0
 

@@ -144,6 +144,11 @@ def index(where: str, value: Any, size: int) -> int:
     return value
 
 
+def signed(where: str, value: Any, size: int) -> int:
+    """Return an integer in ``(-size, size)``."""
+    return index(where, value, size) if type(value) is not int or value >= 0 else -index(where, -value, size)
+
+
 def indices(where: str, value: Any, size: int) -> tuple[int, ...]:
     """Return strictly ascending integers in ``[0, size)``."""
     found = tuple(index(where, item, size) for item in array(where, value))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need
+from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need, signed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -47,7 +47,7 @@ class Groups:
     def __init__(self, about: Threatened, half: object, robots: object, blinded: object) -> None:
         self.about, self.everyone = about, (1 << about.n) - 1
         self.half, self.blinded = index("half_link", half, LARGEST), index("blinded", blinded, LARGEST)
-        self.robot = [_signed("robots", price) for price in array("robots", robots, about.n)]
+        self.robot = [signed("robots", price, LARGEST) for price in array("robots", robots, about.n)]
         self.near = [mask_of(others) for others in about.near]
         self.safe, self.tied = mask_of(about.safe_robots), [0] * about.n
         for i, j in about.safe_links:
@@ -83,7 +83,7 @@ class Groups:
         out: list[dict[int, int]] = [{} for _ in range(self.about.n)]
         pairs = sorted(self.about.links)
         for (i, j), given in zip(pairs, array("flow", flow, len(pairs)), strict=True):
-            out[i][j] = amount = _signed("flow", given)
+            out[i][j] = amount = signed("flow", given, LARGEST)
             out[j][i] = -amount
             fits = abs(amount) <= self.half or (i, j) in self.about.safe_links
             need(fits, "lower proof: a flow exceeds half a link")
@@ -170,7 +170,3 @@ def robots_of(mask: int) -> Iterator[int]:
 def mask_of(bits: Iterable[int]) -> int:
     """The mask with these bits."""
     return sum(1 << i for i in bits)
-
-
-def _signed(where: str, value: object) -> int:
-    return index(where, value, LARGEST) if type(value) is not int or value >= 0 else -index(where, -value, LARGEST)

@@ -25,7 +25,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
-from ratt_opt.certificates.verifier.reading import array, fields, index, need, walk
+from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed, walk
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -103,7 +103,7 @@ class _Prices:
     def __init__(self, about: Statement, half: object, robots: object, blinded: object) -> None:
         self.about = about
         self.half, self.blinded = index("half_link", half, LARGEST), index("blinded", blinded, LARGEST)
-        self.robot = [_signed("robots", price) for price in array("robots", robots, about.n)]
+        self.robot = [signed("robots", price, LARGEST) for price in array("robots", robots, about.n)]
         self.most = min(about.alpha_s, about.n - len(about.safe_robots))
         claimed, budget = sum(self.robot), 2 * self.half * about.alpha_c + self.blinded * self.most
         need(claimed > budget, "lower proof: the prices claim no more than the budgets")
@@ -114,7 +114,7 @@ class _Prices:
         surcharge, costs = index("surcharge", extra, LARGEST), [-price for price in self.robot]
         pairs = sorted(self.about.links)
         for (i, j), given in zip(pairs, array("flow links", carried, len(pairs)), strict=True):
-            amount = _signed("flow links", given)
+            amount = signed("flow links", given, LARGEST)
             fits = abs(amount) <= self.half or (i, j) in self.about.safe_links
             need(fits, "lower proof: a flow exceeds half a link")
             costs[i] += amount
@@ -134,7 +134,3 @@ class _Prices:
                 paid += blind
                 gains += [] if i in case.others else [min(cost - blind, 0)]
         return paid + sum(sorted(gains)[: case.room])
-
-
-def _signed(where: str, value: Any) -> int:
-    return index(where, value, LARGEST) if type(value) is not int or value >= 0 else -index(where, -value, LARGEST)

@@ -1,0 +1,130 @@
+"""A tree over who is in the largest group, and who sees in it: each is worth the threshold, or scores too little."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.certificates.group_sizes.score_bounds import CaseBounds
+from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
+from ratt_opt.certificates.verifier.work import tell, tick
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
+    from ratt_opt.certificates.plan_sets import PlanSets
+    from ratt_opt.certificates.verifier.lower_end.largest_groups import LargestGroup
+
+__all__ = ["Found", "grow_tree"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """Masks as the verifier has them; the posterior of the seeing ones; multipliers to begin with; whether one more
+    sees than in the case before."""
+
+    posterior: FloatArray
+    start: FloatArray
+    seeing: int = 0
+    others: int = 0
+    inside: int = 0
+    outside: int = 0
+    grown: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Bounds by number, each a vector of prices and a diagonal, and the nodes that trees have so far."""
+
+    bounds: dict[tuple[int, tuple[int, ...]], int]
+    most: int
+
+    def number(self, bound: tuple[int, tuple[int, ...]]) -> int:
+        """That of a bound, old or new."""
+        return self.bounds.setdefault(bound, len(self.bounds))
+
+
+def grow_tree(sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> list[int]:
+    """Return the tree.
+
+    Raises
+    ------
+    NotClosedError : a group of these sizes is worth less and scores enough, or the tree is too large.
+    """
+    return _Tree(sets, bounds, group, found).run()
+
+
+class _Tree:
+    """The weakest robot first sees in the group, or does not; when all are known that see, who else is inside."""
+
+    def __init__(self, sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> None:
+        self.sets, self.group, self.found = sets, group, found
+        self.bounds, self.own = CaseBounds(bounds, group), sets.objective.information[sets.elements]
+        self.everyone = (1 << len(self.own)) - 1
+        self.safe = sum(1 << i for i in sets.problem.threat.protected_robots)
+        self.tree: list[int] = []
+
+    def run(self) -> list[int]:
+        stack = [_Case(self.sets.start(), self.bounds.start())]
+        while stack:
+            tick()
+            tell(COVERING, len(self.tree))
+            if len(self.tree) + len(self.found.bounds) * len(self.own) > self.found.most:
+                raise NotClosedError
+            self._expand(stack.pop(), stack)
+        return self.tree
+
+    def _expand(self, case: _Case, stack: list[_Case]) -> None:
+        may_see = self.everyone & ~(case.seeing | case.others | case.outside)
+        missing = self.group.seeing - case.seeing.bit_count()
+        if self._is_impossible(case, missing, may_see):
+            self.tree.append(-2)
+            return
+        if case.grown and self.sets.enough(case.posterior):
+            self.tree.append(-1)
+            return
+        waiting = np.array(_robots(may_see if missing else 0), dtype=np.int64)
+        values = self.sets.values(case.posterior + missing * self.own[waiting])
+        if missing and np.sort(values)[:missing].mean() >= self.sets.threshold:
+            self.tree.append(-3)
+            return
+        looked = self.bounds.look(case.inside, case.outside, case.start)
+        if looked.diagonal:
+            self.tree.append(-4 - self.found.number((looked.vector, looked.diagonal)))
+            return
+        case = replace(case, start=looked.multipliers, grown=False)
+        if missing:
+            self._ask_sight(case, int(waiting[np.argmin(values)]), stack)
+        else:
+            self._ask_place(case, looked.place, stack)
+
+    def _is_impossible(self, case: _Case, missing: int, may_see: int) -> bool:
+        """What the verifier asks of a leaf -2."""
+        blinded, size = case.inside & case.others, self.group.seeing + self.group.blinded
+        if missing < 0 or blinded.bit_count() > self.group.blinded or case.inside.bit_count() > size:
+            return True
+        too_few = (self.everyone & ~case.outside).bit_count() < size
+        return too_few or bool(blinded & self.safe) or may_see.bit_count() < missing
+
+    def _ask_sight(self, case: _Case, i: int, stack: list[_Case]) -> None:
+        self.tree.append(2 * i)
+        stack.append(replace(case, others=case.others | 1 << i))
+        joined, posterior = 1 << i, self.sets.extend(case.posterior, i)
+        case = replace(case, seeing=case.seeing | joined, inside=case.inside | joined)
+        stack.append(replace(case, posterior=posterior, grown=True))
+
+    def _ask_place(self, case: _Case, place: FloatArray, stack: list[_Case]) -> None:
+        """Of the robot that is least clearly inside or outside the best fractional group."""
+        open_ = _robots(self.everyone & ~(case.inside | case.outside))
+        if not open_:
+            raise NotClosedError
+        i = min(open_, key=lambda robot: abs(place[robot] - 0.5))
+        self.tree.append(2 * i + 1)
+        stack.append(replace(case, outside=case.outside | 1 << i))
+        stack.append(replace(case, inside=case.inside | 1 << i))
+
+
+def _robots(mask: int) -> list[int]:
+    return [i for i in range(mask.bit_length()) if mask >> i & 1]

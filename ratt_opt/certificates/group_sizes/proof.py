@@ -1,0 +1,79 @@
+"""Proofs that every attack leaves a group worth a threshold, by the sizes of the groups that an attack can leave.
+
+Bounds of what groups of so many robots score say how many robots see in the largest group at least. Either any so many
+are worth the threshold, or those a few more, and the sizes between them have a tree each.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.budget import Budget
+from ratt_opt.certificates.group_sizes.largest_tree import Found, grow_tree
+from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
+from ratt_opt.certificates.plan_sets import NotClosedError
+from ratt_opt.certificates.size_tree import size_tree
+from ratt_opt.certificates.threatened import Team
+from ratt_opt.certificates.verifier.lower_end.largest_groups import largest_groups
+from ratt_opt.certificates.verifier.work import seconds_left
+
+if TYPE_CHECKING:
+    from ratt_opt.certificates.plan_sets import PlanSets
+
+__all__ = ["group_size_proof"]
+
+LARGEST_TEAM = 60
+"""Robots."""
+
+FEW = 20_000
+"""Nodes of a tree over all sets of a size; where it has more, the largest groups of that size have one of their own."""
+
+LARGEST_PROOF = 1_500_000
+"""Most integers of trees and bounds; the verifier reads files of two million."""
+
+
+def group_size_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
+    """Return the record of a proof of the sets' threshold.
+
+    Raises
+    ------
+    NotClosedError : a group that bounds do not rule out is worth less, or a tree is too large.
+    """
+    threat, seconds = sets.problem.threat, seconds_left()
+    n_robots, n_blinded = threat.graph.n_robots, threat.n_blinded
+    if n_robots > LARGEST_TEAM or n_blinded == n_robots:
+        raise NotClosedError
+    bounds = ScoreBounds(threat.graph, Team.of(threat), Budget(None if seconds == np.inf else seconds))
+    least = largest_groups(bounds.scores, n_blinded, n_robots)[0].seeing
+    found = Found({}, min(LARGEST_PROOF, max_nodes * n_robots))
+    size, sizes = _size(sets, least, min(FEW, max_nodes))
+    try:
+        trees = [grow_tree(sets, bounds, group, found) for group in largest_groups(bounds.scores, n_blinded, size)]
+    except NotClosedError:
+        size, sizes, trees = least, size_tree(sets, least, max_nodes), []
+        found.bounds.clear()
+    return {
+        "kind": "group_sizes",
+        "prices": [one.price for one in bounds.scores],
+        "most": bounds.records,
+        "size": size,
+        "sizes": sizes,
+        "bounds": [{"vector": vector, "diagonal": list(diagonal)} for vector, diagonal in found.bounds],
+        "trees": trees,
+    }
+
+
+def _size(sets: PlanSets, least: int, max_nodes: int) -> tuple[int, list[int]]:
+    """The first size from the least one on of which all sets are worth the threshold, and its tree.
+
+    A size that no set has where those that can see in a group do not do.
+    """
+    threat = sets.problem.threat
+    for size in range(least, threat.graph.n_robots - threat.n_blinded + 1):
+        try:
+            return size, size_tree(sets, size, max_nodes)
+        except NotClosedError:
+            continue
+    return threat.graph.n_robots + 1, [-2]

@@ -1,0 +1,161 @@
+"""Diagonals that show what groups score at most (``verifier/lower_end/link_scores.py``), by descent.
+
+The attacker's bounds (``graph/link_scores.py``) are those of the same relaxation: at the best multiplier of the sphere,
+added to those of the robots, their quadratic form is definite. Here it is rounded up, and decided in integers.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from math import floor
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ratt_opt.certificates.verifier.lower_end.link_scores import UNIT, LinkScores
+from ratt_opt.graph.link_scores import SHARES, most_scores
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.budget import Budget
+    from ratt_opt.certificates.threatened import Team
+    from ratt_opt.certificates.verifier.lower_end.largest_groups import LargestGroup
+    from ratt_opt.graph.communication import CommunicationGraph
+    from ratt_opt.graph.link_scores import RelaxedScores, Top
+
+__all__ = ["CaseBounds", "Looked", "ScoreBounds"]
+
+NEAR, STEPS = 1.5, 6
+"""Links (twice) above what a group must score from which a bound is not tried to be lowered, and values it may take.
+Measured on RATT's plans for 24 robots of a dense graph: with 3 and 18 a tree has a quarter fewer nodes, and takes three
+to ten times as long to find."""
+
+SPARE = 0.02
+"""What is left below a bound for rounding the diagonal, in twice the links."""
+
+
+@dataclass(frozen=True, slots=True)
+class Looked:
+    """What is known of a case: the bound that closes it, if any (``vector``, ``diagonal``); ``place`` (N,) of its
+    best fractional group; ``multipliers`` (K, N) to begin with in its parts."""
+
+    vector: int
+    diagonal: tuple[int, ...]
+    place: FloatArray
+    multipliers: FloatArray
+
+
+class ScoreBounds:
+    """Bounds for one graph and each of the attacker's shares.
+
+    ``records`` : those of groups of each size, as the verifier reads them; ``scores`` has taken them over
+    """
+
+    def __init__(self, graph: CommunicationGraph, team: Team, budget: Budget) -> None:
+        self.known, degrees = most_scores(graph), [len(others) for others in team.near]
+        self.known.run(budget)
+        self.scores = [LinkScores(team, [round(2 * (1 - share) * degree) for degree in degrees]) for share in SHARES]
+        self.records = [
+            record
+            for vector in range(len(self.scores))
+            for size in range(2, team.n)
+            if (record := self._record(vector, size)) is not None
+        ]
+
+    def _record(self, vector: int, size: int) -> dict[str, Any] | None:
+        one, start = self.scores[vector], self.known.multipliers[vector, size]
+        top = self.known.relaxed[vector].top(start, size)
+        below = (floor(2 * (top.value + SPARE) / one.step) + 1) * one.step
+        if below > one.most[size]:
+            return None
+        diagonal = _rounded(start + top.level).tolist()
+        if not one.are_below(below, diagonal, (0, (1 << one.n) - 1), size):
+            return None
+        one.lower(size, below, diagonal)
+        return {"vector": vector, "robots": size, "below": below, "diagonal": diagonal}
+
+
+class CaseBounds:
+    """Bounds of what groups of a case score, and groups that score enough, of which no case is closed."""
+
+    def __init__(self, bounds: ScoreBounds, group: LargestGroup) -> None:
+        self._known, self._scores, self._group = bounds.known, bounds.scores, group
+        self._size, self._n = group.seeing + group.blinded, bounds.scores[0].n
+        self._adjacent = bounds.known.relaxed[0].adjacent
+        self._enough: list[list[int]] = [[] for _ in bounds.scores]
+
+    def start(self) -> FloatArray:
+        """(K, N) multipliers to begin with."""
+        return self._known.multipliers[:, self._size]
+
+    def look(self, inside: int, outside: int, start: FloatArray) -> Looked:
+        """Look for a bound that closes the case of masks."""
+        members, others = _robots(inside, self._n), ~_robots(inside | outside, self._n)
+        case, joining = (inside, (1 << self._n) - 1 & ~(inside | outside)), self._size - inside.bit_count()
+        place, multipliers = np.where(others, 0.5, 0.0), start.copy()
+        for vector in reversed(range(len(self._scores))):
+            if any(inside & group == inside and not group & outside for group in self._enough[vector]):
+                continue
+            diagonal = np.zeros(self._n, dtype=np.int64)
+            if 0 < joining < others.sum():
+                fixed, relaxed = self._known.relaxed[vector].around(members, others)
+                below = self._group.need[vector] / 2 - fixed - SPARE
+                top = relaxed.top(multipliers[vector, others], joining)
+                place[others] = top.place
+                if self._holds_one(vector, members, others, place):
+                    continue
+                if 0.0 <= top.value - below < NEAR:
+                    multipliers[vector, others], top = _lowered(relaxed, multipliers[vector, others], joining, below)
+                diagonal[others] = _rounded(multipliers[vector, others] + top.level)
+                if top.value >= below:
+                    continue
+            kept = tuple(diagonal.tolist())
+            if self._scores[vector].are_below(self._group.need[vector], list(kept), case, joining):
+                return Looked(vector, kept, place, multipliers)
+        return Looked(-1, (), place, multipliers)
+
+    def _holds_one(self, vector: int, members: BoolArray, others: BoolArray, place: FloatArray) -> bool:
+        """Whether a group of the case that is found by exchanges, from the fractional one, scores enough; keep it."""
+        price, joining = np.array(self._scores[vector].price), self._size - int(members.sum())
+        group, (open_,) = members.copy(), np.nonzero(others)
+        group[open_[np.argsort(-place[open_], kind="stable")[:joining]]] = True
+        while True:
+            gain = 4 * (self._adjacent @ group) - price
+            if 2 * float((self._adjacent @ group) @ group) - price @ group >= self._group.need[vector]:
+                self._enough[vector].append(sum(1 << int(i) for i in np.flatnonzero(group)))
+                return True
+            leaving, entering = np.flatnonzero(others & group), np.flatnonzero(others & ~group)
+            better = gain[entering] - gain[leaving][:, None] - 4 * self._adjacent[np.ix_(leaving, entering)]
+            best = int(better.argmax())
+            if better.flat[best] <= 0:
+                return False
+            group[leaving[best // len(entering)]], group[entering[best % len(entering)]] = False, True
+
+
+def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, Top]:
+    """Multipliers of a bound that is lower, until it is below, and that bound."""
+    best = start, relaxed.top(start, joining)
+
+    def value(multipliers: FloatArray) -> tuple[float, FloatArray]:
+        nonlocal best
+        top = relaxed.top(multipliers, joining)
+        if top.value < best[1].value:
+            best = np.array(multipliers), top
+        if top.value < below:
+            raise StopIteration
+        return top.value, top.place - top.place**2
+
+    with suppress(StopIteration):
+        minimize(value, start, jac=True, method="L-BFGS-B", options={"maxiter": STEPS, "maxfun": STEPS})
+    return best
+
+
+def _rounded(diagonal: FloatArray) -> IntArray:
+    """In the verifier's units of a form twice as large, a little above."""
+    return np.ceil(2 * UNIT * diagonal).astype(np.int64) + 1
+
+
+def _robots(mask: int, n_robots: int) -> BoolArray:
+    return np.array([mask >> i & 1 for i in range(n_robots)], dtype=np.bool_)

@@ -1,0 +1,224 @@
+"""Lower ends proved by sizes of groups: against brute force, the exact attacker, and mutations."""
+
+from __future__ import annotations
+
+import copy
+from itertools import combinations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, worst_case_attack
+from ratt_opt.budget import Budget
+from ratt_opt.certificates.group_sizes.proof import group_size_proof
+from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
+from ratt_opt.certificates.lower import lower_proof, weaker_lower_proof
+from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
+from ratt_opt.certificates.threatened import Team
+from ratt_opt.certificates.verifier.exact_matrices import is_positive
+from ratt_opt.certificates.verifier.lower_end.largest_groups import largest_groups
+from ratt_opt.certificates.verifier.lower_end.link_scores import UNIT, LinkScores
+from tests.certificates.test_group_prices import KINDS, checker, drawn, exact, network
+from tests.certificates.test_mutations import refused_lower_ends
+from tests.strategies import information_data
+
+NODES = 50_000
+
+
+def proof(problem, plan, threshold):
+    """The proof of a threshold, or ``None``."""
+    try:
+        return group_size_proof(PlanSets(problem, np.asarray(plan), threshold), NODES)
+    except NotClosedError:
+        return None
+
+
+def small_proofs(seeds):
+    for seed in seeds:
+        problem, plan, worst = drawn(seed)
+        if worst > 1e-3:
+            yield problem, plan, worst, proof(problem, plan, worst * (1 - 1e-7))
+
+
+def check_small(seeds):
+    """Nothing above a worst case is proved; returns how many worst cases are, and of how many."""
+    closed = total = 0
+    for problem, plan, worst, part in small_proofs(seeds):
+        total += 1
+        assert proof(problem, plan, worst * (1 + 1e-6)) is None
+        if part is not None:
+            assert checker(problem, plan).check(part, exact(worst * (1 - 2e-7))) > 0
+            with pytest.raises(ProofError):
+                checker(problem, plan).check(part, exact(worst * (1 + 1e-6)))
+            closed += 1
+    return closed, total
+
+
+def test_small_teams_by_brute_force():
+    """Not every worst case is in reach: a second group may be the best one, and links may be protected."""
+    closed, total = check_small(range(24))
+    assert 5 <= closed < total
+
+
+@pytest.mark.slow
+def test_more_small_teams_by_brute_force():
+    closed, total = check_small(range(100, 500))
+    assert 0.2 * total <= closed < total
+
+
+def test_no_mutated_proof_hides_a_false_claim(tmp_path):
+    assert refused_lower_ends(small_proofs(range(24)), np.random.default_rng(54), 0.05, tmp_path / "m.json") >= 50
+
+
+@pytest.mark.slow
+def test_many_mutated_proofs(tmp_path):
+    proofs = small_proofs(range(100, 140))
+    assert refused_lower_ends(proofs, np.random.default_rng(54), 0.3, tmp_path / "m.json") >= 3_000
+
+
+def random_graph(seed):
+    rng = np.random.default_rng([56, seed])
+    prior, information = information_data(rng, 7, 1)
+    graph = nx.gnp_random_graph(7, 0.6, seed=seed)
+    alpha_s, alpha_c = int(rng.integers(0, 4)), min(int(rng.integers(1, 7)), graph.number_of_edges())
+    return Problem(TraceObjective(prior, information), range(7), graph, alpha_s, alpha_c), rng
+
+
+def score(one, group):
+    inside = sum(one.near[i] >> j & 1 for i, j in combinations(group, 2))
+    return 4 * inside - sum(one.price[i] for i in group)
+
+
+def test_sizes_by_definition():
+    """No group of an attack scores more than its size says, and with some vector of prices one scores as much."""
+    tight = 0
+    for seed in range(6):
+        problem, _ = random_graph(seed)
+        for one in ScoreBounds(problem.threat.graph, Team.of(problem.threat), Budget()).scores:
+            for size, most in enumerate(one.most):
+                allowed = [s for group in combinations(range(7), size) if (s := score(one, group)) >= one.least]
+                assert max(allowed, default=-np.inf) <= most
+                tight += max(allowed, default=-np.inf) == most
+    assert tight >= 90
+
+
+def test_cases_by_definition():
+    """Whatever the diagonal, groups that are shown to score less do; large diagonals show it."""
+    shown = 0
+    for seed in range(60):
+        problem, rng = random_graph(seed)
+        one, drawn_robots = LinkScores(Team.of(problem.threat), rng.integers(0, 9, 7).tolist()), rng.permutation(7)
+        inside, others = drawn_robots[: seed % 3].tolist(), drawn_robots[seed % 3 : 6].tolist()
+        masks, count = tuple(sum(1 << i for i in part) for part in (inside, others)), int(rng.integers(0, 5))
+        known = [score(one, inside + list(more)) for more in combinations(others, count)]
+        for spare in (0, 1, 5, 15) if known else ():
+            diagonal = (UNIT * rng.integers(4, 20) + rng.integers(0, UNIT, 7)).tolist()
+            less = one.are_below(max(known) + spare, diagonal, masks, count)
+            assert not less or spare
+            shown += less
+    assert shown >= 30
+
+
+def blinded_partitions(problem, rng):
+    """Groups of attacks that blind all they may, drawn at random, with who is blinded."""
+    n, threat = problem.n_robots, problem.threat
+    for _ in range(60):
+        home = rng.integers(0, int(rng.integers(1, 4)), n)
+        blinded = set(rng.permutation(n)[: threat.n_blinded].tolist())
+        cut = sum(home[i] != home[j] for i, j in threat.graph.links)
+        if cut <= threat.alpha_c:
+            yield [np.flatnonzero(home == k).tolist() for k in set(home.tolist())], blinded
+
+
+def test_largest_groups_by_definition():
+    """The largest group of every attack has sizes that are possible, and scores what it must."""
+    seen = 0
+    for seed in range(8):
+        problem, rng = random_graph(seed)
+        scores = ScoreBounds(problem.threat.graph, Team.of(problem.threat), Budget()).scores
+        possible = {(g.seeing, g.blinded): g for g in largest_groups(scores, problem.threat.n_blinded, 8)}
+        for groups, blinded in blinded_partitions(problem, rng):
+            largest = max(groups, key=lambda group: len(set(group) - blinded))
+            seeing = len(set(largest) - blinded)
+            found = possible[seeing, len(largest) - seeing]
+            assert all(score(one, largest) >= least for one, least in zip(scores, found.need, strict=True))
+            seen += len(groups) > 1
+    assert seen >= 30
+
+
+def test_positive_definiteness():
+    from flint import fmpz_mat
+
+    rng, positive = np.random.default_rng(57), 0
+    for _ in range(200):
+        a = rng.integers(-3, 4, (4, 4))
+        matrix = a @ a.T + int(rng.integers(-1, 2)) * np.eye(4, dtype=int)
+        least = np.linalg.eigvalsh(matrix)[0]
+        if abs(least) > 1e-9:
+            assert is_positive(fmpz_mat(matrix.tolist())) == (least > 0)
+            positive += least > 0
+        else:
+            assert not is_positive(fmpz_mat(matrix.tolist()))
+    assert 50 <= positive <= 195
+
+
+@pytest.fixture(scope="module")
+def large():
+    """A dense graph of 18 robots."""
+    problem, plan = network("dense", 18, (0.3, 0.3), 2)
+    found = worst_case_attack(problem, plan)
+    return problem, plan, found, lower_proof(problem, plan, found.lower * (1 - 1e-9))
+
+
+def test_dense_graphs(large):
+    problem, plan, found, part = large
+    assert part["kind"] == "group_sizes"
+    assert part["trees"]
+    assert part["bounds"]
+    leaves = checker(problem, plan).check(part, exact(found.lower * (1 - 2e-9)))
+    assert leaves > 100
+    assert proof(problem, plan, found.upper * (1 + 1e-6)) is None
+
+
+def test_a_weaker_lower_end_by_sizes(large):
+    problem, plan, found, _ = large
+    lower, part = weaker_lower_proof(problem, plan, found.upper * 1.005)
+    assert part["kind"] == "group_sizes"
+    assert checker(problem, plan).check(part, exact(lower * (1 - 1e-9))) > 0
+
+
+FAULTS = {
+    "may score more": lambda p: p["most"][-1].update(below=p["most"][-1]["below"] - 4 * UNIT),
+    "must hold|must be a list of": lambda p: p["trees"].pop(),
+    "may score enough": lambda p: p["bounds"][0].update(diagonal=[0] * 18),
+    "there are no prices": lambda p: p.update(prices=[], most=[], bounds=[]),
+    "is not impossible": lambda p: p["trees"][0].__setitem__(
+        next(k for k, node in enumerate(p["trees"][0]) if node <= -3), -2
+    ),
+    "decided twice": lambda p: p["trees"].__setitem__(0, [0, 0]),
+    "worth less": lambda p: p["trees"].__setitem__(0, [-1]),
+    "a case has no leaf": lambda p: p["trees"][0].pop(),
+    "a node is repeated": lambda p: p["trees"][0].append(-1),
+}
+
+
+@pytest.mark.parametrize("text", FAULTS)
+def test_every_fault_has_its_name(large, text):
+    problem, plan, found, part = large
+    broken = copy.deepcopy(part)
+    FAULTS[text](broken)
+    with pytest.raises((ProofError, FileFormatError), match=text):
+        checker(problem, plan).check(broken, exact(found.lower * (1 - 2e-9)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("shares", [(0.2, 0.15), (1 / 3, 0.3)])
+def test_agrees_with_the_attacker(kind, shares):
+    problem, plan = network("dense", 20, shares, 0, kind)
+    found = worst_case_attack(problem, plan, time_limit=60)
+    part = proof(problem, plan, found.lower * (1 - 1e-9))
+    assert part is not None
+    assert checker(problem, plan).check(part, exact(found.lower * (1 - 2e-9))) > 0
+    assert proof(problem, plan, found.upper * (1 + 1e-6)) is None
