@@ -32,6 +32,9 @@ LARGEST_TREE = 200_000
 """Most nodes of a tree."""
 NODES_TIMES_PAIRS = 20_000_000
 """Most nodes of an attack tree, times pairs of robots."""
+TREES_FIRST = 16
+"""Robots up to which attack trees come before sizes of groups where most links are there, though these take a tenth of
+a second: a tree takes two at most, and ``formal/`` has a verified checker for it."""
 SHARE_OF_OTHERS = 0.4
 """Of the seconds left that each kind but the last may take."""
 LOWERED = (0.01, 0.03, 0.1, 0.3)
@@ -51,9 +54,9 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 
     Returns
     -------
-    A ``forced_size`` proof where the complete graph allows one, or ``group_sizes`` where most links are there, else an
-    ``attack_tree``, a ``forced_size`` proof by trees of links, ``group_prices``, ``group_sizes`` or ``group_covers``,
-    else ``ENUMERATED``.
+    A ``forced_size`` proof where the complete graph allows one, or ``group_sizes`` where a larger team has most links,
+    else an ``attack_tree``, a ``forced_size`` proof by trees of links, ``group_prices``, ``group_sizes`` or
+    ``group_covers``, else ``ENUMERATED``.
     """
 
     def sets() -> PlanSets:
@@ -82,8 +85,10 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices]
     if problem.communication.is_complete:
         ways = [by_size, *ways]
+    elif _is_dense(problem) and problem.n_robots > TREES_FIRST:
+        ways = [by_scores, *ways, by_covers]
     else:
-        ways = [by_scores, *ways, by_covers] if _is_dense(problem) else [*ways, by_scores, by_covers]
+        ways = [*ways, by_scores, by_covers]
     for way in ways:
         try:
             with limited(seconds_left() * (1.0 if way is ways[-1] else SHARE_OF_OTHERS)):

@@ -181,6 +181,14 @@ def test_dense_graphs(large):
     assert proof(problem, plan, found.upper * (1 + 1e-6)) is None
 
 
+@pytest.mark.parametrize("n_robots", [4, 8, 14])
+def test_trees_over_attacks_come_first_in_small_teams(n_robots):
+    """They have a verified checker."""
+    problem, plan = network("dense", n_robots, (0.2, 0.15), 0)
+    found = worst_case_attack(problem, plan)
+    assert lower_proof(problem, plan, found.lower * (1 - 1e-9))["kind"] == "attack_tree"
+
+
 def test_a_weaker_lower_end_by_sizes(large):
     problem, plan, found, _ = large
     lower, part = weaker_lower_proof(problem, plan, found.upper * 1.005)
