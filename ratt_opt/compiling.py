@@ -4,16 +4,20 @@ Machine code is made in one call of at most half a second, in which the compiler
 those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
 fails with an error of its own. So it is raised again as soon as the callback has ended. What is kept of compiled code:
 ``_kept_code``.
+
+An interrupt while compiled loops run comes when the arrays that they return are made, for each of which Python is asked
+for their type. Of two arrays the second one then ended in ``SystemError``. A cache in C answers without Python, but for the first time that a loop returns.
 """
 
 from __future__ import annotations
 
 import signal
 import threading
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numba
-from numba.core import event
+from numba.core import event, serialize
 from numba.core.caching import CompileResultCacheImpl
 
 from ratt_opt._kept_code import SourcesLocator
@@ -72,4 +76,5 @@ def _is_dropped_in(frame: FrameType | None) -> bool:
 
 
 event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]
+serialize._numba_unpickle = lru_cache(maxsize=None)(serialize._numba_unpickle)
 CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

@@ -55,6 +55,34 @@ def test_one_in_a_callback_of_the_compiler_comes_after_it(callback, cached, monk
     assert doubled((1.0, 2.0)) == 6.0
 
 
+RETURNS_TWO = """
+import signal
+from ratt_opt.compiling import numba
+import numpy as np
+
+@numba.njit
+def doubled(n):
+    total, count = np.zeros(3), np.ones(3)
+    for k in range(n):
+        total[k % 3] += np.sin(k)
+    return total, count
+
+doubled(10)
+signal.signal(signal.SIGALRM, signal.default_int_handler)  # a thread could not send it while compiled loops run
+signal.setitimer(signal.ITIMER_REAL, 0.02)
+try:
+    while True:
+        doubled(10_000_000)
+except KeyboardInterrupt:
+    print("answered")
+"""
+
+
+def test_one_in_compiled_loops_that_return_arrays_stays_an_interrupt():
+    done = subprocess.run([sys.executable, "-c", RETURNS_TWO], capture_output=True, text=True, check=False)
+    assert done.stdout == "answered\n", done.stderr
+
+
 def test_every_module_of_compiled_loops_takes_numba_from_there():
     direct = [path for path in SOURCES if re.search(r"^\s*(import numba|from numba)\b", path.read_text(), re.M)]
     assert [path.name for path in direct] == ["_kept_code.py", "compiling.py"]
