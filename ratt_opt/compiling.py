@@ -6,7 +6,8 @@ fails with an error of its own. So it is raised again as soon as the callback ha
 ``_kept_code``.
 
 An interrupt while compiled loops run comes when the arrays that they return are made, for each of which Python is asked
-for their type. Of two arrays the second one then ended in ``SystemError``. A cache in C answers without Python, but for the first time that a loop returns.
+for their type. Of two arrays the second one then ended in ``SystemError``. A cache in C answers without Python, but for
+the first time that a loop returns.
 """
 
 from __future__ import annotations
