@@ -9,6 +9,7 @@ import threading
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
@@ -21,6 +22,27 @@ T = TypeVar("T")
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
+class _Pool(ProcessPoolExecutor):
+    """One that ends although its processes died while a call was being sent to them.
+
+    Before 3.12 the thread that sends it, and with it shutting down and the interpreter's exit, waits for ever
+    (python/cpython#94777). Where nobody holds the reading end any more it gets an error, and ends.
+    """
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Run a call on one of the processes."""
+        future = super().submit(fn, *args, **kwargs)
+        future.add_done_callback(partial(_stop_sending, vars(self).get("_call_queue")))
+        return future
+
+
+def _stop_sending(calls: Any, future: Future[Any]) -> None:
+    """Close the reading end of the queue of ``calls`` where the future is lost with its process."""
+    if calls is not None and not future.cancelled() and isinstance(future.exception(), BrokenProcessPool):
+        with suppress(OSError):  # closed already
+            calls._reader.close()
+
+
 @contextmanager
 def local_processes(workers: int | None) -> Iterator[Executor]:
     """Start local processes by spawn (fork deadlocks with threads), with one BLAS thread each.
@@ -29,7 +51,7 @@ def local_processes(workers: int | None) -> Iterator[Executor]:
     """
     known = set(multiprocessing.active_children())
     with _one_thread_each():
-        executor = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
+        executor = _Pool(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
         try:
             with _uninterrupted():
                 executor.submit(os.getpid)  # starts all of them
@@ -51,7 +73,7 @@ class SeparateProcesses(Executor):
     """
 
     def __init__(self, workers: int) -> None:
-        self._pools: list[ProcessPoolExecutor | None] = [None] * workers
+        self._pools: list[_Pool | None] = [None] * workers
         self._running: list[list[Future[Any]]] = [[] for _ in range(workers)]
         self._processes: list[Any] = []
 
@@ -68,11 +90,11 @@ class SeparateProcesses(Executor):
         self._running[k].append(future)
         return future
 
-    def _pool(self, k: int) -> ProcessPoolExecutor:
+    def _pool(self, k: int) -> _Pool:
         pool = self._pools[k]
         if pool is None:
             known = set(multiprocessing.active_children())
-            pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), initializer=_follow_parent)
+            pool = _Pool(1, multiprocessing.get_context("spawn"), initializer=_follow_parent)
             with _one_thread_each(), _uninterrupted():
                 pool.submit(os.getpid)  # starts it
             self._pools[k] = pool
