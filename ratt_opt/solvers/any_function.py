@@ -29,7 +29,7 @@ from ratt_opt.graph.outcomes import count_outcomes
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.ratt import alpha_cs_in_share, ratt
+from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -42,9 +42,10 @@ __all__ = ["check_small_monotone", "search_any"]
 
 CHECKED_SETS, CHECKED_TABLE = 2**12, 2**18
 """Feasible sets up to which a function, and one given as a table, is checked to be non-decreasing: milliseconds."""
-ENUMERATION_SHARE, PLAN_SHARE, ATTACK_SHARE, CLIMB_SHARE = 0.5, 0.3, 0.2, 0.5
-"""Shares of the seconds and values left: for the enumeration of a small problem, for RATT's plan, for each attack
-on a plan, and for climbing from plan to plan with such attacks; then those that their share ended go on. Not tuned."""
+ENUMERATION_SHARE, SINGLES_SHARE, PLAN_SHARE, ATTACK_SHARE, CLIMB_SHARE = 0.5, 0.7, 0.3, 0.2, 0.5
+"""Shares of the seconds and values left: for the enumeration of a small problem, for individual values, which plans
+begin with and first bounds need, for the rest of RATT's plan, for each attack on a plan, and for climbing from plan to
+plan with such attacks; then those that their share ended go on. Not tuned."""
 FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
 """So many seconds at least for the first attack, if that is no more than this share of those left: with a fifth of one
 second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
@@ -175,17 +176,26 @@ class _Search:
             self._attack(elements, self._budget.part())
 
     def _planned(self, alpha_cs: int | None) -> IntArray | None:
-        """RATT's plan; ``None`` where its share of the budget does not do for it."""
+        """RATT's plan; ``None`` where its shares of the budget do not do for it; as far as it came it is a plan."""
+        single = self._individual(self._budget.part(SINGLES_SHARE))
         part = self._budget.part(PLAN_SHARE)
+        alpha_cs = alpha_cs_in_share(self._given, part) if alpha_cs is None else alpha_cs
+        asked = metered_problem(self._problem, part)
+        self.elements = bait_and_greedy(asked, self._given.alpha_s + alpha_cs, part, single).elements
+        return None if part.is_over or not np.isfinite(single).all() else self.elements
+
+    def _individual(self, part: Budget) -> FloatArray:
+        """(E,) individual values, ``-inf`` where the part does not do for it: of as many elements of each robot."""
+        objective, choices = metered_problem(self._problem, part).objective, self._given.choices
+        single, nothing = np.full(objective.n, -np.inf), np.array([], dtype=np.int64)
         try:
-            alpha_cs = alpha_cs_in_share(self._given, part) if alpha_cs is None else alpha_cs
-            plan = ratt(metered_problem(self._problem, part), alpha_cs=alpha_cs, budget=part).elements
+            for k in range(max(map(len, choices))):
+                elements = np.array([choice[k] for choice in choices if len(choice) > k])
+                single[elements] = objective.extensions(nothing, elements)
         except OutOfBudget as out:
             if out.stop is Stop.INTERRUPTED:
                 raise
-            return None
-        self.elements = plan  # as far as it came, it is a plan
-        return None if part.is_over else plan
+        return single
 
     def result(self, stop: Stop) -> MaxMinResult:
         """What is known."""

@@ -197,3 +197,17 @@ def test_a_limited_search_proves_what_an_attack_on_ratt_s_plan_alone_does(n_robo
     found = ro.solve_maxmin(problem, max_evaluations=most)
     assert alone.stop is ro.Stop.EXHAUSTED
     assert found.lower >= alone.lower
+
+
+@pytest.mark.parametrize("n_robots", [21, 40])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_short_search_proves_what_individual_values_prove_of_ratt_s_plan(n_robots, seed):
+    """Where values are few, they are asked for first of all: plans begin with them and bounds need no others."""
+    rng = np.random.default_rng(seed)
+    prior, information = information_data(rng, 6 * n_robots, 4, 3)
+    problem = ro.Problem(
+        Opaque(ro.TraceObjective(prior, information)), np.repeat(np.arange(n_robots), 6), None, n_robots // 4, n_robots
+    )
+    alone = ro.worst_case_attack(problem, ro.ratt(problem).elements, max_evaluations=10 * n_robots)
+    found = ro.solve_maxmin(problem, max_evaluations=2 * 6 * n_robots)
+    assert found.lower >= alone.lower > 0
