@@ -207,6 +207,16 @@ def test_limits_are_kept_by_larger_teams(row, robots, case_of):
         assert overrun(row, case_of(robots), limit) <= 0.5 + 0.05 * limit
 
 
+def test_what_is_not_looked_at_in_between_is_not_begun():
+    """All sets of 14 robots take half a second to list: no plan of a short search waits for that."""
+    robots = 14
+    graph, owners = nx.gnp_random_graph(robots, 0.7, seed=0), np.repeat(np.arange(robots), 6)
+    problem = ro.Problem(ro.Modular(np.linspace(1, 2, len(owners))), owners, graph, 4, 18)
+    ro.solve_maxmin(problem, time_limit=0.3)  # loads
+    assert ro.smallest_largest_group(graph, 18, time_limit=0.05).lower >= 1
+    assert ro.solve_maxmin(problem, time_limit=0.3).lower > 0
+
+
 class Interrupt:
     """A ``KeyboardInterrupt`` after some seconds, as Ctrl-C gives it."""
 

@@ -154,6 +154,9 @@ def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
 
 MOST_GROUPS = 300_000
 """Groups listed before this way is given up: a second on sparse graphs of 50 robots, four on dense ones."""
+PAIRS_A_SECOND = 8_000_000
+"""Of a set of robots and a group in it, of which a team has 3^N: they are listed without a look at the clock, so not at
+all where that would take longer than there is."""
 NODES_AT_ONCE = 100_000
 """Nodes between two looks at the clock (about a tenth of a second)."""
 
@@ -162,7 +165,7 @@ def by_subsets(threat: Threat, budget: Budget) -> LargestGroup:
     """Fewest links that split the graph into connected groups of at most p robots, over all set partitions."""
     n_robots = threat.graph.n_robots
     lower, reason = counting_bound(threat), COUNTED
-    if budget.is_over:
+    if budget.is_over or 3**n_robots > PAIRS_A_SECOND * budget.seconds_left:
         return split_result(threat, heuristic_cut(threat, budget), lower, "enumeration", reason)
     test = ThresholdTest(threat, np.bitwise_count(np.arange(2**n_robots)).astype(np.float64))
     while not budget.is_over:
