@@ -250,6 +250,24 @@ def test_no_weak_set_is_larger_than_its_size(seed):
         assert sizes.largest(threshold, Budget()) == largest
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_sizes_that_nothing_but_averages_rules_out_have_no_weak_set(seed, monkeypatch):
+    """Targets of one, three and four coordinates; averages alone say as much as they can in teams of equal robots."""
+    monkeypatch.setattr("ratt_opt.attackers.by_prices.groups.weak_sizes.SIZE_WORK", 0)
+    rng, dimension = np.random.default_rng(seed), (1, 3, 4)[seed % 3]
+    prior, information = information_data(rng, 7, 3, dimension)
+    for objective in (cls(prior, information) for cls in OBJECTIVES.values()):
+        values = [(k, objective(s)) for k in range(8) for s in combinations(range(7), k)]
+        sizes = WeakSizes(PricedTeam.of(objective, np.arange(7)), None)
+        for share in rng.uniform(0, 1, 3):
+            threshold = share * objective(range(7))
+            assert sizes.largest(threshold, Budget()) >= max((k for k, value in values if value < threshold), default=0)
+        alike = type(objective)(prior, np.repeat(information[:1], 30, axis=0))
+        sizes = WeakSizes(PricedTeam.of(alike, np.arange(30)), None)
+        worth = alike(range(12))
+        assert worth < 1e-6 or sizes.largest(worth * (1 - 1e-6), Budget()) <= 11
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_every_choice_of_prices_claims_what_it_says_and_no_known_group_pays_it(seed):
     problem, _ = team_problem(2 * seed, 6, graph=nx.complete_graph(6))
