@@ -5,20 +5,19 @@ those callbacks, where every one ends up that came during the call, is dropped b
 fails with an error of its own. So it is raised again as soon as the callback has ended. What is kept of compiled code:
 ``_kept_code``.
 
-An interrupt while compiled loops run comes when the arrays that they return are made, for each of which Python is asked
-for their type. Of two arrays the second one then ended in ``SystemError``. A cache in C answers without Python, but for
-the first time that a loop returns.
+An interrupt while compiled loops run came when the arrays that they return are made, for each of which Python was asked
+for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
+here, so that nobody is asked and the interrupt comes once the loop has returned.
 """
 
 from __future__ import annotations
 
 import signal
 import threading
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numba
-from numba.core import event, serialize
+from numba.core import boxing, event, pythonapi, types
 from numba.core.caching import CompileResultCacheImpl
 
 from ratt_opt._kept_code import SourcesLocator
@@ -76,6 +75,16 @@ def _is_dropped_in(frame: FrameType | None) -> bool:
     return False
 
 
+def _array_of_constant_class(kind: Any, value: Any, context: Any) -> Any:
+    """Code that makes an array for Python, as Numba's own but for its class, which that keeps pickled."""
+    api, constants = context.pyapi, context.env_manager
+    api.serialize_object, api.unserialize = constants.add_const, constants.read_const
+    try:
+        return boxing.box_array(kind, value, context)
+    finally:
+        del api.serialize_object, api.unserialize
+
+
 event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]
-serialize._numba_unpickle = lru_cache(maxsize=None)(serialize._numba_unpickle)
+pythonapi._boxers.functions[types.Array] = _array_of_constant_class
 CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

@@ -60,19 +60,19 @@ import signal
 from ratt_opt.compiling import numba
 import numpy as np
 
-@numba.njit
+@numba.njit("(int64,)")  # compiled here: an interrupt can come in the first call of all
 def doubled(n):
     total, count = np.zeros(3), np.ones(3)
     for k in range(n):
         total[k % 3] += np.sin(k)
     return total, count
 
-doubled(10)
 signal.signal(signal.SIGALRM, signal.default_int_handler)  # a thread could not send it while compiled loops run
 signal.setitimer(signal.ITIMER_REAL, 0.02)
 try:
+    doubled(100_000_000)
     while True:
-        doubled(10_000_000)
+        pass
 except KeyboardInterrupt:
     print("answered")
 """
