@@ -9,6 +9,8 @@ whatever the multiplier >= 0, so a node is closed where a bound on the left side
 threshold. Robots with which the bound reaches it leave, those without which it does join, and a node is divided by the
 robot that lowers it most: 40 instead of 2,200 nodes where the least clear robot is taken (60 robots, sets of 12).
 
+Where the worst axis of a target decides, ``paying_axes.py`` searches instead, target by target.
+
 Imported only where a large team is attacked: compiling takes seconds, once per machine (cached).
 """
 
@@ -19,7 +21,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attackers.by_size.family_prices.axis_nodes import AxisNodes
 from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean_of_least, views, weakest_bound, worth
+from ratt_opt.attackers.by_size.family_prices.paying_axes import search_axes
+from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
@@ -100,7 +105,8 @@ class PayingSets:
     """Answers questions about one team; a node is a node of the search."""
 
     def __init__(self, team: PlanarTeam) -> None:
-        self._views = views(team)
+        self._team, self._views = team, views(team)
+        self.is_by_axis: bool = team.objective.states("planar_levels")
         self._n_robots = len(team.single)
         self._floors: dict[int, list[float]] = {}
 
@@ -108,10 +114,17 @@ class PayingSets:
         """Sizes of which sets may be worth less than a threshold, up to ``most``: larger sets contain smaller ones."""
         for size in range(1, most + 1):
             if size not in self._floors:
-                self._floors[size] = [weakest_bound(view, size) for view in self._views]
+                self._floors[size] = self._weakest(size)
             if min(self._floors[size]) >= threshold:
                 return
             yield size
+
+    def _weakest(self, size: int) -> list[float]:
+        """No set of a size that is weak in a view is worth less, view by view."""
+        if self.is_by_axis:
+            bound = weakest_axis(self._team.family(np.arange(self._n_robots), size)).bound
+            return [bound] * len(self._views)
+        return [weakest_bound(view, size) for view in self._views]
 
     def of_size(self, question: Question, size: int, budget: Budget, nodes: int) -> Sets:
         """Search the sets of a size of :meth:`sizes` for at most so many nodes of the budget.
@@ -135,12 +148,16 @@ class PayingSets:
         self, view: View, question: Question, size: int, budget: Budget, nodes: int, found: list[BoolArray]
     ) -> bool:
         """Search one view to the end (true), or until enough is found or the nodes are spent."""
-        state = _Nodes.of(view, size, question.threshold / size**2)
+        state: Any
+        if self.is_by_axis:
+            search, state = search_axes, AxisNodes.of(view, size, question.threshold)
+        else:
+            search, state = _search, _Nodes.of(view, size, question.threshold / size**2)
         chunk = max(BETWEEN_LOOKS // (self._n_robots**2 * len(view.weights)), 1)
         members, last = np.zeros(self._n_robots, dtype=np.bool_), budget.nodes + max(nodes, 1)
         while budget.nodes < last:
             most, before = budget.nodes_left(min(chunk, last - budget.nodes)), int(state.position[1])
-            code = _search(view, question, state, most, members)
+            code = search(view, question, state, most, members)
             budget.nodes += int(state.position[1]) - before
             if code == FINISHED:
                 return True

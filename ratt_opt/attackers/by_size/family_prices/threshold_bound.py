@@ -13,10 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_sets
 from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgram
-from ratt_opt.attackers.by_size.family_prices.pair_bound import views
-from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
+from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -34,8 +32,9 @@ LARGEST = 200
 """Robots up to which a bound on pairs of all of them takes some milliseconds."""
 NEAR = 2e-4
 """Relative width between what is refuted and what is out of reach, or the attack, not worth another threshold."""
-FIRST_EFFORT, HARDER = 5_000, 4
-"""Nodes of a size before a threshold is left open, and their growth when the lower ones are refuted."""
+FIRST_EFFORT, QUICK_EFFORT, HARDER = 5_000, 300_000, 4
+"""Nodes of a size before a threshold is left open, some milliseconds each or (quick ones) microseconds, and their
+growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
 FIRST_MOVES, LONGER = 3_000, 2
@@ -45,7 +44,6 @@ PULLED = 0.5
 takes 8 and 6 s with the whole claim, 1 and 2 s with half of it, 1 and 2 s with none."""
 CLAIM = 1e-3
 """Links that prices have to claim: well above rounding in sums of prices and the program's tolerances."""
-SEED = 0
 
 
 class _Verdict(Enum):
@@ -62,10 +60,8 @@ class ThresholdBound:
 
     def __init__(self, team: PlanarTeam, threat: Threat, known: Iterable[frozenset[int]] = ()) -> None:
         self._team, self._n_robots = team, len(team.single)
-        self._n_seeing = self._n_robots - threat.n_blinded
-        self._sets, self._program = PayingSets(team), FamilyProgram(threat)
-        self._views, self._rng = views(team), np.random.default_rng(SEED)
-        self._moves, self._effort = FIRST_MOVES, FIRST_EFFORT
+        self._finder, self._program = SetFinder(team, self._n_robots - threat.n_blinded), FamilyProgram(threat)
+        self._moves, self._effort = FIRST_MOVES, QUICK_EFFORT if self._finder.is_quick else FIRST_EFFORT
         self._beyond, self._unknown = np.inf, np.inf
         """The lowest thresholds out of reach, and left open with this effort."""
         for group in [frozenset([i]) for i in range(self._n_robots)] + list(known):
@@ -108,32 +104,22 @@ class ThresholdBound:
                 return _Verdict.OUT_OF_REACH
             if self._anneal(threshold, prices.lowered(PULLED * prices.claim), budget):
                 continue
-            found, is_none = self._search(threshold, prices.lowered(CLAIM / 2), budget)
-            if is_none:
+            sets = self._finder.searched(threshold, prices.lowered(CLAIM / 2), self._effort, budget)
+            if sets.is_complete:
                 return _Verdict.REFUTED
-            if not found:
+            if not self._learn_all(sets.found):
                 return _Verdict.OPEN
             self._moves *= LONGER
 
     def _anneal(self, threshold: float, prices: FamilyPrices, budget: Budget) -> int:
         """Sets that pay, with each robot: how many are new."""
-        new, links = 0, -prices.limits
-        for view in self._views:
-            sets = annealed_sets(view, threshold, prices.robots, links, self._moves, self._rng, budget)
-            new += sum(self._learn(members) for members, paid in sets if paid > CLAIM)
-        return new
+        if self._finder.is_quick:
+            return 0
+        return self._learn_all(self._finder.annealed(threshold, prices, CLAIM, self._moves, budget))
 
-    def _search(self, threshold: float, prices: FamilyPrices, budget: Budget) -> tuple[int, bool]:
-        """Sets that pay, of each size: how many are new; and whether there are none. A size left open ends it."""
-        new, is_none = 0, True
-        for size in self._sets.sizes(threshold, self._n_seeing):
-            question = Question(threshold, prices.robots, float(prices.limits[size]))
-            sets = self._sets.of_size(question, size, budget, self._effort)
-            new += sum(self._learn(members) for members in sets.found)
-            is_none = is_none and sets.is_complete
-            if not (sets.is_complete or sets.found):
-                break
-        return new, is_none
+    def _learn_all(self, sets: list[BoolArray]) -> int:
+        """How many of these are new."""
+        return sum(self._learn(members) for members in sets)
 
     def _learn(self, members: BoolArray) -> bool:
         return self._program.add(members, self._team.value(np.flatnonzero(members)))

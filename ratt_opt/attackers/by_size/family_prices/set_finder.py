@@ -1,0 +1,61 @@
+"""Weak sets that pay the prices, for whoever asks: annealed ones, and a search that may prove that there is none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_sets
+from ratt_opt.attackers.by_size.family_prices.pair_bound import views
+from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question, Sets
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray
+    from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
+
+__all__ = ["SetFinder"]
+
+SEED = 0
+
+
+class SetFinder:
+    """Answers for one team; ``n_seeing`` : size of the largest sets asked for.
+
+    ``is_quick`` : whether a search takes hardly longer than annealing, which then is left out
+    """
+
+    def __init__(self, team: PlanarTeam, n_seeing: int) -> None:
+        self._n_seeing, self._sets = n_seeing, PayingSets(team)
+        self.is_quick = self._sets.is_by_axis
+        self._views, self._rng = views(team), np.random.default_rng(SEED)
+
+    def annealed(
+        self, threshold: float, prices: FamilyPrices, least: float, moves: int, budget: Budget
+    ) -> list[BoolArray]:
+        """Sets that pay more than ``least``, annealed around each robot; some may be the same."""
+        found: list[BoolArray] = []
+        links = -prices.limits
+        for view in self._views:
+            sets = annealed_sets(view, threshold, prices.robots, links, moves, self._rng, budget)
+            found.extend(members for members, paid in sets if paid > least)
+        return found
+
+    def searched(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
+        """Sets that pay, of each size, or the proof that there is none; a size left open after so many nodes ends it.
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or no node is left.
+        """
+        found, is_complete = [], True
+        for size in self._sets.sizes(threshold, self._n_seeing):
+            question = Question(threshold, prices.robots, float(prices.limits[size]))
+            sets = self._sets.of_size(question, size, budget, nodes)
+            found.extend(sets.found)
+            is_complete = is_complete and sets.is_complete
+            if not (sets.is_complete or sets.found):
+                break
+        return Sets(found, is_complete=is_complete)
