@@ -8,7 +8,7 @@ annealing also finds the better vector, where exchanges (``group_exchanges.py``)
 from __future__ import annotations
 
 from math import comb
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["annealed_families"]
+__all__ = ["Cooling", "annealed_families", "annealed_from"]
 
 FIRST_MOVES, LONGER = 2_000_000, 2
 """Moves of the first start, and how many times as many each time after. At 60 robots, 40 targets a million take a third
@@ -54,20 +54,51 @@ def annealed_families(team: PlanarTeam, threat: Threat, budget: Budget) -> Itera
     first = forced_group_size(n_robots, n_blinded, alpha_c)
     sizes = next(sizes_of_largest(n_robots, n_blinded, alpha_c, first), ()) if first else ()
     must = np.isin(np.arange(n_robots), list(threat.protected_robots))
-    criterion = team.code, team.weights, team.baseline, team.prior, team.information
-    limits = n_blinded, comb(n_robots, 2) - alpha_c, len(sizes) + FURTHER_GROUPS
     rng, moves = np.random.default_rng(SEED), FIRST_MOVES
     while sizes and not budget.is_over:
-        home, best = _random_family(sizes, must, rng), np.zeros(n_robots, dtype=np.int64)
-        value = np.full(1, np.inf)
-        hot = HOT * max(team.value(np.flatnonzero(home == g)) for g in range(1, len(sizes) + 1))
-        for done in range(0, moves, CHUNK):
-            cooling = hot, COLD / HOT, done / moves, 1 / moves
-            _anneal(criterion, (home, must), limits, cooling, (best, value), rng)
-            if budget.is_over:
-                break
-        yield tuple(frozenset(np.flatnonzero(best == g).tolist()) for g in range(1, int(best.max()) + 1) if g in best)
+        home = _random_family(sizes, must, rng)
+        groups = tuple(frozenset(np.flatnonzero(home == g).tolist()) for g in range(1, len(sizes) + 1))
+        yield annealed_from(groups, team, threat, Cooling(HOT, moves), rng, budget)
         moves *= LONGER
+
+
+class Cooling(NamedTuple):
+    """``hot`` : first temperature, relative to the best group; ``moves`` in all."""
+
+    hot: float
+    moves: int
+
+
+def annealed_from(  # noqa: PLR0917
+    groups: tuple[frozenset[int], ...],
+    team: PlanarTeam,
+    threat: Threat,
+    cooling: Cooling,
+    rng: np.random.Generator,
+    budget: Budget,
+) -> tuple[frozenset[int], ...]:
+    """The best family that annealing meets, from some groups that an attack can leave; as far as the time goes."""
+    n_robots = len(team.single)
+    must = np.isin(np.arange(n_robots), list(threat.protected_robots))
+    home, best, value = np.zeros(n_robots, dtype=np.int64), np.zeros(n_robots, dtype=np.int64), np.full(1, np.inf)
+    for g, group in enumerate(groups, start=1):
+        home[list(group)] = g
+    criterion = team.code, team.weights, team.baseline, team.prior, team.information
+    limits = threat.n_blinded, comb(n_robots, 2) - threat.alpha_c, len(groups) + FURTHER_GROUPS
+    hot = cooling.hot * max(team.value(group) for group in groups)
+    for done in range(0, cooling.moves, CHUNK):
+        falling = hot, COLD / cooling.hot, done / cooling.moves, 1 / cooling.moves
+        _anneal(
+            criterion,
+            (home, must),
+            limits,
+            falling,
+            (best, value),
+            rng,
+        )
+        if budget.is_over:
+            break
+    return tuple(frozenset(np.flatnonzero(best == g).tolist()) for g in range(1, int(best.max()) + 1) if g in best)
 
 
 def _random_family(sizes: tuple[int, ...], must: Any, rng: np.random.Generator) -> IntArray:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
+from ratt_opt.attackers.by_size.family_prices.family_search import DIVED_SHARE, FamilySearch
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
@@ -50,9 +50,10 @@ Where there are more, some make attacks, and the bound is that of the forced siz
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LARGEST_SHARE, PRICED_SHARE, ALIKE = 0.25, 0.6, 0.8
-"""Of the time left, for a first search by the largest group, then for prices of families; and the value of the second
-best group of an attack, over the best, from which prices are asked: below, it is the largest group that decides."""
+LARGEST_SHARE, PRICED_SHARE, LATER_SHARE, ALIKE = 0.25, 0.7, 0.6, 0.8
+"""Of the time left, for a first search by the largest group, then for prices of families, then for attacks by prices;
+and the value of the second best group of an attack, over the best, from which prices are asked: below, it is the
+largest group that decides."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -121,7 +122,9 @@ class SizeVectorSearch:
             self._decide_in_share()
             search = FamilySearch(self.task, self.team, families)
             search.anneal()
+            search.dive(DIVED_SHARE)
             search.price(PRICED_SHARE)
+            search.dive(LATER_SHARE)
         return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
 
     def _is_about_families(self, families: list[GroupExchanges]) -> bool:

@@ -3,5 +3,5 @@
 Open ``threshold_bound.py`` first: it refutes thresholds; ``family_search.py`` says when. ``family_program.py`` finds
 the prices from the sets it knows and says what they prove; ``paying_sets.py`` proves that no other weak set pays them,
 by the bounds of ``pair_bound.py`` or along axes (``paying_axes.py``), or finds some; ``annealed_sets.py`` finds most of
-them sooner.
+them sooner. ``family_dive.py`` makes attacks of such prices.
 """

@@ -1,4 +1,4 @@
-"""Brackets on complete graphs by what knows no vectors of sizes: the forced size, annealed attacks, and prices."""
+"""Brackets on complete graphs by what knows no vectors of sizes: the forced size, annealed attacks, dives, prices."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.annealed_families import annealed_families
+from ratt_opt.attackers.by_size.annealed_families import Cooling, annealed_families, annealed_from
+from ratt_opt.attackers.by_size.family_prices.family_dive import FamilyDive
+from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST, ThresholdBound
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.budget import OutOfBudget
@@ -25,14 +27,20 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
 
-__all__ = ["FamilySearch"]
+__all__ = ["DIVED_SHARE", "FamilySearch"]
 
-FORCED_SHARE, ANNEALED_SHARE, ANNEALED_STARTS = 0.1, 0.3, 3
-"""Of the time left, for the bound of the forced size; then for annealed attacks, and how many before there are prices.
+FORCED_SHARE, ANNEALED_SHARE, ANNEALED_STARTS = 0.1, 0.2, 3
+"""Of the time left, for the bound of the forced size; then for annealed attacks, and how many before there are dives.
 At 100 robots, (0, 4066), log-det, they leave 0.3 to 0.4 % less than exchanges in 93 vectors; at 60, (0, 1454),
 max-eigenvalue, 5.70 where exchanges in all vectors leave 6.15."""
+DIVED_SHARE, MOST_VAIN, REACH = 0.2, 4, (0.98, 1.01)
+"""Of the time left, for dives before there are prices; how many in a row may find nothing better; and thresholds of
+dives, over the attack in hand."""
+POLISHED, POLISHING = (1e-3, 3e-3), 500_000
+"""First temperatures and moves of annealing from where a dive ends."""
 PRICED_NODES = 300_000
 """Of prices where no time is set: some minutes."""
+SEED = 0
 
 
 class FamilySearch:
@@ -45,6 +53,8 @@ class FamilySearch:
         self._task, self._team, self._threat = task, team, task.problem.threat
         self._known = [group for family in families for group in family.groups()]
         self._prices: ThresholdBound | None = None
+        self._rng = np.random.default_rng(SEED)
+        self._dives = FamilyDive(team, self._threat, SetFinder(team, len(team.single) - self._threat.n_blinded))
 
     def run(self) -> Stop:
         """All of them, the attacks as long as there is time."""
@@ -53,6 +63,7 @@ class FamilySearch:
         has_limit = bool(np.isfinite(budget.seconds_left))
         if has_limit:
             self.anneal()
+            self.dive(DIVED_SHARE)
         self.price(1.0)
         if has_limit and not bracket.is_closed:
             for groups in self._annealed(budget):
@@ -71,13 +82,37 @@ class FamilySearch:
             self._offer(groups)
         self._task.budget.check()
 
+    def dive(self, share: float) -> None:
+        """Attacks from prices, in a share of the time left; the sets found are known to the prices."""
+        if self._is_out_of_reach():
+            return
+        self._within(self._part(share), self._dive)
+
+    def _dive(self, budget: Budget) -> None:
+        bracket = self._task.bracket
+        vain = 0
+        while not (bracket.is_closed or budget.is_over or vain >= MOST_VAIN):
+            vain, before = vain + 1, bracket.upper
+            threshold = max(float(self._rng.uniform(*REACH)) * bracket.upper, bracket.lower)
+            if groups := self._dives.family(threshold, budget):
+                for hot in POLISHED:
+                    cooling = Cooling(hot, POLISHING)
+                    self._offer(annealed_from(groups, self._team, self._threat, cooling, self._rng, budget))
+            if bracket.upper < before:
+                vain = 0
+
+    def _is_out_of_reach(self) -> bool:
+        """Whether nothing is left for prices, or they would take too long."""
+        bracket = self._task.bracket
+        return bracket.is_closed or len(self._team.single) > LARGEST or not bracket.upper > 0
+
     def price(self, share: float) -> None:
         """Raise the lower end by prices, as far as they reach in a share of the time left."""
         budget, bracket = self._task.budget, self._task.bracket
-        if bracket.is_closed or len(self._team.single) > LARGEST or not bracket.upper > 0:
+        if self._is_out_of_reach():
             return
         if self._prices is None:
-            self._prices = ThresholdBound(self._team, self._threat, self._known)
+            self._prices = ThresholdBound(self._team, self._threat, [*self._known, *self._dives.sets()])
         prices = self._prices
         most = None if np.isfinite(budget.seconds_left) else PRICED_NODES
         self._within(self._part(share, most), lambda part: prices.run(bracket, part))
