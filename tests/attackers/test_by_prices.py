@@ -293,13 +293,15 @@ def test_every_choice_of_prices_claims_what_it_says_and_no_known_group_pays_it(s
     assert prices.dearest(1.0, found.links + 1.0) is None
 
 
-def least_cost(problem, plan, threshold, prices):
-    """The cheapest reduced cost by the definition: every set of robots, connected or not, and every blinding of it."""
+def least_cost(problem, plan, threshold, prices, *, connected=False):
+    """The cheapest reduced cost by the definition: every set of robots, or every connected one, however blinded."""
     n_robots, least = problem.n_robots, np.inf
     for size in range(1, n_robots + 1):
         for group in combinations(range(n_robots), size):
             crossing = {link for link in problem.communication.links if len(set(group) & set(link)) == 1}
             if crossing & problem.protected_links:
+                continue
+            if connected and not nx.is_connected(problem.graph.subgraph(group)):
                 continue
             free = [i for i in group if i not in problem.protected_robots]
             for blinded in range(min(problem.threat.n_blinded, len(free)) + 1):
@@ -324,10 +326,11 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
     raised = max(least_cost(problem, plan, threshold, prices), 0) + 0.5  # some groups pay
     prices = (prices[0] + raised, prices[1])
     least = least_cost(problem, plan, threshold, prices)
-    assert least < 0
+    piece = least_cost(problem, plan, threshold, prices, connected=True)  # of a group that pays, one piece pays
+    assert least <= piece < 0
     at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1), ConvexForms(threat).known)
     search = paying_search(team, links, threat, forms_at=prices[0] if seed % 2 else None)
-    for limit, room in ((least - 1e-6, 5), (least + 1e-6, 5), (-1e-6, 3)):
+    for limit, room in ((least - 1e-6, 5), (piece + 1e-6, 5), (-1e-6, 3)):
         question = Question(threshold, threat.n_blinded, limit, np.arange(6), 0, 0)
         found = search.find(at, question, Budget(), nodes=10**6, room=room)
         assert (len(found.groups) > 0) == (least <= limit)

@@ -40,7 +40,10 @@ SHIFT, SURE = 0.02, 1e-9
 
 
 class ConvexForms:
-    """Forms of one threat's graph; ``known`` : the last ones, valid at any prices; ``n_forms`` : how many."""
+    """Forms of one threat's graph.
+
+    ``known`` : the last ones, valid at any prices; ``none`` : no forms; ``n_forms`` : how many there are once fitted
+    """
 
     def __init__(self, threat: Threat) -> None:
         n_robots = threat.graph.n_robots
@@ -52,7 +55,8 @@ class ConvexForms:
         self._high = np.minimum(self._low + sizes - 1, n_robots)
         self._multipliers = np.zeros((self.n_forms, n_robots))
         self._is_fitted = np.zeros(self.n_forms, dtype=np.bool_)
-        self.known = self._none()
+        self.none = self._none()
+        self.known = self.none
 
     @property
     def n_forms(self) -> int:

@@ -19,6 +19,7 @@ from ratt_opt.attackers.by_prices.groups.seeing_sets import (
     search_seeing_sets,
 )
 from ratt_opt.attackers.by_prices.prices import KnownGroup
+from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
@@ -31,6 +32,10 @@ __all__ = ["PayingGroups", "PayingSearch"]
 
 FITTED = 2_000
 """Nodes after which forms are fitted to the prices: a tenth of a second at 30 robots at first, then less."""
+
+FORM_NODES, AGAIN = 2, 4
+"""Nodes without forms that one with forms counts for: 1.3 to 3 at 30 to 100 robots; and how many times as long as the
+last search made both ways another must be to be made both ways."""
 
 FIRST_CHUNK, GLANCE = 500, 0.05
 """Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
@@ -48,13 +53,20 @@ class PayingGroups:
     is_complete: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class PayingSearch:
-    """Searches for groups of one team that pay; ``forms`` : what groups of each size cut, learned while it searches."""
+    """Searches for groups of one team that pay; ``forms`` : what groups of each size cut, learned while it searches.
+
+    Forms shorten proofs or only slow them down, which depends on the graph and on the prices: hubs of 30 robots take
+    half to a tenth of the nodes with them, a small world of 100 three times as many. So a search long enough is made
+    both ways, and the shorter way is gone on with.
+    """
 
     team: PricedTeam
     links: Links
     forms: ConvexForms
+    _with_forms: bool = True
+    _compared: float = FITTED
 
     def find(
         self,
@@ -75,12 +87,36 @@ class PayingSearch:
         ------
         OutOfBudget : the time is up.
         """
-        prices = prices._replace(robot=prices.robot.copy(), forms=self.forms.known)
-        n_robots, flows = len(prices.robot), _flows(prices, question.budget)
+        before = budget.nodes
+        found = self._search(prices, question, budget, falling, (nodes, room))
+        spent = (budget.nodes - before) * (FORM_NODES if self._with_forms else 1)
+        if found.groups or spent < AGAIN * self._compared or budget.stop() is not None:
+            return found
+        self._compared, self._with_forms = spent, not self._with_forms
+        most = spent // (FORM_NODES if self._with_forms else 1)
+        if falling is not None:
+            prices = prices._replace(robot=falling.prices.robot)
+        try:
+            other = self._search(prices, question, budget, None if found.is_complete else falling, (most, room))
+        except OutOfBudget:
+            if found.is_complete:
+                return found
+            raise
+        if not (other.is_complete or other.groups):
+            self._with_forms = not self._with_forms
+        return found if found.is_complete else other
+
+    def _search(
+        self, prices: Prices, question: Question, budget: Budget, falling: FallingPrices | None, most: tuple[int, int]
+    ) -> PayingGroups:
+        """The same one way, for ``most`` = (nodes, groups)."""
+        known = self.forms.known if self._with_forms else self.forms.none
+        prices = prices._replace(robot=prices.robot.copy(), forms=known)
+        n_robots, flows, room = len(prices.robot), _flows(prices, question.budget), most[1]
         n_bounds = len(flows.share), self.forms.n_forms
         stack = SeeingStack.of(len(self.links.robot), n_bounds, self.team.prior, n_robots)
         found = (np.zeros(n_robots, dtype=np.bool_), np.zeros(n_robots, dtype=np.bool_))
-        code, chunk, nodes, is_fitted = PAUSED, FIRST_CHUNK, budget.nodes_left(nodes), False
+        code, chunk, nodes, is_fitted = PAUSED, FIRST_CHUNK, budget.nodes_left(most[0]), not self._with_forms
         below, groups = float(np.nextafter(question.threshold, -np.inf)), list[KnownGroup]()
         while code != FINISHED and len(groups) < room and (before := int(stack.position[1])) < nodes:
             budget.check()

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
+from ratt_opt.attackers.by_prices.groups.connections import connected_bound
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, always, augment, copy_flows, open_flow
 from ratt_opt.attackers.by_prices.groups.size_forms import (
     BLINDED,
@@ -57,8 +58,8 @@ class SeeingStack(NamedTuple):
     """Open nodes of the search; ``position`` : the last open node, nodes so far.
 
     For each open node: ``part`` (N,) what robots are; K flows; ``sums`` (M, T) of the seeing robots; ``worth`` (N,)
-    value with one robot more; ``room`` further robots that may see; ``bound`` (K,) of the flows; ``grown`` whether the
-    last robot decided sees; ``points`` of the forms
+    value with one robot more, ``copies`` (N,) with ``copied`` copies of one; ``room`` further robots that may see;
+    ``bound`` (K,) of the flows; ``grown`` whether the last robot decided sees; ``points`` of the forms
     """
 
     position: Any
@@ -68,6 +69,8 @@ class SeeingStack(NamedTuple):
     along: Any
     sums: Any
     worth: Any
+    copies: Any
+    copied: Any
     room: Any
     bound: Any
     grown: Any
@@ -85,6 +88,8 @@ class SeeingStack(NamedTuple):
             along=np.zeros((depth, n_flows, n_arcs)),
             sums=np.zeros((depth, *prior.shape)),
             worth=np.zeros((depth, n_robots)),
+            copies=np.zeros((depth, n_robots)),
+            copied=np.zeros(depth, dtype=np.int64),
             room=np.zeros(depth, dtype=np.int64),
             bound=np.zeros((depth, n_flows)),
             grown=np.zeros(depth, dtype=np.bool_),
@@ -96,7 +101,7 @@ class SeeingStack(NamedTuple):
 def _begin(team: Any, links: Any, prices: Any, flows: Any, stack: Any) -> None:
     """The root: every robot open."""
     copy(stack.sums[0], team.prior)
-    stack.part[0], stack.room[0], stack.grown[0] = OPEN, int(prices.capacity), True
+    stack.part[0], stack.room[0], stack.grown[0], stack.copied[0] = OPEN, int(prices.capacity), True, 0
     cost = np.empty(len(prices.robot))
     for kind in range(len(flows.share)):
         for i in range(len(cost)):
@@ -148,11 +153,14 @@ def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node:
     worths, k = np.empty(n_open), 0
     while stack.room[node] > 1:
         # Criteria are concave: k robots are worth at least the mean of k copies of each.
-        k = 0
+        k, is_new = 0, stack.copied[node] != stack.room[node]
+        stack.copied[node] = stack.room[node]
         for i in range(len(part)):
             if part[i] == OPEN:
-                add(trial, sums, stack.room[node], team, i)
-                worths[k] = value_of(team, trial)
+                if is_new:
+                    add(trial, sums, stack.room[node], team, i)
+                    stack.copies[node, i] = value_of(team, trial)
+                worths[k] = stack.copies[node, i]
                 k += 1
         if _mean_of_least(worths, stack.room[node]) < threshold * (1 + SURE):
             break
@@ -162,23 +170,41 @@ def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node:
 
 @numba.njit(cache=True)
 def _bounds(links: Any, prices: Any, flows: Any, question: Any, stack: Any, sides: Any, work: Any) -> float:  # noqa: PLR0917
-    """Reduced cost that no group of the last node falls below; ``sides`` (K, N) the robots inside each minimum cut."""
-    node, best = stack.position[0], -np.inf
+    """Reduced cost that no connected group of the last node falls below; ``sides`` (K, N) inside each minimum cut.
+
+    What hanging together costs is added to the best bound alone, and never to the last flow's, whose cut is a group.
+    """
+    node, best, chosen, last = stack.position[0], -np.inf, -1, len(flows.share) - 1
     seeing = 0
     for i in range(stack.part.shape[1]):
         seeing += int(stack.part[node, i] == SEEING)
-    for kind in range(len(flows.share)):
+    for kind in range(last + 1):
         flow = (stack.into[node, kind], stack.out[node, kind], stack.along[node, kind])
-        paid = -flows.share[kind] * flows.blinded[kind] * (seeing + stack.room[node])
-        paid -= (flows.blinded[kind] - prices.blinded) * question.budget
-        bound = augment(links, flow, stack.bound[node, kind], question.limit - paid, work)
+        paid = _paid(prices, flows, question, stack, node, kind, seeing)
+        bound = augment(links, flow, stack.bound[node, kind], question.limit - paid, work[0])
         stack.bound[node, kind] = bound
+        if bound + paid > question.limit:
+            return float(bound + paid)
+        if bound + paid > best and kind < last:
+            chosen = kind
         best = max(best, bound + paid)
-        if best > question.limit:
-            break
-        for i in range(len(work[0])):
-            sides[kind, i] = work[0][i] >= 0
-    return best
+        for i in range(len(stack.part[node])):
+            sides[kind, i] = work[0][0][i] >= 0
+    if chosen >= 0:
+        flow = (stack.into[node, chosen], stack.out[node, chosen], stack.along[node, chosen])
+        paid = _paid(prices, flows, question, stack, node, chosen, seeing)
+        limit, bound = question.limit - paid, stack.bound[node, chosen]
+        bound = connected_bound(links, stack.part[node], flow, bound, limit, sides[chosen], work)
+        stack.bound[node, chosen] = bound
+        best = max(best, bound + paid)
+    return float(best)
+
+
+@numba.njit(cache=True)
+def _paid(prices: Any, flows: Any, question: Any, stack: Any, node: int, kind: int, seeing: int) -> float:  # noqa: PLR0917
+    """What is paid back to a flow (minus that): shares of all who may see, and surcharges of all who may be blinded."""
+    paid = -flows.share[kind] * flows.blinded[kind] * (seeing + stack.room[node])
+    return float(paid - (flows.blinded[kind] - prices.blinded) * question.budget)
 
 
 @numba.njit(cache=True)
@@ -226,6 +252,8 @@ def _copy(stack: Any, node: int, child: int) -> None:
     copy(stack.sums[child], stack.sums[node])
     copy_row(stack.part[child], stack.part[node])
     copy_row(stack.worth[child], stack.worth[node])
+    copy_row(stack.copies[child], stack.copies[node])
+    stack.copied[child] = stack.copied[node]
     stack.room[child] = stack.room[node]
 
 
@@ -241,6 +269,7 @@ def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
     if sees:
         add(stack.sums[child], stack.sums[child], 1.0, team, robot)
         stack.room[child] -= 1
+        stack.copied[child] = 0
         stack.part[child, robot] = SEEING
         stack.points.at[node, :, robot] = 0.0
         _close(links, flows, stack, node, robot)
@@ -268,6 +297,14 @@ def leave_node(stack: Any) -> None:
 
 
 @numba.njit(cache=True)
+def _work(n_robots: int, n_arcs: int) -> Any:
+    """Room for :func:`connected_bound`."""
+    levels = np.empty(n_robots, np.int64), np.empty(n_robots, np.int64), np.empty(n_robots, np.int64)
+    flow = np.empty(n_robots), np.empty(n_robots), np.empty(n_arcs)
+    return levels, flow, np.empty(n_robots, np.int64), np.empty(n_robots, np.int64)
+
+
+@numba.njit(cache=True)
 def search_seeing_sets(  # noqa: PLR0917
     team: Any, links: Any, prices: Any, flows: Any, question: Any, stack: Any, nodes: int, found: Any
 ) -> int:
@@ -278,7 +315,7 @@ def search_seeing_sets(  # noqa: PLR0917
     (:func:`leave_node`), or looked at again with lower prices. FINISHED proves that no group pays but in nodes left.
     """
     n_robots, position = len(prices.robot), stack.position
-    work = (np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64), np.empty(n_robots, dtype=np.int64))
+    work = _work(n_robots, len(links.robot))
     sides = np.zeros((len(flows.share), n_robots), dtype=np.bool_)
     tangents = (np.zeros(n_robots), np.zeros(n_robots), np.zeros(n_robots), np.arange(n_robots))
     if position[0] < 0 and position[1] == 0:
