@@ -197,11 +197,11 @@ let lower_proof value =
       match fields "lower proof" [ "kind"; "tree" ] value with
       | [ _; tree ] -> AttackTree (consume "lower" (array "lower tree" tree) (fun next -> attack_node next 0 0))
       | _ -> assert false)
-  | Some (String ("group_prices" | "group_covers" | "group_sizes" as kind)) ->
+  | Some (String ("group_prices" | "group_covers" | "all_groups" | "group_sizes" as kind)) ->
       format "lower proof" (Printf.sprintf "of kind %s is decided by ratt-opt verify alone" kind)
   | _ ->
       if fields "lower proof" [ "kind" ] value <> [ String "enumerated" ] then
-        raise (Fault "lower proof: the kind must be attack_tree, forced_size, group_prices, group_covers, group_sizes or enumerated");
+        raise (Fault "lower proof: the kind must be attack_tree, forced_size, group_prices, group_covers, all_groups, group_sizes or enumerated");
       NoLower
 
 let attack value =

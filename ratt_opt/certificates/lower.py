@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.attack_tree import AttackTree
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
+from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
@@ -54,9 +55,9 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 
     Returns
     -------
-    A ``forced_size`` proof where the complete graph allows one, or ``group_sizes`` where a larger team has most links,
-    else an ``attack_tree``, a ``forced_size`` proof by trees of links, ``group_prices``, ``group_sizes`` or
-    ``group_covers``, else ``ENUMERATED``.
+    A ``forced_size`` proof where the complete graph allows one; for larger teams, ``group_sizes`` where they have most
+    links, and ``all_groups``; else an ``attack_tree``, a ``forced_size`` proof by trees of links, ``group_prices``,
+    ``all_groups`` or ``group_sizes`` for smaller teams, or ``group_covers``, else ``ENUMERATED``.
     """
 
     def sets() -> PlanSets:
@@ -82,13 +83,17 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
     def by_scores() -> dict[str, Any]:
         return group_size_proof(sets(), max_nodes)
 
+    def by_groups() -> dict[str, Any]:
+        return all_groups_proof(sets(), max_nodes)
+
     ways: list[Callable[[], dict[str, Any]]] = [by_cases, by_trees, by_prices]
     if problem.communication.is_complete:
         ways = [by_size, *ways]
-    elif _is_dense(problem) and problem.n_robots > TREES_FIRST:
-        ways = [by_scores, *ways, by_covers]
+    elif problem.n_robots > TREES_FIRST:
+        first = [by_scores, by_groups] if _is_dense(problem) else [by_groups, by_scores]
+        ways = [*first, *ways, by_covers]
     else:
-        ways = [*ways, by_scores, by_covers]
+        ways = [*ways, by_groups, by_scores, by_covers]
     for way in ways:
         try:
             with limited(seconds_left() * (1.0 if way is ways[-1] else SHARE_OF_OTHERS)):
@@ -101,12 +106,12 @@ def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_n
 def weaker_lower_proof(
     problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE
 ) -> tuple[float, Any]:
-    """A threshold that is lower by one of ``LOWERED``, with its proof by sizes of groups where most links are there, or
-    by covers of groups.
+    """A threshold that is lower by one of ``LOWERED``, with its proof by sizes of groups where most links are there, by
+    all groups, or by covers of groups.
 
     Parameters are those of :func:`lower_proof`; where none is proved, the threshold itself comes with ``ENUMERATED``.
     """
-    ways = (group_size_proof, group_cover_proof) if _is_dense(problem) else (group_cover_proof,)
+    ways = [*([group_size_proof] if _is_dense(problem) else []), all_groups_proof, group_cover_proof]
     for share, way in product(LOWERED, ways) if not problem.communication.is_complete else ():
         lower = threshold * (1 - share)
         try:

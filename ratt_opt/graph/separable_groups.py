@@ -50,6 +50,15 @@ class SeparableGroups:
         mask = int(self.masks[group])
         return np.sort(self.robots[[p for p in range(len(self.robots)) if mask >> p & 1]])
 
+    def by_robots(self) -> IntArray:
+        """(G,) the groups by bit mask over robots instead of places."""
+        return np.asarray(sum((self.masks >> place & 1) << int(i) for place, i in enumerate(self.robots)))
+
+    def links(self) -> IntArray:
+        """(G,) links that separate each from the other robots."""
+        outside = [np.bitwise_count(near & ~self.masks).astype(np.int64) for near in self.neighbours]
+        return np.asarray(sum((self.masks >> place & 1) * lost for place, lost in enumerate(outside)))
+
 
 def separable_groups(threat: Threat, most: int, budget: Budget | None = None) -> SeparableGroups | None:
     """Tabulate the separable groups; ``None`` where there are more than ``most``, or more robots than a mask holds.
@@ -66,8 +75,8 @@ def separable_groups(threat: Threat, most: int, budget: Budget | None = None) ->
     return None if masks is None else SeparableGroups(threat, *listing.placed(masks))
 
 
-LONGEST_LIST = 300_000
-"""Groups listed at most: some megabytes."""
+LONGEST_LIST = 1_000_000
+"""Groups listed at most: eight megabytes."""
 STEPS = 20_000
 """Of the enumeration between two looks at the clock: some hundredths of a second."""
 

@@ -14,7 +14,6 @@ from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, rat
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_prices import group_price_proof
-from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.statement import Statement
@@ -159,7 +158,7 @@ def large():
     """A disk graph of 21 robots, a third blinded and 30 % of the links cut: no attack tree closes."""
     problem, plan = network("disk-6", 21, (1 / 3, 0.3), 1)
     found = worst_case_attack(problem, plan)
-    return problem, plan, found, lower_proof(problem, plan, found.lower * (1 - 1e-9))
+    return problem, plan, found, proof(problem, plan, found.lower * (1 - 1e-9))
 
 
 def test_beyond_attack_trees(large):

@@ -23,6 +23,7 @@ from ratt_opt import (
     verify_certificate,
 )
 from ratt_opt.certificates.forced_by_trees import forced_size_proof
+from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
@@ -64,6 +65,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     sets = PlanSets(problem, plan, lower * (1 - 1e-13))
     made["group_prices"] = made["trace, path"] | {"lower": group_price_proof(sets, 1000)}
     made["group_covers"] = made["trace, path"] | {"lower": group_cover_proof(sets, 1000)}
+    made["all_groups"] = made["trace, path"] | {"lower": all_groups_proof(sets, 1000)}
     low = made["trace, path"]["claim"] | {"lower": 0.0}
     sized = forced_size_proof(PlanSets(problem, plan, 0.0), 1000)
     made["trees"] = made["trace, path"] | {"claim": low, "lower": sized}
@@ -75,7 +77,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_every_kind_is_covered(documents: dict[str, Any], schema: jsonschema.Draft202012Validator) -> None:
     assert {document["lower"]["kind"] for document in documents.values()} == {
-        "forced_size", "attack_tree", "group_prices", "group_covers", "group_sizes", "enumerated",
+        "forced_size", "attack_tree", "group_prices", "group_covers", "all_groups", "group_sizes", "enumerated",
     }  # fmt: skip
     assert any("attack" in node for document in documents.values() for node in document["upper"]["tree"])
     for document in documents.values():

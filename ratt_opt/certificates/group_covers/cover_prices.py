@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt.certificates.plan_sets import NotClosedError
+from ratt_opt.certificates.verifier.lower_end.group_costs import robots_of
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ HALF_LINK = 2**22
 LOWERED = 1e-5
 """Links by which each robot is cheaper than the program says: more than its tolerance and what rounding takes off."""
 
+USED = 1e-7
+"""Part of a group in a solution that is more than the program's tolerance."""
+
 NEW_TRIPLES, VIOLATED = 20, 1e-3
 """Triples added at a time, and by how much each must be violated."""
 
@@ -46,6 +50,17 @@ class CoverPrices:
     triple: IntArray
     penalty: IntArray
     slack: int
+
+    def record(self) -> dict[str, Any]:
+        """As the verifier reads them."""
+        triples = [(int(t), int(p)) for t, p in zip(self.triple, self.penalty, strict=True) if p]
+        return {
+            "half_link": HALF_LINK,
+            "robots": self.robot.tolist(),
+            "blinded": self.blinded,
+            "group": self.group,
+            "triples": [{"robots": list(robots_of(t)), "half_penalty": p // 2} for t, p in triples],
+        }
 
 
 class CoverProgram:
@@ -118,13 +133,23 @@ class CoverProgram:
         if groups:
             program.add_rows(rows_of(entries, -np.inf, [0.5 * self.links(group) for group in groups]))
 
+    def support(self) -> list[int]:
+        """Groups of the last solution, a partition of the team into fractions of groups."""
+        used = np.abs(self._solution[1]) > USED
+        return [group for group, is_used in zip(self._groups, used, strict=True) if is_used]
+
+    def renew(self) -> None:
+        """Ask again what the groups need, and forget those that no attack may leave."""
+        most = self._threat.n_blinded
+        self._groups = {group: None for group in self._groups if self._weak.need(group) <= most}
+        self._program = None
+
     def add_triples(self) -> bool:
         """Add triples of which the last solution's groups hold two too often, and drop those without a penalty."""
         x, duals = self._solution
-        used = np.flatnonzero(np.abs(duals) > 1e-7)
-        groups = np.array(list(self._groups), dtype=np.int64)[used]
+        groups = np.array(self.support(), dtype=np.int64)
         member = groups[:, None] >> np.arange(len(self._near)) & 1
-        held = np.abs(duals[used]) @ (member[:, self._corners].sum(axis=2) >= 2) - 1.0
+        held = np.abs(duals[np.abs(duals) > USED]) @ (member[:, self._corners].sum(axis=2) >= 2) - 1.0
         worst = [k for k in np.argsort(-held, kind="stable")[:NEW_TRIPLES].tolist() if held[k] > VIOLATED]
         new = [sum(1 << int(i) for i in self._corners[k]) for k in worst]
         paid = x[len(self._near) + 2 :]

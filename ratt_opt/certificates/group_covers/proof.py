@@ -14,10 +14,8 @@ from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
+from ratt_opt.certificates.group_covers.covers import refute_covers
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
-from ratt_opt.certificates.threatened import Team
-from ratt_opt.certificates.verifier.lower_end.group_costs import Group, Groups
-from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
 
 if TYPE_CHECKING:
@@ -30,8 +28,8 @@ __all__ = ["LARGEST_TEAM", "group_cover_proof"]
 LARGEST_TEAM = 60
 """Robots: a group is a mask of 64 bits."""
 
-WORK, STEPS = 1_500_000_000, 60_000
-"""Most cases of all trees, times robots and arcs (about a minute), and most steps of a search of partitions."""
+WORK = 1_500_000_000
+"""Most cases of all trees, times robots and arcs: about a minute."""
 
 LISTED, PAYING = 50_000, 300
 """Most groups that are listed, and that are added to the program at a time."""
@@ -96,17 +94,8 @@ class _CoverProof:
         n_nodes, n_groups = found.count[:2].tolist()
         tree = found.tree[:n_nodes].tolist()
         flows = self._used_flows(tree, found.flows, n_sets)
-        triples = [(int(t), int(p)) for t, p in zip(prices.triple, prices.penalty, strict=True) if p]
-        record = {
-            "kind": "group_covers",
-            "half_link": HALF_LINK,
-            "robots": prices.robot.tolist(),
-            "blinded": prices.blinded,
-            "group": prices.group,
-            "triples": [{"robots": _members(t), "half_penalty": p // 2} for t, p in triples],
-            "flows": flows,
-        }
-        self._refute_covers(record, found.group[:n_groups].tolist())
+        record = {"kind": "group_covers", **prices.record(), "flows": flows}
+        refute_covers(self.threat, self.weak, record, found.group[:n_groups].tolist())
         added = len(self.weak.robots) - n_sets
         tree = [node - (FLOW - node) // n_sets * added if node <= FLOW else node for node in tree]
         return record | {"sets": self.weak.records(self.sets, self.max_nodes), "tree": tree}
@@ -163,25 +152,6 @@ class _CoverProof:
             raise NotClosedError
         return found
 
-    def _refute_covers(self, record: dict[str, Any], masks: list[int]) -> None:
-        """Add sets until no partition into the groups is within the budgets.
-
-        Raises
-        ------
-        NotClosedError : one is.
-        """
-        cover: list[Group] | None = []
-        while cover is not None:
-            groups = Groups(Team.of(self.threat), *(record[name] for name in ("half_link", "robots", "blinded")))
-            groups.sets = list(zip(self.weak.robots, self.weak.room, strict=True))
-            groups.add(record["group"], record["triples"])
-            groups.flows = [groups.carried(flow) for flow in record["flows"]]
-            listed = [group for mask in masks if (group := groups.group_of(mask)) and group.cost <= groups.limit]
-            cover = Partitions(listed, groups).first(STEPS)
-            raised = [self.weak.raise_need(group.robots) for group in cover or ()]
-            if cover is not None and not any(raised):
-                raise NotClosedError
-
     def _used_flows(self, tree: list[int], flows: Any, n_sets: int) -> list[list[int]]:
         """The flows that close leaves, which are numbered anew in place."""
         from ratt_opt.certificates.group_covers.group_tree import FLOW
@@ -195,7 +165,3 @@ class _CoverProof:
         arcs = {arc: a for a, arc in enumerate(sorted([*ends, *((j, i) for i, j in ends)]))}
         own = [arcs[link] for link in ends]
         return [flows[flow][own].tolist() for flow in place]
-
-
-def _members(mask: int) -> list[int]:
-    return [i for i in range(mask.bit_length()) if mask >> i & 1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt.certificates.verifier.lower_end.all_groups import check_all_groups
 from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced, is_forced_by_trees
 from ratt_opt.certificates.verifier.lower_end.group_covers import check_group_covers
 from ratt_opt.certificates.verifier.lower_end.group_prices import check_group_prices
@@ -13,13 +14,21 @@ from ratt_opt.certificates.verifier.lower_end.worth import Worth
 from ratt_opt.certificates.verifier.reading import fields, index, need, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from flint import fmpq
 
     from ratt_opt.certificates.verifier.statement import Statement
 
 __all__ = ["LowerCheck"]
+
+BY_GROUPS: dict[str, Callable[[Statement, Any, Worth], int]] = {
+    "group_prices": check_group_prices,
+    "group_covers": check_group_covers,
+    "all_groups": check_all_groups,
+    "group_sizes": check_group_sizes,
+}
+"""Proofs by what the groups of an attack cost or score."""
 
 
 class LowerCheck:
@@ -38,14 +47,10 @@ class LowerCheck:
             return self._check_forced_size(part, Worth(self.about, lower))
         if kind == "attack_tree":
             return self._check_attack_tree(fields("lower proof", part, "kind tree")[1], Worth(self.about, lower))
-        if kind == "group_prices":
-            return check_group_prices(self.about, part, Worth(self.about, lower))
-        if kind == "group_covers":
-            return check_group_covers(self.about, part, Worth(self.about, lower))
-        if kind == "group_sizes":
-            return check_group_sizes(self.about, part, Worth(self.about, lower))
+        if isinstance(kind, str) and kind in BY_GROUPS:
+            return BY_GROUPS[kind](self.about, part, Worth(self.about, lower))
         fields("lower proof", part, "kind")
-        kinds = "attack_tree, forced_size, group_prices, group_covers, group_sizes or enumerated"
+        kinds = f"attack_tree, forced_size, {', '.join(BY_GROUPS)} or enumerated"
         need(kind == "enumerated", f"lower proof: the kind must be {kinds}")
         return 0
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.lower_end.worth import Worth
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["check_group_covers"]
+__all__ = ["check_group_covers", "priced_groups"]
 
 
 def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
@@ -48,14 +48,7 @@ def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
     """
     names = "kind half_link robots blinded group sets triples flows tree"
     _, half, robots, blinded, group, sets, triples, flows, tree = fields("lower proof", part, names)
-    groups, leaves = Groups(about, half, robots, blinded), 0
-    for given in array("sets", sets):
-        members, room, proof = fields("set", given, "robots room tree")
-        inside, most = indices("set robots", members, about.n), index("set room", room, about.n)
-        others = frozenset(range(about.n)).difference(inside)
-        leaves += check_size_tree(about.n, most + 1, proof, worth, others)
-        groups.sets.append((mask_of(inside), most))
-    groups.add(group, triples)
+    groups, leaves = priced_groups(about, worth, half, robots, blinded, group, sets, triples)
     groups.flows = [groups.carried(flow) for flow in array("flows", flows)]
     listed: list[Group] = []
 
@@ -83,3 +76,20 @@ def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
     cover = Partitions(listed, groups).first()
     need(cover is None, "lower proof: groups within the budgets cover the team")
     return leaves
+
+
+def priced_groups(about: Statement, worth: Worth, *prices: Any) -> tuple[Groups, int]:
+    """Groups at prices of half a link, robots, a blinded robot and a group, with sets and triples, after checking them.
+
+    Returns the leaves of the sets' trees, too.
+    """
+    half, robots, blinded, group, sets, triples = prices
+    groups, leaves = Groups(about, half, robots, blinded), 0
+    for given in array("sets", sets):
+        members, room, proof = fields("set", given, "robots room tree")
+        inside, most = indices("set robots", members, about.n), index("set room", room, about.n)
+        others = frozenset(range(about.n)).difference(inside)
+        leaves += check_size_tree(about.n, most + 1, proof, worth, others)
+        groups.sets.append((mask_of(inside), most))
+    groups.add(group, triples)
+    return groups, leaves
