@@ -88,14 +88,7 @@ def annealed_from(  # noqa: PLR0917
     hot = cooling.hot * max(team.value(group) for group in groups)
     for done in range(0, cooling.moves, CHUNK):
         falling = hot, COLD / cooling.hot, done / cooling.moves, 1 / cooling.moves
-        _anneal(
-            criterion,
-            (home, must),
-            limits,
-            falling,
-            (best, value),
-            rng,
-        )
+        _anneal(criterion, (home, must), limits, falling, (best, value), rng)
         if budget.is_over:
             break
     return tuple(frozenset(np.flatnonzero(best == g).tolist()) for g in range(1, int(best.max()) + 1) if g in best)

@@ -50,7 +50,7 @@ Where there are more, some make attacks, and the bound is that of the forced siz
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LARGEST_SHARE, PRICED_SHARE, LATER_SHARE, ALIKE = 0.25, 0.7, 0.6, 0.8
+LARGEST_SHARE, PRICED_SHARE, LATER_SHARE, ALIKE = 0.25, 0.6, 0.6, 0.8
 """Of the time left, for a first search by the largest group, then for prices of families, then for attacks by prices;
 and the value of the second best group of an attack, over the best, from which prices are asked: below, it is the
 largest group that decides."""

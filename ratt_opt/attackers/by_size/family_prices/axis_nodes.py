@@ -17,6 +17,8 @@ __all__ = ["INSIDE", "OPEN", "OUTSIDE", "SHORTEST", "AxisNodes", "divide_by", "h
 OPEN, INSIDE, OUTSIDE = 0, 1, 2
 FIRST_ARCS, SHORTEST = 8, 1e-6
 """Arcs at the root, and the half-width below which arcs are not divided."""
+VALUE_ROUNDING = 1e-15
+"""By how much a value may be off, relative to the criterion before any measurement."""
 
 
 class AxisNodes(NamedTuple):
@@ -44,7 +46,8 @@ class AxisNodes(NamedTuple):
         """The root of a view of one target: every robot open, arcs around the circle."""
         n_robots = len(view.information)
         depth = FIRST_ARCS + size + int(np.log2(np.pi / SHORTEST)) + 4
-        room, linear = view.baseline - threshold, _harmonics(view.information[:, 0])
+        room = view.baseline - threshold - VALUE_ROUNDING * abs(view.baseline)
+        linear = _harmonics(view.information[:, 0])
         prior = _harmonics(view.prior[0])
         everything = 2 * float(prior[0] + linear[:, 0].sum())  # no set is as high: every set is weak
         cap = min(float(view.weights[0]) / room, everything) if room > 0 else everything

@@ -26,15 +26,13 @@ if TYPE_CHECKING:
 
 __all__ = ["FamilyDive"]
 
-ROUNDS, QUICK_ROUNDS, SPARE = 40, 10, 0.02
-"""Times that annealed, or searched, sets are added before a choice, at most; and the share of the links to keep that a
-relaxed attack has to spare by then: more sets would hardly change it."""
+ROUNDS, SPARE = 10, 0.02
+"""Times that sets are added before a choice, at most, and the share of the links to keep that a relaxed attack has to
+spare by then: more sets would hardly change it."""
 RISE, RISES = 0.01, 5
 """By how much the threshold rises where there is no relaxed attack, and how often before the rest is one group."""
-PAID, PULLED = 1e-3, 0.5
-"""Links that a set has to pay to be added, and share of a claim that prices keep meanwhile, as for thresholds."""
-NODES, MOVES, LONGER, MOST_MOVES = 5_000, 3_000, 2, 12_000
-"""Of searches for sets of a size, and of annealing around each robot: at first, their growth, and at most."""
+PAID, NODES = 1e-3, 5_000
+"""What a robot costs less when sets are asked for that pay, in links, and nodes of a search for sets of a size."""
 SEED = 0
 
 
@@ -96,19 +94,15 @@ class FamilyDive:
 
     def _converge(self, program: FamilyProgram, threshold: float, budget: Budget) -> bool:
         """Add sets that pay until a relaxed attack keeps links enough (true) or none are found."""
-        moves, has_attack = MOVES, False
-        for _ in range(QUICK_ROUNDS if self._finder.is_quick else ROUNDS):
+        has_attack = False
+        for _ in range(ROUNDS):
             budget.check()
             prices = program.solve(threshold, budget.seconds_left)
             if prices is None or program.n_seeing <= 0:
                 return False
             has_attack = prices.claim <= 0
-            if prices.claim <= -SPARE * program.kept:
+            if prices.claim <= -SPARE * program.kept or not self._add(program, threshold, prices, budget):
                 break
-            if not self._add(program, threshold, prices, moves, budget):
-                moves *= LONGER
-                if self._finder.is_quick or moves > MOST_MOVES:
-                    break
         return has_attack
 
     def _last(self, program: FamilyProgram) -> Choice | None:
@@ -122,14 +116,10 @@ class FamilyDive:
                 return choice
         return None
 
-    def _add(self, program: FamilyProgram, threshold: float, prices: FamilyPrices, moves: int, budget: Budget) -> int:
+    def _add(self, program: FamilyProgram, threshold: float, prices: FamilyPrices, budget: Budget) -> int:
         """Add sets that pay to the program: how many are new."""
-        if self._finder.is_quick:
-            asked = prices.lowered(prices.claim - PAID * prices.n_seeing)
-            found = self._finder.searched(threshold, asked, NODES, budget).found
-        else:
-            asked = prices.lowered(min(prices.claim, PULLED * prices.claim))
-            found = self._finder.annealed(threshold, asked, PAID, moves, budget)
+        asked = prices.lowered(prices.claim - PAID * prices.n_seeing)
+        found = self._finder.searched(threshold, asked, NODES, budget).found
         return sum(program.add(members, self._learn(members)) for members in found)
 
     def _learn(self, members: BoolArray) -> float:

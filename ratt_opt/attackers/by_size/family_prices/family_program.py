@@ -29,22 +29,20 @@ if TYPE_CHECKING:
 __all__ = ["Choice", "FamilyPrices", "FamilyProgram"]
 
 
-TAKEN = 1e4
+TAKEN = 1e6
 """What a set pays less for a robot that has a group: more than any set may pay."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FamilyPrices:
     """``robots`` (N,) : w; ``limits`` (N + 1,) : what a weak set of each size must not exceed; ``claim`` [links] : by
-    how much the smallest prices exceed what the groups of an attack then pay: above 0, there is none; ``free`` (N,) :
-    robots that have no group yet.
+    how much the smallest prices exceed what the groups of an attack then pay: above 0, there is none.
     """
 
     robots: FloatArray
     limits: FloatArray
     claim: float
     n_seeing: int
-    free: BoolArray
 
     def lowered(self, claim: float) -> FamilyPrices:
         """Every robot cheaper, so that less is claimed."""
@@ -122,7 +120,7 @@ class FamilyProgram:
         if self.may_have_blinded:
             limits = np.minimum(limits, bonus + limits - link * self._n_blinded * sizes)
         claim = float(np.sort(robots[self.free])[: self.n_seeing].sum()) + link * self.kept - bonus
-        return FamilyPrices(robots=robots, limits=limits, claim=claim, n_seeing=self.n_seeing, free=self.free)
+        return FamilyPrices(robots=robots, limits=limits, claim=claim, n_seeing=self.n_seeing)
 
     def shares(self, threshold: float, seconds: float = np.inf) -> list[tuple[float, Choice]]:
         """How much of each group has the relaxed attack, of known sets worth less, that keeps most links.

@@ -37,13 +37,10 @@ class SetFinder:
     ) -> list[BoolArray]:
         """Sets that pay more than ``least``, annealed around each robot; some may be the same."""
         found: list[BoolArray] = []
-        robots, links = prices.robots[prices.free], -prices.limits
+        links = -prices.limits
         for view in self._views:
-            part = view._replace(information=view.information[prices.free])
-            for members, paid in annealed_sets(part, threshold, robots, links, moves, self._rng, budget):
-                if paid > least:
-                    found.append(np.zeros_like(prices.free))
-                    found[-1][prices.free] = members
+            sets = annealed_sets(view, threshold, prices.robots, links, moves, self._rng, budget)
+            found.extend(members for members, paid in sets if paid > least)
         return found
 
     def searched(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
