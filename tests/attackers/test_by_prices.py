@@ -17,7 +17,7 @@ from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SE
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
+from ratt_opt.attackers.by_prices.paying_groups import FORM_NODES, PayingSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
@@ -316,8 +316,39 @@ def paying_search(team, links, threat, forms_at=None):
     return PayingSearch(team, links, fitted_forms(threat, forms_at))
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_long_search_is_made_both_ways_and_the_shorter_one_is_kept(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    problem, plan = team_problem(6 * seed + 1, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
+    threshold, robot, blinded = 0.7 * problem.objective(plan), rng.uniform(0, 2, 6), rng.uniform(0.5, 2)
+    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    while least_cost(problem, plan, threshold, (robot, blinded)) < 1e-3:
+        robot *= 0.6
+    at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1), ConvexForms(threat).known)
+    question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
+    spent = []
+    for forms in (ConvexForms(threat), fitted_forms(threat, robot)):
+        budget = Budget()
+        assert PayingSearch(team, links, forms).find(at, question, budget, nodes=10**6, room=1).is_complete
+        spent.append(budget.nodes)
+    monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0)
+    search, budget = paying_search(team, links, threat, forms_at=robot), Budget()
+    for once_more in range(2):
+        found = search.find(at, question, budget, nodes=10**6, room=1)
+        assert found.is_complete
+        assert not found.groups
+        monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", np.inf)
+        before, budget = budget.nodes, Budget()
+        if once_more:
+            assert before == spent[bool(spent[0] > FORM_NODES * spent[1])]
+
+
 @pytest.mark.parametrize("seed", range(24))
-def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed):
+def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed, monkeypatch):
+    monkeypatch.setattr(
+        "ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0 if seed % 3 == 0 else 4
+    )  # 0: always both ways
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
@@ -342,8 +373,11 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
 
 
 @pytest.mark.parametrize("seed", range(24))
-def test_prices_fall_for_groups_that_pay_until_none_does(seed):
+def test_prices_fall_for_groups_that_pay_until_none_does(seed, monkeypatch):
     """What is closed at higher prices stays closed: one search proves what the prices left at its end claim."""
+    monkeypatch.setattr(
+        "ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0 if seed % 3 == 0 else 4
+    )  # 0: always both ways
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -37,7 +37,7 @@ FORM_NODES, AGAIN = 2, 4
 """Nodes without forms that one with forms counts for: 1.3 to 3 at 30 to 100 robots; and how many times as long as the
 last search made both ways another must be to be made both ways."""
 
-FIRST_CHUNK, GLANCE = 500, 0.05
+FIRST_CHUNK, GLANCE = 50, 0.05
 """Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
 
 SURCHARGE = 0.25
@@ -65,8 +65,8 @@ class PayingSearch:
     team: PricedTeam
     links: Links
     forms: ConvexForms
-    _with_forms: bool = True
-    _compared: float = FITTED
+    _with_forms: bool = field(default=True, init=False)
+    _compared: int = field(default=FITTED, init=False)
 
     def find(
         self,
