@@ -8,21 +8,27 @@ fails with an error of its own. So it is raised again as soon as the callback ha
 An interrupt while compiled loops run came when the arrays that they return are made, for each of which Python was asked
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
 here, so that nobody is asked and the interrupt comes once the loop has returned.
+
+Numba lists what it knows of types when it first compiles. An interrupt there lost the rest of a list, and later loops
+ended in ``TypingError``, so lists are made here, in less than half a second, and the interrupt comes after them.
 """
 
 from __future__ import annotations
 
 import signal
 import threading
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numba
 from numba.core import boxing, event, pythonapi, types
 from numba.core.caching import CompileResultCacheImpl
+from numba.core.registry import cpu_target
 
 from ratt_opt._kept_code import SourcesLocator
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from types import FrameType
 
 __all__ = ["numba"]
@@ -85,6 +91,26 @@ def _array_of_constant_class(kind: Any, value: Any, context: Any) -> Any:
         del api.serialize_object, api.unserialize
 
 
+@contextmanager
+def _interrupts_afterwards() -> Iterator[None]:
+    """Interrupts of the main thread come at the end of the block."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield
+        return
+    met: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _frame: met.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        for number in met[:1]:
+            signal.raise_signal(number)
+
+
+with _interrupts_afterwards():
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()
 event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]
 pythonapi._boxers.functions[types.Array] = _array_of_constant_class
 CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

@@ -83,6 +83,35 @@ def test_one_in_compiled_loops_that_return_arrays_stays_an_interrupt():
     assert done.stdout == "answered\n", done.stderr
 
 
+LISTED = """
+import signal
+import numpy as np
+from numba.core.typing.context import BaseContext
+
+original, met = BaseContext.insert_attributes, []
+
+def interrupted(self, attributes):
+    met.append(attributes)
+    if len(met) == 2:  # some are listed, others are not
+        signal.raise_signal(signal.SIGINT)
+    return original(self, attributes)
+
+BaseContext.insert_attributes = interrupted
+try:
+    import ratt_opt.compiling
+    ratt_opt.compiling.numba.njit(lambda x: x.shape[0])(np.ones(2))
+except KeyboardInterrupt:
+    print("answered")
+from ratt_opt.compiling import numba
+print(numba.njit(lambda x: x.shape[0] + x.size)(np.ones((2, 3))))
+"""
+
+
+def test_one_while_types_are_listed_leaves_nothing_out():
+    done = subprocess.run([sys.executable, "-c", LISTED], capture_output=True, text=True, check=False)
+    assert done.stdout == "answered\n8\n", done.stderr
+
+
 def test_every_module_of_compiled_loops_takes_numba_from_there():
     direct = [path for path in SOURCES if re.search(r"^\s*(import numba|from numba)\b", path.read_text(), re.M)]
     assert [path.name for path in direct] == ["_kept_code.py", "compiling.py"]
