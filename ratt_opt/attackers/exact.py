@@ -67,10 +67,12 @@ def worst_case_attack(
       about equally good, prices of robots and links. Where there are too many vectors of sizes, it goes on with these
       and with annealed attacks until the time is up, and without a limit ends ``HEURISTIC`` where it did not close.
       Relies on a non-decreasing objective, which the three criteria are.
-    - Two-dimensional targets on other graphs that an attack can split in few ways, 16 to 60 robots: partitions into
-      groups and who is blinded in each (``by_partition``; a node is a group tried or a partial set), beyond 20 robots
-      and where half of all links are there for a fifth of the budget. Before, on a complete graph, the bounds of the
-      attacker that may cut protected links too (``unprotected_bound``). Relies on a non-decreasing objective, as above.
+    - Two-dimensional targets on other graphs that an attack can split into few groups (up to 300,000), 16 to 60
+      robots: partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a partial
+      set), beyond 20 robots and where half of all links are there for a fifth of the budget; where there are more
+      than 10,000 groups, annealed attacks, and prices that leave few of them (``by_covers``). Before, on a complete
+      graph, the bounds of the attacker that may cut protected links too (``unprotected_bound``). Relies on a
+      non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply or end: annealed attacks, tree
       inequalities (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``;
       where another search asks, on dense graphs and within a limit of time), and prices that no weak group pays

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import exact
+from ratt_opt.attackers import any_graph, exact
+from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.team import PricedTeam
@@ -46,16 +47,22 @@ def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) ->
     check(problem, plan, bracket, truth)
 
 
-@pytest.mark.parametrize(("groups", "kind"), [(300_000, SplitSearch), (0, PriceSearch)])
-def test_an_attack_in_pieces_proves_what_one_proves(groups: int, kind: type, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("groups", "few", "kind", "nodes"),
+    [(300_000, 300_000, SplitSearch, 5_000), (300_000, 0, CoverSearch, 5), (0, 0, PriceSearch, 5_000)],
+)
+def test_an_attack_in_pieces_proves_what_one_proves(
+    groups: int, few: int, kind: type, nodes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(exact, "MANY_GROUPS", groups)
+    monkeypatch.setattr(any_graph, "PARTITIONED", few)
     problem = ro.network_scenario("hubs", 24, 4, alpha_s=2, alpha_c=8, seed=1).problem()
     plan = ro.ratt(problem).elements
     whole, memory = ro.worst_case_attack(problem, plan), AttackMemory()
     assert whole.stop is ro.Stop.CLOSED
     parts = [ro.worst_case_attack(problem, plan, max_nodes=0, memory=memory)]
     while parts[-1].stop is ro.Stop.NODES:
-        parts.append(ro.worst_case_attack(problem, plan, max_nodes=5_000 * len(parts), memory=memory))
+        parts.append(ro.worst_case_attack(problem, plan, max_nodes=nodes * len(parts), memory=memory))
         assert parts[-2].lower <= parts[-1].lower <= whole.upper * (1 + 1e-9)
         assert whole.lower * (1 - 1e-9) <= parts[-1].upper <= parts[-2].upper
     assert parts[-1].stop is ro.Stop.CLOSED

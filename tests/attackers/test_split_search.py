@@ -1,4 +1,4 @@
-"""The exact attacker of larger teams on sparse graphs, run on teams small enough for the definition."""
+"""The exact attackers of larger teams whose groups can be listed, run on teams small enough for the definition."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_partition import split_search
+from ratt_opt.attackers.by_covers.cover_search import CoverSearch
+from ratt_opt.attackers.by_partition import settled_partitions
+from ratt_opt.attackers.by_partition.settled_partitions import SettledPartitions
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
@@ -39,7 +41,10 @@ def team_problem(seed, n_robots, *, density=None):
     return problem, random_elements(rng, problem)
 
 
-def run_split(problem, elements, max_nodes=None):
+SEARCHES = [SplitSearch, CoverSearch]
+
+
+def run_split(problem, elements, max_nodes=None, search=SplitSearch):
     """The search itself, whatever ``worst_case_attack`` would choose for this team."""
     values = PlanValues(problem, elements)
     first = bounded_rational_attack(problem, elements)
@@ -47,7 +52,7 @@ def run_split(problem, elements, max_nodes=None):
     team = PlanarTeam.of(problem.objective, values.plan)
     groups = separable_groups(problem.threat, 100_000)
     try:
-        stop = SplitSearch(AttackTask(problem, values, bracket, budget), team, groups).run()
+        stop = search(AttackTask(problem, values, bracket, budget), team, groups).run()
     except OutOfBudget as out:
         stop = out.stop
     return bracket, budget.nodes, stop
@@ -61,38 +66,41 @@ def check(problem, elements, bracket, stop, expected):
     assert problem.team_value(elements, bracket.attack) == bracket.upper
 
 
+@pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize("seed", range(120))
-def test_value_is_the_definition_s(seed):
+def test_value_is_the_definition_s(seed, search):
     problem, elements = team_problem(seed, 1 + seed % 5)
-    bracket, _, stop = run_split(problem, elements)
+    bracket, _, stop = run_split(problem, elements, search=search)
     check(problem, elements, bracket, stop, brute_force_worst_case(problem, elements))
 
 
+@pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize(
     ("seed", "plain"), [*((seed, 300_000) for seed in range(45)), *((seed, 0) for seed in range(9))]
 )
-def test_agrees_with_the_threshold_search(seed, plain, monkeypatch):
+def test_agrees_with_the_threshold_search(seed, plain, search, monkeypatch):
     """Nine and ten robots: subsets found by plain enumeration, then all by branch and bound."""
-    monkeypatch.setattr(split_search, "PLAIN_NODES", plain)
+    monkeypatch.setattr(settled_partitions, "PLAIN_NODES", plain)
     if not plain:
         monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
         monkeypatch.setattr(branch_and_bound, "SHORTEST_ENUMERATION", 1)
         monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
-    bracket, _, stop = run_split(problem, elements)
+    bracket, _, stop = run_split(problem, elements, search=search)
     check(problem, elements, bracket, stop, ro.worst_case_attack(problem, elements).upper)
 
 
+@pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize("seed", range(4))
-def test_the_bracket_is_valid_at_every_node_count(seed, monkeypatch):
-    monkeypatch.setattr(split_search, "PLAIN_NODES", 20)
+def test_the_bracket_is_valid_at_every_node_count(seed, search, monkeypatch):
+    monkeypatch.setattr(settled_partitions, "PLAIN_NODES", 20)
     problem, elements = team_problem(seed, 7, density=0.4)
     problem = ro.Problem(problem.objective, problem.robot, problem.graph, 2, min(5, len(problem.communication.links)))
     expected = ro.worst_case_attack(problem, elements).upper
-    _, nodes, _ = run_split(problem, elements)
+    _, nodes, _ = run_split(problem, elements, search=search)
     previous = 0.0
     for limit in [*range(min(nodes, 120)), nodes, nodes + 1]:
-        bracket, used, stop = run_split(problem, elements, limit)
+        bracket, used, stop = run_split(problem, elements, limit, search)
         assert used <= limit
         assert previous <= bracket.lower <= expected * (1 + 1e-12) + 1e-12
         assert bracket.upper >= expected * (1 - 2e-10)
@@ -148,7 +156,7 @@ def test_an_interrupt_returns_the_bracket_reached(batches, monkeypatch):
     problem = ro.Problem(ro.TraceObjective(*range_bearing(rng, 24, 4, 1)), np.arange(24), disk_graph(2, 24, 5), 4, 9)
     expected = ro.worst_case_attack(problem, np.arange(24))
     left = [batches]
-    settle = SplitSearch._settle
+    settle = SettledPartitions._settle
 
     def interrupted(*arguments):
         left[0] -= 1
@@ -156,7 +164,7 @@ def test_an_interrupt_returns_the_bracket_reached(batches, monkeypatch):
             raise KeyboardInterrupt
         return settle(*arguments)
 
-    monkeypatch.setattr(SplitSearch, "_settle", interrupted)
+    monkeypatch.setattr(SettledPartitions, "_settle", interrupted)
     result = ro.worst_case_attack(problem, np.arange(24))
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)

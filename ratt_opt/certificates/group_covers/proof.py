@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.attackers.by_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.certificates.group_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
-from ratt_opt.certificates.group_covers.covers import refute_covers
+from ratt_opt.certificates.group_covers.covers import price_record, refute_covers, set_records
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
 
 if TYPE_CHECKING:
+    from ratt_opt.attackers.by_covers.weak_sets import WeakSets
     from ratt_opt.certificates.group_covers.group_tree import Found
-    from ratt_opt.certificates.group_covers.weak_sets import WeakSets
     from ratt_opt.certificates.plan_sets import PlanSets
 
 __all__ = ["LARGEST_TEAM", "group_cover_proof"]
@@ -58,14 +58,17 @@ def group_cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     team = PricedTeam.of(sets.problem.objective, sets.elements)
     if team is None or sets.problem.n_robots > LARGEST_TEAM:
         raise NotClosedError
-    return _CoverProof(sets, team, max_nodes).run()
+    try:
+        return _CoverProof(sets, team, max_nodes).run()
+    except OutOfBudget:
+        raise NotClosedError from None
 
 
 class _CoverProof:
     def __init__(self, sets: PlanSets, team: PricedTeam, max_nodes: int) -> None:
+        from ratt_opt.attackers.by_covers.weak_sets import WeakSets
         from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes  # compiles
         from ratt_opt.certificates.group_covers.case_bounds import Network
-        from ratt_opt.certificates.group_covers.weak_sets import WeakSets
 
         self.sets, self.team, self.max_nodes, self.work = sets, team, max_nodes, 0
         self.threat = threat = sets.problem.threat
@@ -73,11 +76,8 @@ class _CoverProof:
         self.network = Network.of(threat, self.links)
         seconds = seconds_left()
         sizes = WeakSizes(team, PlanarTeam.of(sets.problem.objective, sets.elements))
-        try:
-            largest = sizes.largest(sets.threshold, Budget(None if seconds == np.inf else seconds))
-        except OutOfBudget:
-            raise NotClosedError from None
-        self.weak: WeakSets = WeakSets(team, sets.threshold, largest)
+        largest = sizes.largest(sets.threshold, Budget(None if seconds == np.inf else seconds))
+        self.weak: WeakSets = WeakSets(team, sets.threshold, largest, tick)
         self.program = CoverProgram(threat, self.weak)
 
     def run(self) -> dict[str, Any]:
@@ -94,11 +94,11 @@ class _CoverProof:
         n_nodes, n_groups = found.count[:2].tolist()
         tree = found.tree[:n_nodes].tolist()
         flows = self._used_flows(tree, found.flows, n_sets)
-        record = {"kind": "group_covers", **prices.record(), "flows": flows}
+        record = {"kind": "group_covers", **price_record(prices), "flows": flows}
         refute_covers(self.threat, self.weak, record, found.group[:n_groups].tolist())
         added = len(self.weak.robots) - n_sets
         tree = [node - (FLOW - node) // n_sets * added if node <= FLOW else node for node in tree]
-        return record | {"sets": self.weak.records(self.sets, self.max_nodes), "tree": tree}
+        return record | {"sets": set_records(self.weak, self.sets, self.max_nodes), "tree": tree}
 
     def _anneal(self) -> None:
         """Groups that pay, by annealing, until they are hard to find; then the tree finds them."""

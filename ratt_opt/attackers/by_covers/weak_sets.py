@@ -6,18 +6,16 @@ number of them; a group that needs more than these say gets a set of its own, ma
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, weak_subset
-from ratt_opt.certificates.plan_sets import NotClosedError
-from ratt_opt.certificates.size_tree import size_tree
-from ratt_opt.certificates.verifier.work import tick
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt.attackers.by_prices.team import PricedTeam
-    from ratt_opt.certificates.plan_sets import PlanSets
 
 __all__ = ["WeakSets"]
 
@@ -31,15 +29,16 @@ class WeakSets:
     Parameters
     ----------
     largest : a size that no set of robots worth less than the threshold exceeds
+    check : raises where the time is up
     """
 
-    def __init__(self, team: PricedTeam, threshold: float, largest: int) -> None:
-        self._team, self._threshold = team, threshold
+    def __init__(self, team: PricedTeam, threshold: float, largest: int, check: Callable[[], None]) -> None:
+        self._team, self._threshold, self._check = team, threshold, check
         self._strongest = [int(i) for i in np.argsort(-team.single, kind="stable")]
         n_robots = len(self._strongest)
         self.robots, self.room = [(1 << n_robots) - 1], [largest]
         for size in range(n_robots - 1, 0, -1):
-            tick()
+            self._check()
             mask, room = sum(1 << i for i in self._strongest[:size]), min(self.room[-1], size)
             while room > 0 and not self._has_weak(mask, room):
                 room -= 1
@@ -62,11 +61,12 @@ class WeakSets:
         known, size = self.need(group), group.bit_count()
         room = size - known
         while room > 0 and not self._has_weak(group, room):
+            self._check()
             room -= 1
         if room == size - known:
             return False
         for i in self._strongest:
-            tick()
+            self._check()
             if not group >> i & 1 and not self._has_weak(group | 1 << i, room + 1, QUICK):
                 group |= 1 << i
         self.robots.append(group)
@@ -82,19 +82,3 @@ class WeakSets:
         )
         nobody, spared = np.zeros(n_robots, dtype=np.bool_), robots.bit_count() - size
         return bool(weak_subset(self._team, nobody, inside, spared, self._threshold, values, found) != ABSENT)
-
-    def records(self, sets: PlanSets, max_nodes: int) -> list[dict[str, Any]]:
-        """The sets with their proofs.
-
-        Raises
-        ------
-        NotClosedError : a tree is too large.
-        """
-        records: list[dict[str, Any]] = []
-        for mask, room in zip(self.robots, self.room, strict=True):
-            robots = [i for i in range(len(self._strongest)) if mask >> i & 1]
-            tree = size_tree(sets, room + 1, max_nodes, robots)
-            records.append({"robots": robots, "room": room, "tree": tree})
-            if sum(len(record["tree"]) for record in records) > max_nodes:
-                raise NotClosedError
-        return records

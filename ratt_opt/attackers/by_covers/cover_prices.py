@@ -1,6 +1,6 @@
 """Prices of robots, groups, blinded robots and triples that no group pays, by a linear program with growing rows.
 
-As ``attackers/by_prices/prices.py``, for what a group needs as the proof's sets say, with two kinds of columns more:
+As ``attackers/by_prices/prices.py``, for what a group needs as weak sets say, with two kinds of columns more:
 an attack leaves a number of groups at least, and of three robots one group at most holds two.
 
 Source: for the triples, Jepsen, Petersen, Spoorendonk and Pisinger, Operations Research 56 (2008).
@@ -10,19 +10,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.certificates.plan_sets import NotClosedError
-from ratt_opt.certificates.verifier.lower_end.group_costs import robots_of
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.highs import LinearProgram, rows_of
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.certificates.group_covers.weak_sets import WeakSets
+    from ratt_opt.attackers.by_covers.weak_sets import WeakSets
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["HALF_LINK", "CoverPrices", "CoverProgram"]
@@ -50,17 +50,6 @@ class CoverPrices:
     triple: IntArray
     penalty: IntArray
     slack: int
-
-    def record(self) -> dict[str, Any]:
-        """As the verifier reads them."""
-        triples = [(int(t), int(p)) for t, p in zip(self.triple, self.penalty, strict=True) if p]
-        return {
-            "half_link": HALF_LINK,
-            "robots": self.robot.tolist(),
-            "blinded": self.blinded,
-            "group": self.group,
-            "triples": [{"robots": list(robots_of(t)), "half_penalty": p // 2} for t, p in triples],
-        }
 
 
 class CoverProgram:
@@ -97,7 +86,7 @@ class CoverProgram:
 
         Raises
         ------
-        NotClosedError : they do not reach.
+        OutOfBudget : they do not reach.
         """
         n_robots, threat = len(self._near), self._threat
         if self._program is None:
@@ -105,7 +94,7 @@ class CoverProgram:
             self._append(self._program, list(self._groups))
         claim = self._program.solve(seconds)
         if not claim.is_optimal:
-            raise NotClosedError
+            raise OutOfBudget(Stop.TIME)
         self._solution, unit = (claim.x, claim.duals), 2 * HALF_LINK
         robot = np.floor((claim.x[:n_robots] - LOWERED) * unit).astype(np.int64)
         blinded, group = (max(int(x * unit), 0) for x in claim.x[n_robots : n_robots + 2])
