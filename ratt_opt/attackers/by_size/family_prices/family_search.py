@@ -78,8 +78,7 @@ class FamilySearch:
         """The first annealed attacks, in a share of the time left; their groups are known to the prices."""
         if self._task.bracket.is_closed:
             return
-        starts = 1 if self._finder.is_quick else ANNEALED_STARTS  # dives find better ones
-        for groups in islice(self._annealed(self._task.budget.part(ANNEALED_SHARE)), starts):
+        for groups in islice(self._annealed(self._task.budget.part(ANNEALED_SHARE)), ANNEALED_STARTS):
             self._known.extend(groups)
             self._offer(groups)
         self._task.budget.check()
