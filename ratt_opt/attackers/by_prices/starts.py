@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.annealing import Cooling, State, anneal
+from ratt_opt.attackers.by_prices.annealing import POWERS, Cooling, State, anneal
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -100,13 +100,11 @@ class Starts:
     def _anneal(self, group: IntArray, blind: BoolArray, hot: float, budget: Budget) -> Partition | None:
         scale, steps, least, partition = self._scale, self._moves * len(group), np.inf, None
         found, state = (group.copy(), blind.copy()), State.of(self._team, group, blind)
-        part = max(PART // len(self._team.prior), 1)
+        part, power = max(PART // len(self._team.prior), 1), POWERS[(max(self._count, 1) - 1) // 4 % len(POWERS)]
         for first in range(0, steps, part):
             budget.check()
             last = min(first + part, steps)
-            cooling = Cooling(
-                steps, hot * scale, COLD * scale, PRICE * scale, self._threat.alpha_c, first=first, last=last
-            )
+            cooling = Cooling(steps, hot * scale, COLD * scale, PRICE * scale, self._threat.alpha_c, first, last, power)
             value = float(anneal(self._team, self._links, state, cooling, found, least, self._rng))
             if value < least:
                 least, partition = value, Partition(group=found[0].copy(), blind=found[1].copy(), value=value)
