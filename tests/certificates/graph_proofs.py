@@ -1,0 +1,88 @@
+"""The kinds of proof of a worst case on a graph, the problems they are tried on, and what all of them must do."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+from flint import fmpq
+
+from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, ratt
+from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
+from ratt_opt.certificates.group_covers.proof import group_cover_proof
+from ratt_opt.certificates.group_prices import group_price_proof
+from ratt_opt.certificates.group_sizes.proof import group_size_proof
+from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
+from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.statement import Statement
+from ratt_opt.certificates.write import _prior_range, problem_document
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_problem
+
+CRITERIA = list(OBJECTIVES)
+PROVERS = {
+    "group_prices": (group_price_proof, 20_000),
+    "group_sizes": (group_size_proof, 50_000),
+    "group_covers": (group_cover_proof, 50_000),
+    "all_groups": (all_groups_proof, 50_000),
+}
+
+
+def proof(kind, problem, plan, threshold):
+    """The proof of a threshold, or ``None``."""
+    prove, nodes = PROVERS[kind]
+    try:
+        return prove(PlanSets(problem, np.asarray(plan), threshold), nodes)
+    except NotClosedError:
+        return None
+
+
+def checker(problem, plan):
+    record, plan = problem_document(problem), np.asarray(plan).tolist()
+    return LowerCheck(Statement(record, plan, _prior_range(problem, record, plan)))
+
+
+def exact(value):
+    return fmpq(*float(value).as_integer_ratio())
+
+
+def accepted_leaves(problem, plan, part, value):
+    """Leaves that the verifier looks at, where it accepts a proof of a value."""
+    return checker(problem, plan).check(part, exact(value))
+
+
+def refuse(problem, plan, part, value, text=None):
+    """The verifier refuses a proof of a value; ``text`` : a pattern of what it says."""
+    with pytest.raises((ProofError, FileFormatError), match=text):
+        checker(problem, plan).check(part, exact(value))
+
+
+def drawn(seed):
+    """A connected graph with things protected, a random plan, and the worst case by brute force."""
+    rng = np.random.default_rng([51, seed])
+    base = random_problem(rng, int(rng.integers(3, 8)), kind=CRITERIA[seed % 3], controls=2, complete=False)
+    n = base.n_robots
+    graph = nx.gnp_random_graph(n, 0.5, seed=seed)
+    graph.add_edges_from(zip(range(n - 1), range(1, n), strict=True))
+    links = sorted(tuple(sorted(link)) for link in graph.edges)
+    safe = {links[int(rng.integers(len(links)))]} if seed % 4 == 1 else set()
+    seeing = {int(rng.integers(n))} if seed % 4 == 2 else set()
+    alpha_s, alpha_c = int(rng.integers(0, n // 2 + 1)), int(rng.integers(1, min(len(links), 6) + 1))
+    problem = Problem(base.objective, base.robot, graph, alpha_s, alpha_c, seeing, safe)
+    plan = [int(rng.choice(own)) for own in problem.choices]
+    return problem, plan, brute_force_worst_case(problem, plan)
+
+
+def small_proofs(kind, seeds):
+    """Problem, plan, worst case, and the proof of a little less, or ``None``."""
+    for seed in seeds:
+        problem, plan, worst = drawn(seed)
+        if worst > 1e-3:
+            yield problem, plan, worst, proof(kind, problem, plan, worst * (1 - 1e-7))
+
+
+def network(family, n_robots, shares, seed, criterion="trace"):
+    """A drawn network's problem, and RATT's plan for it; ``shares`` : of robots blinded and links cut."""
+    scenario = network_scenario(family, n_robots, 8, alpha_s=shares[0], alpha_c=shares[1], seed=seed)
+    problem = scenario.problem(criterion)
+    return problem, ratt(problem).elements
