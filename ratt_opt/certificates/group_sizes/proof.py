@@ -46,7 +46,7 @@ def group_size_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     if n_robots > LARGEST_TEAM or n_blinded == n_robots:
         raise NotClosedError
     bounds = ScoreBounds(threat.graph, Team.of(threat), Budget(None if seconds == np.inf else seconds))
-    least = largest_groups(bounds.scores, n_blinded, n_robots)[0].seeing
+    least = largest_groups(bounds.scores, n_blinded, n_robots + 1)[0].seeing
     found = Found({}, min(LARGEST_PROOF, max_nodes * n_robots))
     size, sizes = _size(sets, least, min(FEW, max_nodes))
     try:
