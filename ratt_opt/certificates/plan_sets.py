@@ -66,9 +66,12 @@ class PlanSets:
         return np.asarray(self.objective.value(posteriors))
 
     def completions_enough(self, posteriors: FloatArray, missing: int) -> bool:
-        """Whether the ``missing`` smallest values are worth it on average (see the verifier's leaf -3)."""
-        self._count(len(posteriors))
-        values = np.sort(self.objective.value(posteriors))
+        """Whether any ``missing`` of these sets are worth it on average (see the verifier's leaf -3)."""
+        return self.average_enough(self.values(posteriors), missing)
+
+    def average_enough(self, values: FloatArray, missing: int) -> bool:
+        """Whether any ``missing`` of these values are: on average, or each where the verifier cannot take averages."""
+        values = np.sort(values)
         worth = values[:missing].mean() if self.objective.verifier_averages else values[0]
         return bool(worth >= self.threshold)
 

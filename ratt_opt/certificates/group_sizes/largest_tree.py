@@ -87,7 +87,7 @@ class _Tree:
             return
         waiting = np.array(_robots(may_see if missing else 0), dtype=np.int64)
         values = self.sets.values(case.posterior + missing * self.own[waiting])
-        if missing and np.sort(values)[:missing].mean() >= self.sets.threshold:
+        if missing and self.sets.average_enough(values, missing):
             self.tree.append(-3)
             return
         looked = self.bounds.look(case.inside, case.outside, case.start)
