@@ -56,11 +56,10 @@ after possible sizes and before prices: a disk of 24 robots and mean degree 12 c
 
 
 def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
-    """Partitions where groups are few, on dense graphs for a while; else annealing, bounds of sizes, prices."""
-    if team is not None and groups is not None:
-        stop = _listed(task, team, groups, is_brief=is_brief)
-        if stop is not None:
-            return stop
+    """Partitions where groups are few; else annealing, bounds of sizes, on dense graphs partitions too, prices."""
+    is_dense = _is_dense(task.problem) and not is_brief and task.problem.n_robots > LARGEST_COMPILED
+    if team is not None and groups is not None and not is_dense:
+        return _listed(task, team, groups, is_brief=is_brief)
     if is_brief and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
     least = _by_trees(task, is_brief=is_brief)
@@ -70,28 +69,27 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
     if _closed_by_sizes(task, team, least, looks=not is_brief):
         return Stop.CLOSED
+    if team is not None and groups is not None and _closed_by_partitions(task, team, groups, least):
+        return Stop.CLOSED
     return last_stage(task, prices)
 
 
-def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_brief: bool) -> Stop | None:
-    """Where all groups are listed: partitions of few, prices of many on graphs that are not dense.
-
-    ``None`` where other ways are to go on.
-    """
-    is_dense = _is_dense(task.problem)
-    is_many = len(groups.masks) > PARTITIONED and not is_dense
-    if is_dense and not is_brief and task.problem.n_robots > LARGEST_COMPILED:
-        if _closed_by_sizes(task, team, 0):
-            return Stop.CLOSED
-        most = SPLIT_SHARE, SPLIT_NODES
-        stop = _in_share(task, most, lambda part: _group_search(part, team, groups, is_many=False).run())
-        return stop if stop is Stop.CLOSED else None
+def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_brief: bool) -> Stop:
+    """Where all groups are listed: partitions of few, prices of many on graphs that are not dense."""
     if forced_group_bound(task, team) is Stop.CLOSED:
         return Stop.CLOSED
+    is_many = len(groups.masks) > PARTITIONED and not _is_dense(task.problem)
     prices = _price_search(task) if is_many else None
     if prices is not None:
         prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
     return last_stage(task, _group_search(task, team, groups, is_many=is_many))
+
+
+def _closed_by_partitions(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, least: int) -> bool:
+    """Whether partitions within their share close it, or sizes again after a worse attack that they found."""
+    before, most = task.bracket.upper, (SPLIT_SHARE, SPLIT_NODES)
+    stop = _in_share(task, most, lambda part: _group_search(part, team, groups, is_many=False).run())
+    return stop is Stop.CLOSED or (task.bracket.upper < before and _closed_by_sizes(task, team, least))
 
 
 def _group_search(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_many: bool) -> Resumable:
