@@ -62,6 +62,8 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
         return _listed(task, team, groups, is_brief=is_brief)
     if is_brief and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
+    if team is not None and is_dense and _closed_by_sizes(task, team, 0, asks=False):
+        return Stop.CLOSED
     least = _by_trees(task, is_brief=is_brief)
     prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
@@ -112,10 +114,15 @@ def last_stage(task: AttackTask, search: Resumable) -> Stop:
     return search.run()
 
 
-def _closed_by_sizes(task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True) -> bool:
-    """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it."""
+def _closed_by_sizes(
+    task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True, asks: bool = True
+) -> bool:
+    """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it.
+
+    ``asks`` : of each weak set whether an attack can leave it, which is long
+    """
     if looks:
-        least = possible_sizes_bound(task, team, least)
+        least = possible_sizes_bound(task, team, least, asks=asks)
     return task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED
 
 

@@ -57,10 +57,11 @@ def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
             task.offer(start.attack)
 
 
-def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int) -> int:
+def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, *, asks: bool = True) -> int:
     """Raise the lower bound to the least that groups of possible sizes leave, whichever robots are in them.
 
-    ``least`` : seeing robots that are known to be left in some group. Returns how many are, by sizes too.
+    ``least`` : seeing robots that are known to be left in some group; ``asks`` : of each weak set whether an attack can
+    leave it. Returns how many are left, by sizes too.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int) 
             with _counted(part, budget):
                 within = replace(task, budget=part)
                 _sizes_bound(within, team, vectors)
-                sets = weak_sets(within, team, possible)
+                sets = weak_sets(within, team, possible) if asks else None
             if sets is not None:
                 with _counted(asked := _share(budget, ASKED_SHARE), budget):
                     largest_groups_bound(replace(task, budget=asked), possible, sets)
