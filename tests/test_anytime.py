@@ -7,7 +7,7 @@ import time
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
@@ -54,6 +54,20 @@ def degenerate_problems(draw):
     return ro.Problem(OBJECTIVES[name](prior, information), np.repeat(np.arange(n_robots), controls), None, *budgets)
 
 
+@st.composite
+def degenerate_networks(draw):
+    """Networks of 13 to 24 robots that know all the same, or of whom only some see anything."""
+    n_robots, dimension = draw(st.integers(13, 24)), draw(st.integers(1, 3))
+    rng = np.random.default_rng(draw(st.integers(0, 2**16)))
+    prior, information = information_data(rng, n_robots, 2, dimension)
+    seeing = rng.random(n_robots) < draw(st.sampled_from([0.2, 1.0]))
+    information = np.repeat(information[:1] + 0.1 * np.eye(dimension), n_robots, axis=0) * seeing[:, None, None, None]
+    graph = nx.gnp_random_graph(n_robots, draw(st.sampled_from([0.2, 0.5])), seed=draw(st.integers(0, 2**16)))
+    budgets = draw(st.integers(0, n_robots)), draw(st.integers(0, graph.number_of_edges()))
+    name = draw(st.sampled_from(sorted(OBJECTIVES)))
+    return ro.Problem(OBJECTIVES[name](prior, information), np.arange(n_robots), graph, *budgets)
+
+
 @SEEDED
 @given(degenerate_problems())
 def test_ties_zeros_and_extremes_close(problem):
@@ -65,6 +79,15 @@ def test_ties_zeros_and_extremes_close(problem):
     assert found.lower <= best + slack
     assert found.upper >= best - slack
     assert found.upper - found.lower <= slack
+
+
+@settings(SEEDED, max_examples=25)
+@given(degenerate_networks(), st.sampled_from([0.0, 0.02, 0.1]))
+def test_a_bracket_that_is_closed_says_so(problem, limit):
+    """Whatever ended the search: where the first bounds met, thresholds were decided until the time was up."""
+    found = ro.worst_case_attack(problem, ro.myopic(problem).elements, time_limit=limit)
+    width = max(1e-10 * abs(found.upper), problem.objective.rounding)
+    assert (found.stop in DONE) == (found.upper - found.lower <= width)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)

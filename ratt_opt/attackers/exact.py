@@ -43,6 +43,8 @@ RENEWED = 4
 """Times as many seconds as an earlier attack on the plan had, from which its first stages, which had shares of them,
 are run again before its last one goes on."""
 
+UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
+
 
 @Step("the worst attack")
 def worst_case_attack(
@@ -135,6 +137,8 @@ def worst_case_attack(
         stop = Stop.GAP
     except KeyboardInterrupt:
         stop = own.interrupt()
+    if memory.bracket is not None and memory.bracket.is_closed and stop in UNDONE:
+        stop = Stop.CLOSED  # by what was known before the budget ended
     if (bracket := memory.bracket) is None:  # what no attack at all gives
         values.objective = unmetered(problem.objective)
         bracket = AttackBracket(Attack(), _unattacked(problem, values), values(()))
@@ -158,6 +162,12 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     if problem.n_robots <= LARGEST_PLAIN:
         return threshold_search(task)
     task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
+    return Stop.CLOSED if task.bracket.is_closed else _larger_team(task, is_inner=is_inner)
+
+
+def _larger_team(task: AttackTask, *, is_inner: bool) -> Stop:
+    """More robots than thresholds are decided for at once, under a criterion of information matrices."""
+    problem, plan = task.problem, task.values.plan
     team = PlanarTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
