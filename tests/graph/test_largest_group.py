@@ -5,13 +5,17 @@ from itertools import combinations
 import networkx as nx
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.largest_group.smallest import by_separable_groups, smallest_largest_group
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.largest_group.smallest import bound_soon, by_separable_groups, smallest_largest_group
+from ratt_opt.graph.threat import Threat
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
-from tests.strategies import random_graph, random_problem
+from tests.strategies import SEEDED, random_graph, random_problem
 
 
 def by_definition(graph, alpha_c, protected=()):
@@ -185,3 +189,51 @@ def test_ratt_uses_the_exact_size_on_any_graph(seed):
     expected = 5 - by_definition(graph, problem.alpha_c, problem.protected_links)
     assert equivalent_sensing_attacks(problem) == expected
     assert len(ro.ratt(problem).bait) == min(5, problem.alpha_s + expected)
+
+
+@pytest.mark.parametrize("method", ["auto", "enumeration", "milp", "spreading", "counting"])
+def test_time_may_end_at_any_look_at_the_clock(method, monkeypatch):
+    """Also between the look that lets a search go on and its next one: once that ended in an exception of its own."""
+    graph, alpha_c = nx.gnp_random_graph(22, 0.2, seed=3), 12
+    exact = smallest_largest_group(graph, alpha_c, method="enumeration").n_max
+    for looks in [*range(40), *range(40, 400, 23)]:
+        clock = iter(range(10**9))
+        monkeypatch.setattr("ratt_opt.budget.monotonic", lambda clock=clock: float(next(clock)))
+        found = smallest_largest_group(graph, alpha_c, method=method, time_limit=looks)
+        check(found, graph, alpha_c)
+        assert found.lower <= exact <= found.upper
+
+
+@SEEDED
+@given(st.integers(15, 18), st.integers(0, 10**6), st.sampled_from([0.15, 0.3, 0.6]))
+def test_what_ratt_takes_is_a_bound_at_any_moment(n_robots, seed, density):
+    rng = np.random.default_rng(seed)
+    graph = nx.gnp_random_graph(n_robots, density, seed=seed)
+    links = sorted(graph.edges)
+    protected = frozenset(link for link in links if rng.random() < 0.1)
+    threat = Threat(
+        CommunicationGraph.from_networkx(graph, n_robots),
+        0,
+        int(rng.integers(0, len(links) // 2 + 1)),
+        protected_links=protected,
+    )
+    cut = smallest_largest_group(graph, threat.alpha_c, method="spreading", protected_links=protected)
+    for seconds in (0.0, None):
+        assert bound_soon(threat, Budget(seconds)) <= cut.upper
+    found = by_separable_groups(threat, Budget())
+    if found is not None:
+        assert bound_soon(threat, Budget()) <= found.lower
+
+
+@pytest.mark.parametrize(("n_robots", "cut"), [(14, 0.3), (36, 0.3), (36, 0.5), (60, 0.15), (100, 0.3)])
+def test_ratt_asks_no_integer_program_and_depends_on_nothing_before(n_robots, cut, monkeypatch):
+    """On hubs of 36 robots the exact size took minutes; longer searches of the same size before must not matter."""
+
+    def asked(*_):
+        raise AssertionError
+
+    monkeypatch.setattr("ratt_opt.graph.largest_group.smallest.by_integer_program", asked)
+    problem = ro.network_scenario("hubs", n_robots, 3, alpha_s=0.2, alpha_c=cut, seed=1).problem()
+    first = ro.ratt(problem)
+    found = smallest_largest_group(problem.communication, problem.alpha_c, method="spreading", time_limit=1.0)
+    assert ro.ratt(problem).alpha_cs == first.alpha_cs >= n_robots - found.upper

@@ -120,10 +120,10 @@ def test_numbers_are_python_floats(report):
 
 
 def test_alpha_cs_is_computed_once(monkeypatch):
-    """Off complete graphs it can be an integer program."""
+    """Off complete graphs it can take seconds."""
     calls = []
-    real = solver.by_search
-    monkeypatch.setattr(solver, "by_search", lambda *a, **b: calls.append(0) or real(*a, **b))
+    real = solver.bound_soon
+    monkeypatch.setattr(solver, "bound_soon", lambda *a, **b: calls.append(0) or real(*a, **b))
     report = ro.bound(SCENARIO.replace(links=((0, 1), (1, 2), (2, 3))))
     assert len(calls) == 1
     assert report.alpha_cs == solver.equivalent_sensing_attacks(report.problem)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
@@ -29,7 +29,7 @@ from ratt_opt.graph.largest_group.counting import (
 )
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
-from ratt_opt.graph.largest_group.spreading import TREES, forced_size
+from ratt_opt.graph.largest_group.spreading import TREES, forced_size, forced_size_soon
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.progress import Step
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.separable_groups import PartitionSearch
 
-__all__ = ["by_search", "by_separable_groups", "by_subsets", "smallest_largest_group"]
+__all__ = ["bound_soon", "by_search", "by_separable_groups", "by_subsets", "smallest_largest_group"]
 
 AUTOMATIC_NODES = 20_000_000
 """Groups that ``method="auto"`` tries before it turns to the integer program (some ten seconds)."""
@@ -127,6 +127,23 @@ def by_search(threat: Threat, budget: Budget, known: LargestGroup | None = None)
     return found or known or by_counting(threat, budget)
 
 
+def bound_soon(threat: Threat, budget: Budget) -> int:
+    """No cut leaves a smaller largest group; the smallest one itself up to 14 robots and where groups are soon listed.
+
+    Seconds at hundreds of robots, and without a limit of time the same on every machine: listing and trees end after
+    a fixed amount of work.
+    """
+    if threat.graph.n_robots <= SUBSETS_SOON:
+        return by_subsets(threat, budget).lower
+    found = by_separable_groups(threat, budget.part(max_nodes=AUTOMATIC_NODES))
+    if found is not None and found.is_exact:
+        return found.lower
+    if threat.graph.n_robots <= LARGEST_LATTICE:
+        return by_subsets(threat, budget).lower
+    known = counting_bound(threat) if found is None else found.lower
+    return max(known, forced_size_soon(threat, budget))
+
+
 def by_spreading(threat: Threat, budget: Budget) -> LargestGroup:
     """Bracket by annealing from above and by tree inequalities from below: hundreds of robots in seconds."""
     from ratt_opt.graph.largest_group.annealed_cut import annealed_cut  # compiles
@@ -157,6 +174,8 @@ MOST_GROUPS = 300_000
 PAIRS_A_SECOND = 8_000_000
 """Of a set of robots and a group in it, of which a team has 3^N: they are listed without a look at the clock, so not at
 all where that would take longer than there is."""
+SUBSETS_SOON = 12
+"""Robots up to which all subsets are a tenth of a second; beyond, groups are mostly listed sooner."""
 NODES_AT_ONCE = 100_000
 """Nodes between two looks at the clock (about a tenth of a second)."""
 
@@ -203,8 +222,11 @@ def by_separable_groups(threat: Threat, budget: Budget, known: LargestGroup | No
 def _first_partition(search: PartitionSearch, budget: Budget) -> list[int] | None:
     """The first partition, or ``None`` when the search is finished or the budget spent."""
     chosen = None
-    while chosen is None and not search.finished and budget.stop() is None:
-        chosen = search.next_within(NODES_AT_ONCE, budget)
+    try:
+        while chosen is None and not search.finished:
+            chosen = search.next_within(NODES_AT_ONCE, budget)
+    except OutOfBudget:
+        pass
     return chosen
 
 
