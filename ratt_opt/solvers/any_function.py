@@ -1,7 +1,8 @@
 """Plans for any set function, known by its values alone: a bracket of any size, within any number of values.
 
 Small problems are enumerated (``exhaustive.py``). Beyond: plans improved element by element against the attacks known
-so far, which are attacked in turn. No plan is worth more than
+so far, which are attacked in turn; then, as long as there is time, all others by branch and bound (``plan_tree.py``).
+No plan is worth more than
 
 - what the worst attack found leaves of a team in which every robot holds all its elements (monotonicity), or, where
   theory proves the function submodular, of the sum of the robots' largest individual values;
@@ -18,6 +19,7 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.any_function import metered_problem
+from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.bounds.guarantees import pattern_free_bound
@@ -26,15 +28,16 @@ from ratt_opt.curvatures.domains import domain_of
 from ratt_opt.curvatures.marginals import enumerate_marginals
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import count_outcomes
-from ratt_opt.setfunctions.base import SetFunction, TableFunction, checked_values
+from ratt_opt.setfunctions.base import TableFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.plan_tree import PlanTree, Pooled
 from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Attack, Problem
 
@@ -51,8 +54,11 @@ FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
 second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
 MOST_OUTCOMES = 200_000
 """Outcomes that are gone through: some seconds where plans are few."""
-ROUNDS = 50
-"""Times that plans are climbed to, where no limit ends it before."""
+ROUNDS, NODES = 50, 200
+"""Times that plans are climbed to, where no limit ends it before, and nodes of plans where nothing is limited, of teams
+whose sets are soon tabulated (80 robots took 46 s for these nodes, and proved nothing)."""
+MOST_KEPT = 500_000
+"""Values kept, some hundred megabytes at most; then they are asked for anew."""
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
@@ -123,7 +129,7 @@ class _Search:
         if known is not None:
             self.lower, self.upper = max(self.lower, known.lower), min(self.upper, known.upper)
         self.worst_case: AttackResult | None = None
-        self._attacks: dict[Attack, list[frozenset[int]]] = {}
+        self.attacks: dict[Attack, list[frozenset[int]]] = {}
         self._known: dict[frozenset[int], float] = {}
         self._begun: dict[bytes, AttackMemory] = {}
         """Attacks that a share of the budget ended: on RATT's plan, and on the last other one."""
@@ -141,15 +147,26 @@ class _Search:
             self._bound_by_guarantee(first)
         current = plan
         for _ in range(ROUNDS):
-            known = len(self._attacks)
+            known = len(self.attacks)
             current = self._improved(current, gap)
             for one in (plan, current):
                 self._go_on(one)
             if self._is_closed(gap):
                 return Stop.CLOSED
-            if len(self._attacks) == known:
+            if len(self.attacks) == known:
                 break
-        return self._budget.stop() or Stop.HEURISTIC
+        return self._divided(gap)
+
+    def _divided(self, gap: float) -> Stop:
+        """Divide the plans that are left; where nothing is limited, for a fixed number of nodes."""
+        budget, tree = self._budget, PlanTree(self._given, self, self.upper)
+        has_limit = min(budget.seconds_left, budget.evaluations_left, budget.max_nodes or np.inf) < np.inf
+        last = np.inf if has_limit else NODES if self._given.n_robots <= LARGEST_PLAIN else 0
+        self._asked = self._problem.objective
+        while not (self._is_closed(gap) or tree.is_finished or budget.stop() or budget.nodes >= last):
+            tree.divide(budget)
+            self.upper = min(self.upper, max(tree.upper, self.lower))
+        return Stop.CLOSED if self._is_closed(gap) else budget.stop() or Stop.HEURISTIC
 
     def _first_part(self) -> Budget:
         seconds = min(FIRST_SECONDS, SHORT_SHARE * self._budget.seconds_left)
@@ -163,8 +180,8 @@ class _Search:
     def _improved(self, current: IntArray, gap: float) -> IntArray:
         """Climb from a plan, attack the one that is reached, climb on, until an attack teaches nothing."""
         part, known = self._budget.part(CLIMB_SHARE), -1
-        while known < len(self._attacks) and not (self._is_closed(gap) or part.is_over):
-            known = len(self._attacks)
+        while known < len(self.attacks) and not (self._is_closed(gap) or part.is_over):
+            known = len(self.attacks)
             current = self._climbed(current, part)
             if not part.is_over:
                 self._attack(current, part.part(ATTACK_SHARE))
@@ -205,8 +222,13 @@ class _Search:
             upper=max(self.upper, self.lower),
             stop=stop,
             evaluations=self._budget.evaluations,
+            nodes=self._budget.nodes,
             worst_case=self.worst_case,
         )
+
+    def attack(self, elements: IntArray) -> AttackResult:
+        """Attack a plan within a share of what is left, as the tree asks."""
+        return self._attack(elements, self._budget.part(ATTACK_SHARE))
 
     def _attack(self, elements: IntArray, part: Budget) -> AttackResult:
         """Attack a plan, from where that ended; keep it where more is proved of it than of the one kept."""
@@ -217,7 +239,7 @@ class _Search:
         if result.stop in {Stop.TIME, Stop.EVALUATIONS}:
             first = {k: self._begun[k] for k in [self._first] if k in self._begun}
             self._begun = first | {key: memory}  # some megabytes each
-        self._attacks.setdefault(result.attack, self._given.groups_left(result.attack))
+        self.attacks.setdefault(result.attack, self._given.groups_left(result.attack))
         if self.worst_case is None or result.lower > self.lower:
             self.elements, self.lower, self.worst_case = elements.copy(), max(result.lower, self.lower), result
         if result.stop is Stop.INTERRUPTED:
@@ -244,21 +266,26 @@ class _Search:
 
     def _value(self, elements: IntArray) -> float:
         """What the known attacks leave of a plan."""
-        return min(max(self._worth(elements, group) for group in groups) for groups in self._attacks.values())
+        return min(max(self._worth(elements, group) for group in groups) for groups in self.attacks.values())
 
     def _worth(self, elements: IntArray, group: frozenset[int]) -> float:
-        chosen = frozenset(elements[sorted(group)].tolist())
-        if chosen not in self._known:
-            self._known[chosen] = self._asked(chosen)
-        return self._known[chosen]
+        return self.worth(frozenset(elements[sorted(group)].tolist()))
+
+    def worth(self, elements: frozenset[int]) -> float:
+        """Value of a set of elements, within the part of the budget that is being spent."""
+        if elements not in self._known:
+            if len(self._known) > MOST_KEPT:
+                self._known.clear()
+            self._known[elements] = self._asked(elements)
+        return self._known[elements]
 
     def _bound_by_pooling(self) -> None:
         """What the worst attack found leaves of robots that hold all their elements."""
         everyone = np.arange(self._given.n_robots)
-        team = replace(self._given, objective=_Pooled(self._given, self._singles()), robot=everyone)
+        team = replace(self._given, objective=Pooled(self._given, self._singles()), robot=everyone)
         worst = worst_case_attack(team, everyone, budget=self._budget.part(ATTACK_SHARE)).attack
         team = metered_problem(team, self._budget)
-        for attack in [*self._attacks, worst]:
+        for attack in [*self.attacks, worst]:
             self.upper = min(self.upper, team.team_value(everyone, attack))
 
     def _singles(self) -> FloatArray | None:
@@ -277,24 +304,3 @@ class _Search:
             share = float(pattern_free_bound(c=f.most_total_curvature))
         if share > 0 and not self._budget.is_over:
             self.upper = min(self.upper, first.upper / share)
-
-
-class _Pooled(SetFunction):
-    """Of robots: no plan's elements of them are worth more. The value of all their elements; of a submodular function
-    also the sum of the largest individual values, where that is less."""
-
-    __slots__ = ("_best", "_f", "_owners")
-
-    def __init__(self, problem: Problem, single: FloatArray | None) -> None:
-        self._f, self._owners = unmetered(problem.objective), problem.robot
-        self._best = None if single is None else np.array([single[choice].max() for choice in problem.choices])
-
-    @property
-    def n(self) -> int:
-        """Number of robots."""
-        return int(self._owners.max()) + 1
-
-    def evaluate(self, membership: BoolArray) -> FloatArray:
-        """(K,) values of the sets of robots in the rows of ``membership`` (K, N)."""
-        values = checked_values(self._f, membership[:, self._owners])
-        return values if self._best is None else np.minimum(values, membership @ self._best)

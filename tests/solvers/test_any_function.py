@@ -103,6 +103,51 @@ def test_small_problems_are_solved(problem):
     assert found.lower == found.upper == brute_force_optimum(problem)
 
 
+@pytest.mark.usefixtures("nothing_is_enumerated")
+@SEEDED
+@given(drawn_problems(), st.sampled_from([1, 3, 10, 40]))
+def test_brackets_hold_at_every_node_count(problem, nodes):
+    check_brackets(problem, {"max_nodes": nodes})
+
+
+@pytest.fixture
+def attacks_are_exact(monkeypatch):
+    """Only plans are too many to be enumerated."""
+    monkeypatch.setattr("ratt_opt.solvers.exhaustive.LARGEST_SEARCH", 0)
+
+
+@pytest.mark.usefixtures("attacks_are_exact")
+@SEEDED
+@given(drawn_problems(largest=5))
+def test_what_is_not_enumerated_is_divided_until_it_closes(problem):
+    """Once it ended as heuristic with most of its time left, and 60 % open at ten robots."""
+    found = ro.solve_maxmin(problem, time_limit=600)
+    assert found.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
+    assert found.lower == pytest.approx(brute_force_optimum(problem), abs=1e-9)
+    assert found.upper == pytest.approx(found.lower, abs=1e-9)
+
+
+@pytest.mark.usefixtures("attacks_are_exact")
+@settings(SEEDED, max_examples=20)
+@given(drawn_problems(largest=5), st.integers(1, 4))
+def test_plans_beyond_what_is_kept_by_bounds_are_divided_last_first(problem, most):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ratt_opt.solvers.plan_tree.MOST_OPEN", most)
+        found = ro.solve_maxmin(problem, time_limit=600)
+    assert found.lower == pytest.approx(brute_force_optimum(problem), abs=1e-9)
+    assert found.upper == pytest.approx(found.lower, abs=1e-9)
+
+
+@settings(SEEDED, max_examples=4)
+@given(st.integers(21, 60), st.integers(0, 99))
+def test_a_large_team_is_searched_until_its_values_or_nodes_are_spent(robots, seed):
+    rng = np.random.default_rng(seed)
+    prior, information = information_data(rng, 3 * robots, 2)
+    f = Opaque(ro.TraceObjective(prior, information))
+    problem = ro.Problem(f, np.repeat(np.arange(robots), 3), None, robots // 5, robots)
+    assert ro.solve_maxmin(problem, max_evaluations=3000).stop is ro.Stop.EVALUATIONS
+
+
 ALWAYS = 16
 """Values that are asked for whatever the limit: both ends, one of each of ten groups, a scale."""
 
