@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.graph import survivor_sizes
 from tests.strategies import information_data
 
 ROWS = {
@@ -215,6 +216,35 @@ def test_what_is_not_looked_at_in_between_is_not_begun():
     ro.solve_maxmin(problem, time_limit=0.3)  # loads
     assert ro.smallest_largest_group(graph, 18, time_limit=0.05).lower >= 1
     assert ro.solve_maxmin(problem, time_limit=0.3).lower > 0
+
+
+class Opaque(ro.SetFunction):
+    """A function of which only values are known."""
+
+    def __init__(self, f):
+        self._f = f
+
+    @property
+    def n(self):
+        return self._f.n
+
+    def evaluate(self, membership):
+        return self._f.evaluate(membership)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.65, 0.8, 0.95])
+@pytest.mark.parametrize("own", [False, True])
+def test_sizes_of_groups_of_large_teams_are_not_all_gone_through(share, own, monkeypatch):
+    """416,000 vectors of 200 robots, and more than can be listed of 300, were, whatever the limit."""
+    robots, steps = 300, iter(range(1_000_000))
+    counted = survivor_sizes.links_within
+    monkeypatch.setattr(survivor_sizes, "links_within", lambda *sizes: (next(steps), counted(*sizes))[1])
+    f = ro.TraceObjective(*information_data(np.random.default_rng(0), 2 * robots, 1, 2))
+    links = int(share * robots * (robots - 1) / 2)
+    problem = ro.Problem(Opaque(f) if own else f, np.repeat(np.arange(robots), 2), None, 0, links)
+    found = ro.solve_maxmin(problem, time_limit=0)
+    assert found.lower <= found.upper
+    assert next(steps) > 0
 
 
 class Interrupt:

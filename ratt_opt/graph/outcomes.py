@@ -8,13 +8,14 @@ first. An attack that blinds as many robots as it may dominates one that blinds 
 from __future__ import annotations
 
 from itertools import combinations
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.connected_partitions import finest_partitions
-from ratt_opt.graph.survivor_sizes import labelled_count, non_dominated_sizes
+from ratt_opt.graph.survivor_sizes import iterate_non_dominated_sizes, labelled_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -59,8 +60,10 @@ def non_dominated_outcomes(threat: Threat) -> Iterator[Outcome]:
     return _by_partitions(threat)
 
 
-def count_outcomes(threat: Threat) -> int:
+def count_outcomes(threat: Threat, *, enough: float = inf) -> int:
     """Return how many outcomes ``non_dominated_outcomes`` yields on a complete graph, without enumerating them.
+
+    ``enough`` : counts no further once there are more, as of hundreds of robots even their sizes are too many to list
 
     Raises
     ------
@@ -70,8 +73,12 @@ def count_outcomes(threat: Threat) -> int:
         rule = "must be complete without protected links to count outcomes (enumerate them with non_dominated_outcomes)"
         raise InputError("graph", rule, f"{len(threat.graph.links)} links")
     n_robots, n_free = threat.graph.n_robots, threat.graph.n_robots - len(threat.protected_robots)
-    vectors = non_dominated_sizes(n_robots, threat.n_blinded, threat.alpha_c)
-    return sum(labelled_count(n_robots, n_free, threat.n_blinded, sizes) for sizes in vectors)
+    count = 0
+    for sizes in iterate_non_dominated_sizes(n_robots, threat.n_blinded, threat.alpha_c):
+        count += labelled_count(n_robots, n_free, threat.n_blinded, sizes)
+        if count > enough:
+            break
+    return count
 
 
 def _survivor_sets(threat: Threat) -> Iterator[tuple[int, ...]]:
@@ -82,9 +89,8 @@ def _survivor_sets(threat: Threat) -> Iterator[tuple[int, ...]]:
 
 
 def _by_sizes(threat: Threat) -> Iterator[Outcome]:
-    vectors = non_dominated_sizes(threat.graph.n_robots, threat.n_blinded, threat.alpha_c)
     for survivors in _survivor_sets(threat):
-        for sizes in vectors:
+        for sizes in iterate_non_dominated_sizes(threat.graph.n_robots, threat.n_blinded, threat.alpha_c):
             yield from _labelled(survivors, sizes)
 
 

@@ -5,7 +5,15 @@ from math import comb
 
 import pytest
 
-from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, non_dominated_sizes
+from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.outcomes import count_outcomes
+from ratt_opt.graph.survivor_sizes import (
+    forced_group_size,
+    iterate_non_dominated_sizes,
+    non_dominated_sizes,
+    sizes_of_largest,
+)
+from ratt_opt.graph.threat import Threat
 
 
 def partitions(total, largest):
@@ -78,3 +86,24 @@ def test_vectors_of_huge_teams_come_without_going_through_partitions(budget):
     for sizes in islice(iterate_non_dominated_sizes(*budget), 200):
         assert sum(sizes) == budget[0] - budget[1]
         assert sizes[0] >= forced_group_size(*budget)
+
+
+@pytest.mark.parametrize("n_robots", range(2, 11))
+def test_vectors_of_one_largest_size_are_those_of_all(n_robots):
+    for blinded in range(n_robots - 1):
+        for cut in range(n_robots * (n_robots - 1) // 2 + 1):
+            every = non_dominated_sizes(n_robots, blinded, cut)
+            for first in (1, 2, 3):
+                own = list(sizes_of_largest(n_robots, blinded, cut, first)) if first <= n_robots - blinded else []
+                assert own == [sizes for sizes in every if sizes[0] == first]
+
+
+@pytest.mark.parametrize("n_robots", [3, 5, 7])
+def test_counting_ends_once_there_are_enough(n_robots):
+    for blinded in range(n_robots):
+        for cut in range(n_robots * (n_robots - 1) // 2 + 1):
+            threat = Threat(CommunicationGraph.complete(n_robots), blinded, cut)
+            count = count_outcomes(threat)
+            for enough in (0, 3, count - 1, count, count + 1):
+                assert (count_outcomes(threat, enough=enough) > enough) == (count > enough)
+            assert count_outcomes(threat, enough=count) == count
