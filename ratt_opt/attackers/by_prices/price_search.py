@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["PriceSearch"]
 
-FURTHER_STARTS = 4
+FURTHER_STARTS, NODES_A_START = 4, 20_000
 """Annealed attacks whenever a threshold is left open, and whenever the thresholds get harder: a tenth of a second each
-at 30 robots, against seconds."""
+at 30 robots, against seconds; and nodes of a proof for which there is one more, about a tenth of the time."""
 
 ANNEALING_SHARE = 0.3
 """Of the seconds left that the first starts may take, where the limit is short."""
@@ -78,16 +78,18 @@ class PriceSearch:
                 self._effort, self._unknown = HARDER * self._effort, None
                 self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
                 continue
-            before = budget.nodes
+            before, starts = budget.nodes, 0
             answer = self._decision.decide(threshold, budget, budget.nodes_left(self._effort))
+            spent = budget.nodes - before
             if answer.verdict is Threshold.REFUTED:
-                self._share = 0.5 if budget.nodes - before < LONG else QUARTER
+                self._share = 0.5 if spent < LONG else QUARTER
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self._offer(answer.partition):
-                self._unknown = threshold
-                self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
+                self._unknown, starts = threshold, FURTHER_STARTS
             else:
                 self._unknown = None
+            if not bracket.is_closed:
+                self._anneal(starts + spent // NODES_A_START, budget.part(ANNEALING_SHARE))
         return Stop.CLOSED
 
     def _threshold(self, unknown: float | None) -> float | None:
@@ -101,10 +103,14 @@ class PriceSearch:
         return None if below <= max(RESOLUTION * width, BISECTED * abs(bracket.upper)) else bracket.lower + below / 2
 
     def _anneal(self, starts: int, part: Budget) -> None:
-        for _ in range(starts):
-            if part.is_over:
-                break
+        """So many starts, and as long as the best attack is of the later half of them."""
+        bracket, done = self.task.bracket, 0
+        while done < starts and not part.is_over:
+            before = bracket.upper
             self._take(self._starts.next, part)
+            done += 1
+            if bracket.upper < before:
+                starts = max(starts, 2 * done)
         self.task.budget.check()
 
     def _take(self, start: Callable[[Budget], Partition | None], part: Budget) -> None:
