@@ -73,12 +73,12 @@ def test_what_is_left_to_choose():
     program = FamilyProgram(problem.threat, is_scaled=True)
     assert program.kept == comb(N_ROBOTS, 2) - problem.alpha_c - comb(problem.alpha_s, 2)
     members = EVERYONE < 3
-    after = program.with_choice(Choice(members, has_blinded=False))
+    after = program.with_choice(Choice(members, is_largest=False))
     assert after.kept == program.kept - 3
     assert after.n_seeing == program.n_seeing - 3
     assert not after.add(EVERYONE == 2, 0.0)  # has a group
     assert after.add(EVERYONE == 3, 0.0)
-    last = after.with_choice(Choice(EVERYONE >= N_ROBOTS - 2, has_blinded=True))
+    last = after.with_choice(Choice(EVERYONE >= N_ROBOTS - 2, is_largest=True))
     assert last.kept == after.kept - 1 - 2 * problem.alpha_s
     assert last.most_links == comb(last.n_seeing, 2)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from itertools import combinations
 from math import comb
 
@@ -15,11 +16,13 @@ from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgra
 from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
+from ratt_opt.attackers.by_size.family_prices.size_vectors import SizeVectors
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.stopping import Stop
 from tests.oracles import brute_force_worst_case
@@ -124,29 +127,68 @@ def test_annealed_sets_are_weak_and_pay_what_they_say(name):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 def test_prices_of_all_weak_sets_claim_nothing_of_what_attacks_reach(name):
-    refuted = 0
-    for problem in problems(name, 6, n_robots=5):
+    refuted = {True: 0, False: 0}
+    for problem in problems(name, 12, n_robots=5):
         team = PlanarTeam.of(problem.objective, np.arange(5))
         worst = brute_force_worst_case(problem, np.arange(5))
         for share in (0.7, 0.999, 1.001):
-            program = FamilyProgram(problem.threat)
-            for size in range(1, 6):
-                for one in combinations(range(5), size):
-                    program.add(np.isin(np.arange(5), one), team.value(one))
-            prices = program.solve(share * worst)
-            assert prices is not None
-            refuted += prices.claim > 1e-3
-            if share > 1:
-                assert prices.claim <= 1e-6
-    assert refuted
+            claims = {}
+            for has_vectors in (False, True):
+                vectors = SizeVectors(5, vectors_of(problem)) if has_vectors else None
+                program = FamilyProgram(problem.threat, vectors)
+                for size in range(1, 6):
+                    for one in combinations(range(5), size):
+                        program.add(np.isin(np.arange(5), one), team.value(one))
+                prices = program.solve(share * worst)
+                assert prices is not None
+                claims[has_vectors] = prices.claim
+                refuted[has_vectors] += prices.claim > 1e-3
+                if share > 1:
+                    assert prices.claim <= 1e-6
+            assert claims[True] > 1e-3 or not claims[False] > 1e-3  # prices of sizes say no less
+    assert refuted[True] >= refuted[False] > 0
 
 
-def bounded(problem, budget):
+def test_prices_of_sizes_know_that_no_vector_is_a_mixture():
+    """Of seven robots alike, sevenths of groups of three keep seven links; groups keep six, unless one has four."""
+    prior, information = information_data(np.random.default_rng(0), 1, 3)
+    objective = OBJECTIVES["logdet"](prior, np.repeat(information, 7, axis=0))
+    problem, team = Problem(objective, np.arange(7), None, 0, 14), PlanarTeam.of(objective, np.arange(7))
+    threshold = (team.value(range(3)) + team.value(range(4))) / 2
+    claims = []
+    for vectors in (None, SizeVectors(7, vectors_of(problem))):
+        program = FamilyProgram(problem.threat, vectors)
+        for size in range(1, 8):
+            for one in combinations(range(7), size):
+                program.add(np.isin(np.arange(7), one), team.value(one))
+        claims.append(program.solve(threshold).claim)
+    assert claims[0] == pytest.approx(0)
+    assert claims[1] > 0.1
+
+
+def test_vectors_of_sizes_cost_what_their_groups_do():
+    vectors = [(4, 2, 1), (3, 3, 1), (5, 1, 1)]
+    sizes, rng = SizeVectors(7, vectors), np.random.default_rng(0)
+    largest, other = rng.normal(size=8), rng.normal(size=8)
+    costs = sizes.costs(largest, other)
+    for k, (first, *others) in enumerate(vectors):
+        assert costs[k] == pytest.approx(largest[first] + other[others].sum())
+        assert sizes.vector(k)[0] == first
+        assert np.repeat(np.arange(8), sizes.vector(k)[1].astype(int)).tolist() == sorted(others)
+    roles = {size: sizes.roles(size) for size in range(8)}
+    assert roles == {0: (), 1: (False,), 2: (False,), 3: (False, True), 4: (True,), 5: (True,), 6: (), 7: ()}
+
+
+def vectors_of(problem):
+    return non_dominated_sizes(problem.n_robots, problem.threat.n_blinded, problem.alpha_c)
+
+
+def bounded(problem, budget, vectors=None):
     """The lower end by prices alone, from no attack at all."""
     team = PlanarTeam.of(problem.objective, np.arange(problem.n_robots))
     bracket = AttackBracket(Attack(), problem.team_value(np.arange(problem.n_robots), Attack()), 0.0)
     try:
-        ThresholdBound(team, problem.threat).run(bracket, budget)
+        ThresholdBound(team, problem.threat, vectors).run(bracket, budget)
     except OutOfBudget:
         assert budget.stop() is not None
     return bracket.lower
@@ -154,14 +196,31 @@ def bounded(problem, budget):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 def test_refuted_thresholds_are_below_the_worst_case(name):
-    near = []
+    near = {False: [], True: []}
     for problem in problems(name, 5):
         worst = worst_case_attack(problem, EVERYONE).upper
-        lower = bounded(problem, Budget(max_nodes=20_000))
-        assert lower <= worst + 1e-9 * abs(worst)
-        near.append(lower / worst if worst > 0 else 1.0)
-    assert max(near) > 0.97
-    assert min(near) > 0.5
+        for has_vectors, shares in near.items():
+            lower = bounded(problem, Budget(max_nodes=20_000), vectors_of(problem) if has_vectors else None)
+            assert lower <= worst + 1e-9 * abs(worst)
+            shares.append(lower / worst if worst > 0 else 1.0)
+    assert max(near[False]) > 0.97
+    assert min(near[False]) > 0.5
+    assert np.mean(near[True]) >= np.mean(near[False])
+    assert max(near[True]) > 1 - 2 * threshold_bound.NEAR
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_prices_of_sizes_close_on_the_worst_attack(name):
+    closed, count = 0, 6
+    for problem in problems(name, count):
+        worst = worst_case_attack(problem, EVERYONE)
+        team = PlanarTeam.of(problem.objective, EVERYONE)
+        bracket = AttackBracket(worst.attack, worst.upper, 0.0, problem.objective.rounding)
+        with suppress(OutOfBudget):
+            ThresholdBound(team, problem.threat, vectors_of(problem)).run(bracket, Budget(max_nodes=20_000))
+        assert bracket.lower <= worst.upper
+        closed += bracket.is_closed
+    assert closed >= count / 2
 
 
 def test_wherever_it_ends_the_bound_holds():

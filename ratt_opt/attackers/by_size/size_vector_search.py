@@ -120,7 +120,7 @@ class SizeVectorSearch:
         self._decide_listed(families)
         if not self.bracket.is_closed and self._is_about_families(families):
             self._decide_in_share()
-            search = FamilySearch(self.task, self.team, families)
+            search = FamilySearch(self.task, self.team, families, list(self.bounds))
             search.anneal()
             search.dive(DIVED_SHARE)
             search.price(PRICED_SHARE)

@@ -111,7 +111,7 @@ class FamilyDive:
         rising = left[np.argsort(self._team.single[left], kind="stable")]
         for size in range(1, program.n_seeing + 1):
             members = np.isin(np.arange(len(program.free)), rising[:size])
-            choice = Choice(members, has_blinded=program.may_have_blinded)
+            choice = Choice(members, is_largest=program.may_have_blinded)
             if program.links(choice) >= program.kept:
                 return choice
         return None

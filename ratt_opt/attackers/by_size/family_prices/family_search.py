@@ -20,12 +20,13 @@ from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
+    from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["DIVED_SHARE", "FamilySearch"]
 
@@ -47,9 +48,17 @@ class FamilySearch:
     """Narrows the task's bracket; relies on a non-decreasing objective.
 
     ``families`` : weak ones, whose groups the prices know at first
+    ``vectors`` : of sizes, outside of which no attack is worse than that in hand; by default they are too many to list
     """
 
-    def __init__(self, task: AttackTask, team: PlanarTeam, families: list[GroupExchanges]) -> None:
+    def __init__(
+        self,
+        task: AttackTask,
+        team: PlanarTeam,
+        families: list[GroupExchanges],
+        vectors: Sequence[Sizes] | None = None,
+    ) -> None:
+        self._vectors = vectors
         self._task, self._team, self._threat = task, team, task.problem.threat
         self._known = [group for family in families for group in family.groups()]
         self._prices: ThresholdBound | None = None
@@ -115,7 +124,7 @@ class FamilySearch:
         if self._is_out_of_reach():
             return
         if self._prices is None:
-            self._prices = ThresholdBound(self._team, self._threat, [*self._known, *self._dives.sets()])
+            self._prices = ThresholdBound(self._team, self._threat, self._vectors, [*self._known, *self._dives.sets()])
         prices = self._prices
         most = None if np.isfinite(budget.seconds_left) else PRICED_NODES
         self._within(self._part(share, most), lambda part: prices.run(bracket, part))

@@ -37,10 +37,13 @@ class SetFinder:
     ) -> list[BoolArray]:
         """Sets that pay more than ``least``, annealed around each robot; some may be the same."""
         found: list[BoolArray] = []
-        links = -prices.limits
+        has_limit = np.isfinite(prices.limits)
+        sizes = np.arange(len(has_limit), dtype=np.float64)
+        # Sizes that no group has are between others on the way from one set to the next.
+        links = -np.interp(sizes, sizes[has_limit], prices.limits[has_limit])
         for view in self._views:
             sets = annealed_sets(view, threshold, prices.robots, links, moves, self._rng, budget)
-            found.extend(members for members, paid in sets if paid > least)
+            found.extend(members for members, paid in sets if paid > least and has_limit[members.sum()])
         return found
 
     def searched(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
@@ -52,6 +55,8 @@ class SetFinder:
         """
         found, is_complete = [], True
         for size in self._sets.sizes(threshold, self._n_seeing):
+            if not np.isfinite(prices.limits[size]):
+                continue  # no group has it
             question = Question(threshold, prices.robots, float(prices.limits[size]))
             sets = self._sets.of_size(question, size, budget, nodes)
             found.extend(sets.found)

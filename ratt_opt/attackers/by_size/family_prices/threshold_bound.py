@@ -15,15 +15,17 @@ import numpy as np
 
 from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgram
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
+from ratt_opt.attackers.by_size.family_prices.size_vectors import SizeVectors
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices
     from ratt_opt.attackers.task import AttackBracket
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
+    from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["LARGEST", "ThresholdBound"]
@@ -37,6 +39,8 @@ FIRST_EFFORT, QUICK_EFFORT, HARDER = 5_000, 300_000, 4
 growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
+EASY = 0.95
+"""Share of the time that a threshold refuted soon leaves of what it had."""
 FIRST_MOVES, LONGER = 3_000, 2
 """Annealing moves around each robot, and their growth where the search finds sets that they missed."""
 PULLED = 0.5
@@ -55,15 +59,25 @@ class _Verdict(Enum):
 class ThresholdBound:
     """Raises the lower end of a bracket; relies on a non-decreasing objective.
 
+    ``vectors`` : of sizes that decide; without them, all that keep links enough
     ``known`` : sets of robots to begin with, such as the groups of attacks
     """
 
-    def __init__(self, team: PlanarTeam, threat: Threat, known: Iterable[frozenset[int]] = ()) -> None:
+    def __init__(
+        self,
+        team: PlanarTeam,
+        threat: Threat,
+        vectors: Sequence[Sizes] | None = None,
+        known: Iterable[frozenset[int]] = (),
+    ) -> None:
         self._team, self._n_robots = team, len(team.single)
-        self._finder, self._program = SetFinder(team, self._n_robots - threat.n_blinded), FamilyProgram(threat)
+        sizes = None if vectors is None else SizeVectors(self._n_robots, vectors)
+        self._finder, self._program = SetFinder(team, self._n_robots - threat.n_blinded), FamilyProgram(threat, sizes)
         self._moves, self._effort = FIRST_MOVES, QUICK_EFFORT if self._finder.is_quick else FIRST_EFFORT
         self._beyond, self._unknown = np.inf, np.inf
         """The lowest thresholds out of reach, and left open with this effort."""
+        self._easy = 0
+        """Thresholds refuted soon, one after the other: the next is twice as near to what is not refuted."""
         for group in [frozenset([i]) for i in range(self._n_robots)] + list(known):
             self._learn(np.isin(np.arange(self._n_robots), list(group)))
 
@@ -75,7 +89,10 @@ class ThresholdBound:
         OutOfBudget : the nodes are spent, the time is up, or the user interrupted; the bracket has what was proved.
         """
         while (threshold := self._threshold(bracket)) is not None:
+            left = budget.seconds_left
             verdict = self._decide(threshold, budget)
+            is_easy = verdict is _Verdict.REFUTED and budget.seconds_left >= EASY * left
+            self._easy = self._easy + 1 if is_easy else 0
             if verdict is _Verdict.REFUTED:
                 bracket.raise_lower(threshold)
             elif verdict is _Verdict.OPEN:
@@ -86,11 +103,15 @@ class ThresholdBound:
     def _threshold(self, bracket: AttackBracket) -> float | None:
         """The next threshold to ask; ``None`` where none is worth it."""
         top, near = min(bracket.goal, self._beyond), NEAR * abs(bracket.upper)
-        if bracket.is_closed or top - bracket.lower <= near:
+        room = top - bracket.lower
+        if bracket.is_closed or room <= 0 or (room <= near and self._beyond < bracket.goal):
             return None
-        if self._unknown - bracket.lower <= max(OPEN_SHARE * (top - bracket.lower), near):
+        if self._unknown - bracket.lower <= max(OPEN_SHARE * room, near):
             self._effort, self._unknown = HARDER * self._effort, np.inf
-        return (bracket.lower + min(top, self._unknown)) / 2
+        if room <= near:
+            return bracket.goal
+        high = min(top, self._unknown)
+        return float(high - (high - bracket.lower) / 2 ** (1 + self._easy))
 
     def _decide(self, threshold: float, budget: Budget) -> _Verdict:
         """Add sets that pay until there is none, or the prices claim nothing."""
