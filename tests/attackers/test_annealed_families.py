@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from math import comb
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 
 from ratt_opt.attackers.by_size import annealed_families as module
 from ratt_opt.attackers.by_size import size_vector_search
-from ratt_opt.attackers.by_size.annealed_families import annealed_families
+from ratt_opt.attackers.by_size.annealed_families import AnnealedFamilies
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget
@@ -38,7 +37,8 @@ def test_families_are_outcomes_and_near_the_worst(name, monkeypatch):
     for problem, team in teams(name, 6):
         worst = worst_case_attack(problem, np.arange(N_ROBOTS))
         values = [np.inf]
-        for groups in islice(annealed_families(team, problem.threat, Budget()), 2):
+        annealed = AnnealedFamilies(team, problem.threat)
+        for groups in (annealed.start(Budget()) for _ in range(2)):
             seeing = frozenset().union(*groups)
             assert sum(map(len, groups)) == len(seeing) == N_ROBOTS - problem.threat.n_blinded
             assert problem.protected_robots <= seeing
@@ -55,12 +55,12 @@ def test_nothing_is_left_of_a_team_all_blinded():
     objective = OBJECTIVES["trace"](*information_data(rng, N_ROBOTS, 3))
     problem = Problem(objective, np.arange(N_ROBOTS), None, N_ROBOTS, 0)
     team = PlanarTeam.of(objective, np.arange(N_ROBOTS))
-    assert not list(annealed_families(team, problem.threat, Budget()))
+    assert AnnealedFamilies(team, problem.threat).start(Budget()) == ()
 
 
 def test_none_is_begun_when_the_time_is_up():
     problem, team = next(teams("trace", 1))
-    assert not list(annealed_families(team, problem.threat, Budget(time_limit=0)))
+    assert AnnealedFamilies(team, problem.threat).start(Budget(time_limit=0)) == ()
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)

@@ -17,14 +17,12 @@ from ratt_opt.graph.survivor_sizes import forced_group_size, sizes_of_largest
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Cooling", "annealed_families", "annealed_from"]
+__all__ = ["AnnealedFamilies", "Cooling", "annealed_from"]
 
 FIRST_MOVES, LONGER = 2_000_000, 2
 """Moves of the first start, and how many times as many each time after. At 60 robots, 40 targets a million take a third
@@ -45,21 +43,26 @@ FURTHER_GROUPS = 8
 SEED = 0
 
 
-def annealed_families(team: PlanarTeam, threat: Threat, budget: Budget) -> Iterator[tuple[frozenset[int], ...]]:
-    """Yield the best family of one start after the other, the moves growing, until the time is up.
+class AnnealedFamilies:
+    """Starts from random families, each with more moves than the one before; deterministic but for where time ends."""
 
-    Deterministic but for where the time ends. Nothing is yielded where every robot is blinded.
-    """
-    n_robots, n_blinded, alpha_c = len(team.single), threat.n_blinded, threat.alpha_c
-    first = forced_group_size(n_robots, n_blinded, alpha_c)
-    sizes = next(sizes_of_largest(n_robots, n_blinded, alpha_c, first), ()) if first else ()
-    must = np.isin(np.arange(n_robots), list(threat.protected_robots))
-    rng, moves = np.random.default_rng(SEED), FIRST_MOVES
-    while sizes and not budget.is_over:
-        home = _random_family(sizes, must, rng)
-        groups = tuple(frozenset(np.flatnonzero(home == g).tolist()) for g in range(1, len(sizes) + 1))
-        yield annealed_from(groups, team, threat, Cooling(HOT, moves), rng, budget)
-        moves *= LONGER
+    def __init__(self, team: PlanarTeam, threat: Threat) -> None:
+        self._team, self._threat = team, threat
+        n_robots, n_blinded, alpha_c = len(team.single), threat.n_blinded, threat.alpha_c
+        first = forced_group_size(n_robots, n_blinded, alpha_c)
+        self._sizes = next(sizes_of_largest(n_robots, n_blinded, alpha_c, first), ()) if first else ()
+        self._must = np.isin(np.arange(n_robots), list(threat.protected_robots))
+        self._rng, self._moves = np.random.default_rng(SEED), FIRST_MOVES
+
+    def start(self, budget: Budget) -> tuple[frozenset[int], ...]:
+        """The best family of the next start, as far as the time goes; empty where every robot is blinded."""
+        if not self._sizes or budget.is_over:
+            return ()
+        home = _random_family(self._sizes, self._must, self._rng)
+        groups = tuple(frozenset(np.flatnonzero(home == g).tolist()) for g in range(1, len(self._sizes) + 1))
+        cooling = Cooling(HOT, self._moves)
+        self._moves *= LONGER
+        return annealed_from(groups, self._team, self._threat, cooling, self._rng, budget)
 
 
 class Cooling(NamedTuple):

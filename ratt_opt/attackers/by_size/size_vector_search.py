@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.family_prices.family_search import DIVED_SHARE, FamilySearch
+from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
@@ -47,13 +47,16 @@ MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
 Where there are more, some make attacks, and the bound is that of the forced size and of prices."""
 
+PRICED_VECTORS = 100_000
+"""Vectors that prices know at most: listing so many takes a second. Beyond, links are counted. At 100 robots (28, 4066)
+has 8,413, (0, 4066) 97,873, (0, 4702) more than 240,000."""
+
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LARGEST_SHARE, PRICED_SHARE, LATER_SHARE, ALIKE = 0.25, 0.6, 0.6, 0.8
-"""Of the time left, for a first search by the largest group, then for prices of families, then for attacks by prices;
-and the value of the second best group of an attack, over the best, from which prices are asked: below, it is the
-largest group that decides."""
+LARGEST_SHARE, ALIKE = 0.1, 0.8
+"""Of the time left, for a first search by the largest group before prices of families; and the value of the second best
+group of an attack, over the best, from which prices are asked: below, it is the largest group that decides."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -88,8 +91,8 @@ class SizeVectorSearch:
         allowed = iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else iter(vectors)
         self.vectors = list(islice(allowed, MOST_VECTORS + 1))
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
-        if not self.has_all_vectors:
-            self.vectors = self._some_vectors()
+        self._further = allowed
+        """Those beyond, where there are too many."""
         self.weak = WeakFamilies(task, team)
         self.lists = LowLists(team, np.argsort(-team.single, kind="stable"))
         self.packer = Packer(team, self.threat.protected_robots, task.budget)
@@ -110,21 +113,17 @@ class SizeVectorSearch:
             return Stop.CLOSED
         if self._closes_at_once():
             return Stop.CLOSED
-        families = self.weak.exchanged(self.vectors)
+        families = self.weak.exchanged(self.vectors if self.has_all_vectors else self._some_vectors())
         self._accept(weakest_of(families))
         if self.bracket.is_closed:
             return Stop.CLOSED
         if not self.has_all_vectors:
-            return FamilySearch(self.task, self.team, families).run()
+            return FamilySearch(self.task, self.team, families, self._priced_vectors()).run()
         self.bounds = dict.fromkeys(self.vectors, -np.inf)
         self._decide_listed(families)
         if not self.bracket.is_closed and self._is_about_families(families):
             self._decide_in_share()
-            search = FamilySearch(self.task, self.team, families, list(self.bounds))
-            search.anneal()
-            search.dive(DIVED_SHARE)
-            search.price(PRICED_SHARE)
-            search.dive(LATER_SHARE)
+            FamilySearch(self.task, self.team, families, list(self.bounds)).narrow()
         return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
 
     def _is_about_families(self, families: list[GroupExchanges]) -> bool:
@@ -134,6 +133,11 @@ class SizeVectorSearch:
             return False
         second, best = sorted([0.0, *map(self.team.value, weakest_of(families))])[-2:]
         return second >= ALIKE * best
+
+    def _priced_vectors(self) -> list[Sizes] | None:
+        """All vectors, or ``None`` where they are too many for prices to know them."""
+        further = list(islice(self._further, PRICED_VECTORS - MOST_VECTORS))
+        return None if len(further) == PRICED_VECTORS - MOST_VECTORS else [*self.vectors, *further]
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""

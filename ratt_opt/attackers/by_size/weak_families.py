@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["WeakFamilies", "weakest_of"]
 
-EXCHANGES_SHARE = 0.3
-"""Of the time, at most spent on exchanges before the bounds: large teams get fewer vectors."""
+EXCHANGES_SHARE, STRIDE = 0.2, 20
+"""Of the time, at most spent on exchanges before the bounds: large teams get fewer vectors, the first ones so far
+apart."""
 
 SHAKEN, SHAKES = 6, 40
 """Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
@@ -54,7 +55,7 @@ class WeakFamilies:
         """
         families: list[GroupExchanges] = []
         part = self._budget.part(EXCHANGES_SHARE)
-        for sizes in vectors:
+        for sizes in _spread(vectors):
             if families and part.stop() is not None:
                 break
             self._budget.check()
@@ -100,6 +101,11 @@ class WeakFamilies:
         if largest not in self._weak:
             self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[:WEAK_SETS]
         return self._weak[largest]
+
+
+def _spread(vectors: list[Sizes]) -> list[Sizes]:
+    """All of them, those that are far apart first: there may be time for some only."""
+    return [sizes for first in range(STRIDE) for sizes in vectors[first::STRIDE]]
 
 
 def weakest_of(families: list[GroupExchanges]) -> tuple[frozenset[int], ...]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.annealed_families import Cooling, annealed_families, annealed_from
+from ratt_opt.attackers.by_size.annealed_families import AnnealedFamilies, Cooling, annealed_from
 from ratt_opt.attackers.by_size.family_prices.family_dive import FamilyDive
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST, ThresholdBound
@@ -28,12 +27,13 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["DIVED_SHARE", "FamilySearch"]
+__all__ = ["FamilySearch"]
 
-FORCED_SHARE, ANNEALED_SHARE, ANNEALED_STARTS = 0.1, 0.3, 3
-"""Of the time left, for the bound of the forced size; then for annealed attacks, and how many before there are dives.
-At 100 robots, (0, 4066), log-det, they leave 0.3 to 0.4 % less than exchanges in 93 vectors; at 60, (0, 1454),
-max-eigenvalue, 5.70 where exchanges in all vectors leave 6.15."""
+FORCED_SHARE, ANNEALED_SHARE, ANNEALED_STARTS, PRICED_SHARE, LATER_SHARE = 0.1, 0.15, 3, 0.6, 0.15
+"""Of the time left, for the bound of the forced size; then for annealed attacks, and how many before there are dives;
+for prices; and for attacks each time before prices go on. At 100 robots, (0, 4066), log-det, annealing leaves 0.3 to
+0.4 % less than exchanges in 93 vectors; at 60, (0, 1454), max-eigenvalue, 5.70 where exchanges in all vectors leave
+6.15."""
 DIVED_SHARE, MOST_VAIN, REACH = 0.2, 4, (0.98, 1.01)
 """Of the time left, for dives before there are prices; how many in a row may find nothing better; and thresholds of
 dives, over the attack in hand."""
@@ -65,40 +65,53 @@ class FamilySearch:
         self._rng = np.random.default_rng(SEED)
         self._finder = SetFinder(team, len(team.single) - self._threat.n_blinded)
         self._dives = FamilyDive(team, self._threat, self._finder)
+        self._annealed = AnnealedFamilies(team, self._threat)
 
     def run(self) -> Stop:
         """All of them, the attacks as long as there is time."""
-        budget, bracket = self._task.budget, self._task.bracket
         self._within(self._part(FORCED_SHARE), self._weakest_of_forced_size)
-        has_limit = bool(np.isfinite(budget.seconds_left))
-        if has_limit:
-            self.anneal()
-            self.dive(DIVED_SHARE)
-        self.price(1.0)
-        if has_limit and not bracket.is_closed:
-            for groups in self._annealed(budget):
-                if self._offer(groups):
-                    self.price(1.0)
-                if bracket.is_closed:
-                    break
-        return Stop.CLOSED if bracket.is_closed else budget.stop() or Stop.HEURISTIC
+        if np.isfinite(self._task.budget.seconds_left):
+            self.narrow(is_last=True)
+        else:
+            self.price(1.0)
+        return Stop.CLOSED if self._task.bracket.is_closed else self._task.budget.stop() or Stop.HEURISTIC
 
-    def anneal(self) -> None:
-        """The first annealed attacks, in a share of the time left; their groups are known to the prices."""
-        if self._task.bracket.is_closed:
+    def narrow(self, *, is_last: bool = False) -> None:
+        """Attacks and prices in turn within a limit of time, until it is up or the bracket closed.
+
+        ``is_last`` : nothing else is there for the time left; else this ends where prices prove nothing at first
+        """
+        bracket = self._task.bracket
+        self.anneal(ANNEALED_SHARE, ANNEALED_STARTS)
+        self.dive(DIVED_SHARE)
+        proved = bracket.lower
+        self.price(PRICED_SHARE)
+        while not bracket.is_closed and (is_last or bracket.lower > proved):
+            if not self.dive(LATER_SHARE):
+                self.anneal(LATER_SHARE, 1)
+            self.price(1.0)
+
+    def anneal(self, share: float, starts: int) -> None:
+        """A few annealed attacks, each longer than those before, in a share of the time left; the prices know them."""
+        bracket, part = self._task.bracket, self._task.budget.part(share)
+        if bracket.is_closed:
             return
-        for groups in islice(self._annealed(self._task.budget.part(ANNEALED_SHARE)), ANNEALED_STARTS):
-            self._known.extend(groups)
-            self._offer(groups)
+        for _ in range(starts):
+            if groups := self._annealed.start(part):
+                self._offer(groups)
+                self._learn(groups)
         self._task.budget.check()
 
-    def dive(self, share: float) -> None:
-        """Attacks from prices, in a share of the time left, where sets are found quickly; the prices then know these.
+    def dive(self, share: float) -> bool:
+        """Attacks from prices, in a share of the time left, where sets are found quickly; whether any was better.
 
         With log-det dives found no better attacks than annealing from random families, and took time from the bound.
         """
         if self._finder.is_quick and not self._is_out_of_reach():
+            before = self._task.bracket.upper
             self._within(self._part(share), self._dive)
+            return self._task.bracket.upper < before
+        return False
 
     def _dive(self, budget: Budget) -> None:
         bracket = self._task.bracket
@@ -112,6 +125,13 @@ class FamilySearch:
                     self._offer(annealed_from(groups, self._team, self._threat, cooling, self._rng, budget))
             if bracket.upper < before:
                 vain = 0
+
+    def _learn(self, groups: Iterable[frozenset[int]]) -> None:
+        """Groups for the prices to know."""
+        if self._prices is None:
+            self._known.extend(groups)
+        else:
+            self._prices.learn(groups)
 
     def _is_out_of_reach(self) -> bool:
         """Whether nothing is left for prices, or they would take too long."""
@@ -143,9 +163,6 @@ class FamilySearch:
         finally:
             self._task.budget.nodes += part.nodes
         self._task.budget.check()
-
-    def _annealed(self, budget: Budget) -> Iterable[tuple[frozenset[int], ...]]:
-        return annealed_families(self._team, self._threat, budget)
 
     def _offer(self, groups: Iterable[frozenset[int]]) -> bool:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,16 +26,22 @@ class SizeVectors:
     """
 
     def __init__(self, n_robots: int, vectors: Sequence[Sizes]) -> None:
+        self._n_robots = n_robots
         self._first: IntArray = np.array([sizes[0] for sizes in vectors], dtype=np.int64)
-        self._others = np.zeros((len(vectors), n_robots + 1))
-        for row, sizes in zip(self._others, vectors, strict=True):
-            np.add.at(row, np.array(sizes[1:], dtype=np.int64), 1.0)
-        self.is_largest: BoolArray = np.isin(np.arange(n_robots + 1), self._first)
-        self.is_other: BoolArray = np.asarray(self._others.any(axis=0))
+        # A group of nobody, of which there is none, so that no vector is without other groups.
+        others = [{0: 0, **Counter(sizes[1:])} for sizes in vectors]
+        self._starts: IntArray = np.cumsum([0, *map(len, others)])
+        self._sizes: IntArray = np.array([size for counts in others for size in counts], dtype=np.int64)
+        self._counts: FloatArray = np.array([k for counts in others for k in counts.values()], dtype=np.float64)
+        everyone = np.arange(n_robots + 1)
+        self.is_largest: BoolArray = np.isin(everyone, self._first)
+        self.is_other: BoolArray = np.isin(everyone, self._sizes[self._counts > 0])
 
     def vector(self, which: int) -> tuple[int, FloatArray]:
         """The largest size of a vector, and how many (N + 1,) other groups of each size it has."""
-        return int(self._first[which]), self._others[which]
+        own, others = slice(*self._starts[which : which + 2]), np.zeros(self._n_robots + 1)
+        others[self._sizes[own]] = self._counts[own]
+        return int(self._first[which]), others
 
     def roles(self, size: int) -> tuple[bool, ...]:
         """Whether a group of that size may be the largest (true), and another one (false)."""
@@ -43,7 +50,7 @@ class SizeVectors:
 
     def costs(self, largest: FloatArray, other: FloatArray) -> FloatArray:
         """(V,) what each costs by prices of sizes (N + 1,)."""
-        return np.asarray(largest[self._first] + self._others @ other)
+        return np.asarray(largest[self._first] + np.add.reduceat(self._counts * other[self._sizes], self._starts[:-1]))
 
     def some(self) -> IntArray:
         """A few that are far apart."""

@@ -78,8 +78,12 @@ class ThresholdBound:
         """The lowest thresholds out of reach, and left open with this effort."""
         self._easy = 0
         """Thresholds refuted soon, one after the other: the next is twice as near to what is not refuted."""
-        for group in [frozenset([i]) for i in range(self._n_robots)] + list(known):
-            self._learn(np.isin(np.arange(self._n_robots), list(group)))
+        self.learn(frozenset([i]) for i in range(self._n_robots))
+        self.learn(known)
+
+    def learn(self, groups: Iterable[frozenset[int]]) -> None:
+        """Sets for the program to know."""
+        self._learn_all([np.isin(np.arange(self._n_robots), list(group)) for group in groups])
 
     def run(self, bracket: AttackBracket, budget: Budget) -> None:
         """Ask thresholds until the bracket closes or prices reach no further.
