@@ -30,6 +30,7 @@ class SetFinder:
     def __init__(self, team: PlanarTeam, n_seeing: int) -> None:
         self._n_seeing, self._sets = n_seeing, PayingSets(team)
         self.is_quick = self._sets.is_by_axis
+        self._likely: set[int] = set()
         self._views, self._rng = views(team), np.random.default_rng(SEED)
 
     def annealed(
@@ -47,20 +48,25 @@ class SetFinder:
         return found
 
     def searched(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
-        """Sets that pay, of each size, or the proof that there is none; a size left open after so many nodes ends it.
+        """Sets that pay, or the proof that there is none; a size left open after so many nodes ends it.
+
+        Sizes of which the last search found some come first; the others are searched where these have none.
 
         Raises
         ------
         OutOfBudget : the time is up, or no node is left.
         """
-        found, is_complete = [], True
-        for size in self._sets.sizes(threshold, self._n_seeing):
-            if not np.isfinite(prices.limits[size]):
-                continue  # no group has it
+        found: list[BoolArray] = []
+        possible = [size for size in self._sets.sizes(threshold, self._n_seeing) if np.isfinite(prices.limits[size])]
+        likely, self._likely = self._likely, set()
+        for size in sorted(possible, key=lambda size: (size not in likely, size)):
+            if found and size not in likely:
+                return Sets(found, is_complete=False)
             question = Question(threshold, prices.robots, float(prices.limits[size]))
             sets = self._sets.of_size(question, size, budget, nodes)
             found.extend(sets.found)
-            is_complete = is_complete and sets.is_complete
-            if not (sets.is_complete or sets.found):
-                break
-        return Sets(found, is_complete=is_complete)
+            if sets.found:
+                self._likely.add(size)
+            elif not sets.is_complete:
+                return Sets(found, is_complete=False)
+        return Sets(found, is_complete=not found)

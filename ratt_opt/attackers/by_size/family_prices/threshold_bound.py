@@ -41,8 +41,8 @@ OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
 EASY = 0.95
 """Share of the time that a threshold refuted soon leaves of what it had."""
-FIRST_MOVES, LONGER = 3_000, 2
-"""Annealing moves around each robot, and their growth where the search finds sets that they missed."""
+FIRST_MOVES, LONGER, MOST_MOVES = 3_000, 2, 24_000
+"""Annealing moves around each robot, their growth where the search finds sets that they missed, and a limit."""
 PULLED = 0.5
 """Share of the claim that prices keep while sets are annealed. Refuting 92 and 96 % of an attack (60 robots, log-det)
 takes 8 and 6 s with the whole claim, 1 and 2 s with half of it, 1 and 2 s with none."""
@@ -118,7 +118,11 @@ class ThresholdBound:
         return float(high - (high - bracket.lower) / 2 ** (1 + self._easy))
 
     def _decide(self, threshold: float, budget: Budget) -> _Verdict:
-        """Add sets that pay until there is none, or the prices claim nothing."""
+        """Add sets that pay until there is none, or the prices claim nothing.
+
+        They are annealed as long as that finds more of them in a second than the last search did.
+        """
+        rate, is_annealing = 0.0, True
         while True:
             budget.check()
             prices = self._program.solve(threshold, budget.seconds_left)
@@ -127,19 +131,23 @@ class ThresholdBound:
                 return _Verdict.OPEN
             if prices.claim <= CLAIM:
                 return _Verdict.OUT_OF_REACH
-            if self._anneal(threshold, prices.lowered(PULLED * prices.claim), budget):
-                continue
+            if is_annealing and not self._finder.is_quick:
+                began = budget.elapsed
+                found = self._anneal(threshold, prices.lowered(PULLED * prices.claim), budget)
+                is_annealing = found > rate * (budget.elapsed - began)
+                if found:
+                    continue
+            began = budget.elapsed
             sets = self._finder.searched(threshold, prices.lowered(CLAIM / 2), self._effort, budget)
             if sets.is_complete:
                 return _Verdict.REFUTED
-            if not self._learn_all(sets.found):
+            if not (found := self._learn_all(sets.found)):
                 return _Verdict.OPEN
-            self._moves *= LONGER
+            rate, is_annealing = found / max(budget.elapsed - began, 1e-9), True
+            self._moves = min(LONGER * self._moves, MOST_MOVES)
 
     def _anneal(self, threshold: float, prices: FamilyPrices, budget: Budget) -> int:
         """Sets that pay, with each robot: how many are new."""
-        if self._finder.is_quick:
-            return 0
         return self._learn_all(self._finder.annealed(threshold, prices, CLAIM, self._moves, budget))
 
     def _learn_all(self, sets: list[BoolArray]) -> int:
