@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from functools import partial
 from itertools import islice
 from math import comb
 from operator import attrgetter, itemgetter
@@ -34,7 +35,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
     from ratt_opt.attackers.task import AttackTask
@@ -54,9 +55,10 @@ has 8,413, (0, 4066) 97,873, (0, 4702) more than 240,000."""
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LARGEST_SHARE, ALIKE = 0.1, 0.8
-"""Of the time left, for a first search by the largest group before prices of families; and the value of the second best
-group of an attack, over the best, from which prices are asked: below, it is the largest group that decides."""
+LISTED_SHARE, LARGEST_SHARE, ALIKE = 0.4, 0.1, 0.8
+"""Of the time left, for families whose sets can be listed, where these are not all, and for a first search by the
+largest group, before prices of families; and the value of the second best group of an attack, over the best, from which
+prices are asked: below, it is the largest group that decides."""
 
 LATER_SHAKES = 400
 """Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
@@ -120,10 +122,18 @@ class SizeVectorSearch:
         if not self.has_all_vectors:
             return FamilySearch(self.task, self.team, families, self._priced_vectors()).run()
         self.bounds = dict.fromkeys(self.vectors, -np.inf)
-        self._decide_listed(families)
-        if not self.bracket.is_closed and self._is_about_families(families):
-            self._decide_in_share()
+        is_about_families = self._is_about_families(families)
+        has_share = is_about_families and len(self.team.single) > LISTED_WHOLE
+        if has_share:
+            self._decide_in_share(LISTED_SHARE, partial(self._decide_listed, families))
+        else:
+            self._decide_listed(families)
+        if not self.bracket.is_closed and is_about_families:
+            self._decide_in_share(LARGEST_SHARE, self._decide_by_largest)
+            self.left_open, self.least_open, self.weakest = [], np.inf, np.inf
             FamilySearch(self.task, self.team, families, list(self.bounds)).narrow()
+        if not self.bracket.is_closed and has_share:
+            self._decide_listed(families)
         return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
 
     def _is_about_families(self, families: list[GroupExchanges]) -> bool:
@@ -254,17 +264,16 @@ class SizeVectorSearch:
         bracket.raise_lower(min(bracket.goal, self.least_open))
         return self._pack_again()
 
-    def _decide_in_share(self) -> None:
-        """The same within a share of the time; what is still open then begins anew."""
-        task, packer, part = self.task, self.packer, self.task.budget.part(LARGEST_SHARE)
+    def _decide_in_share(self, share: float, decide: Callable[[], object]) -> None:
+        """Either of both within a share of the time; what is still open then begins anew."""
+        task, packer, part = self.task, self.packer, self.task.budget.part(share)
         self.task, self.packer = replace(task, budget=part), replace(packer, budget=part)
         try:
             with suppress(OutOfBudget):
-                self._decide_by_largest()
+                decide()
         finally:
             self.task, self.packer = task, packer
             task.budget.nodes += part.nodes
-        self.left_open, self.least_open, self.weakest = [], np.inf, np.inf
         task.budget.check()
 
     def _search(self, size: int, floor: float) -> None:

@@ -35,8 +35,8 @@ for prices; and for attacks each time before prices go on. At 100 robots, (0, 40
 0.4 % less than exchanges in 93 vectors; at 60, (0, 1454), max-eigenvalue, 5.70 where exchanges in all vectors leave
 6.15."""
 DIVED_SHARE, MOST_VAIN, REACH = 0.2, 4, (0.98, 1.01)
-"""Of the time left, for dives before there are prices; how many in a row may find nothing better; and thresholds of
-dives, over the attack in hand."""
+"""Of the time left, for dives before there are prices; how many, or how many turns, in a row may find nothing better;
+and thresholds of dives, over the attack in hand."""
 POLISHED, POLISHING = (1e-3, 3e-3), 500_000
 """First temperatures and moves of annealing from where a dive ends."""
 PRICED_NODES = 300_000
@@ -79,17 +79,20 @@ class FamilySearch:
     def narrow(self, *, is_last: bool = False) -> None:
         """Attacks and prices in turn within a limit of time, until it is up or the bracket closed.
 
-        ``is_last`` : nothing else is there for the time left; else this ends where prices prove nothing at first
+        ``is_last`` : nothing else is there for the time left; else this ends where prices prove nothing at first, or
+        neither end moves in a few turns
         """
         bracket = self._task.bracket
         self.anneal(ANNEALED_SHARE, ANNEALED_STARTS)
         self.dive(DIVED_SHARE)
-        proved = bracket.lower
+        proved, vain = bracket.lower, 0
         self.price(PRICED_SHARE)
-        while not bracket.is_closed and (is_last or bracket.lower > proved):
+        while not bracket.is_closed and (is_last or (bracket.lower > proved and vain < MOST_VAIN)):
+            before = bracket.lower, bracket.upper
             if not self.dive(LATER_SHARE):
                 self.anneal(LATER_SHARE, 1)
             self.price(1.0)
+            vain = vain + 1 if (bracket.lower, bracket.upper) == before else 0
 
     def anneal(self, share: float, starts: int) -> None:
         """A few annealed attacks, each longer than those before, in a share of the time left; the prices know them."""

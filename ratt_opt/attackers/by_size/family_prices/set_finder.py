@@ -47,10 +47,13 @@ class SetFinder:
             found.extend(members for members, paid in sets if paid > least and has_limit[members.sum()])
         return found
 
-    def searched(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
+    def searched(
+        self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget, *, is_brief: bool = False
+    ) -> Sets:
         """Sets that pay, or the proof that there is none; a size left open after so many nodes ends it.
 
-        Sizes of which the last search found some come first; the others are searched where these have none.
+        ``is_brief`` : sizes of which the last search found some come first, and the others are searched only where
+        these have none
 
         Raises
         ------
@@ -58,9 +61,9 @@ class SetFinder:
         """
         found: list[BoolArray] = []
         possible = [size for size in self._sets.sizes(threshold, self._n_seeing) if np.isfinite(prices.limits[size])]
-        likely, self._likely = self._likely, set()
+        likely, self._likely = self._likely if is_brief else set(), set()
         for size in sorted(possible, key=lambda size: (size not in likely, size)):
-            if found and size not in likely:
+            if is_brief and found and size not in likely:
                 return Sets(found, is_complete=False)
             question = Question(threshold, prices.robots, float(prices.limits[size]))
             sets = self._sets.of_size(question, size, budget, nodes)

@@ -138,7 +138,7 @@ class ThresholdBound:
                 if found:
                     continue
             began = budget.elapsed
-            sets = self._finder.searched(threshold, prices.lowered(CLAIM / 2), self._effort, budget)
+            sets = self._finder.searched(threshold, prices.lowered(CLAIM / 2), self._effort, budget, is_brief=True)
             if sets.is_complete:
                 return _Verdict.REFUTED
             if not (found := self._learn_all(sets.found)):
