@@ -9,7 +9,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from ratt_opt.attackers.by_size import annealed_families, size_vector_search
+from ratt_opt.attackers.by_size import annealed_families, size_vector_search, weak_families
 from ratt_opt.attackers.by_size.family_prices import family_search, threshold_bound
 from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_sets
 from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgram
@@ -250,6 +250,28 @@ def test_with_time_left_a_search_of_all_families_goes_on(name, monkeypatch):
         stop = out.stop
     assert stop in {Stop.CLOSED, Stop.TIME}
     assert bracket.lower <= worst <= bracket.upper * (1 + 1e-12)
+
+
+def test_all_vectors_make_attacks_if_there_is_time():
+    vectors = non_dominated_sizes(60, 17, 1226)
+    spread = weak_families._spread(vectors)
+    assert sorted(spread) == sorted(vectors)
+    assert len(vectors) > 2 * weak_families.STRIDE
+    few = {sizes[0] for sizes in spread[: len(vectors) // weak_families.STRIDE]}
+    assert min(few) < np.median([sizes[0] for sizes in vectors]) < max(few)
+
+
+def test_prices_know_vectors_unless_they_are_too_many(monkeypatch):
+    problem = next(problems("logdet", 1))
+    vectors, team = vectors_of(problem), make_team("logdet", 0)
+    for most, known in ((len(vectors) + 1, vectors), (len(vectors), None)):
+        monkeypatch.setattr(size_vector_search, "MOST_VECTORS", 1)
+        monkeypatch.setattr(size_vector_search, "PRICED_VECTORS", most - 1)
+        bracket = AttackBracket(Attack(), 1.0, 0.0)
+        task = AttackTask(problem, PlanValues(problem, EVERYONE), bracket, Budget())
+        search = size_vector_search.SizeVectorSearch(task, team)
+        assert not search.has_all_vectors
+        assert search._priced_vectors() == known
 
 
 def test_prices_are_not_asked_of_very_large_teams(monkeypatch):
