@@ -138,7 +138,8 @@ class ThresholdBound:
                 if found:
                     continue
             began = budget.elapsed
-            sets = self._finder.searched(threshold, prices.lowered(CLAIM / 2), self._effort, budget, is_brief=True)
+            asked, is_brief = prices.lowered(CLAIM / 2), not self._finder.is_quick
+            sets = self._finder.searched(threshold, asked, self._effort, budget, is_brief=is_brief)
             if sets.is_complete:
                 return _Verdict.REFUTED
             if not (found := self._learn_all(sets.found)):
