@@ -262,13 +262,14 @@ def test_all_vectors_make_attacks_if_there_is_time():
 
 
 def test_prices_know_vectors_unless_they_are_too_many(monkeypatch):
-    problem = next(problems("logdet", 1))
+    problem = next(one for one in problems("logdet", 20) if len(vectors_of(one)) > 3)
     vectors, team = vectors_of(problem), make_team("logdet", 0)
-    for most, known in ((len(vectors) + 1, vectors), (len(vectors), None)):
+    few = len(vectors) - 1
+    for most, seconds, known in ((few + 1, None, vectors), (few, None, None), (few + 1, 0.0, None)):
         monkeypatch.setattr(size_vector_search, "MOST_VECTORS", 1)
-        monkeypatch.setattr(size_vector_search, "PRICED_VECTORS", most - 1)
+        monkeypatch.setattr(size_vector_search, "PRICED_SIZES", most * N_ROBOTS)
         bracket = AttackBracket(Attack(), 1.0, 0.0)
-        task = AttackTask(problem, PlanValues(problem, EVERYONE), bracket, Budget())
+        task = AttackTask(problem, PlanValues(problem, EVERYONE), bracket, Budget(seconds))
         search = size_vector_search.SizeVectorSearch(task, team)
         assert not search.has_all_vectors
         assert search._priced_vectors() == known

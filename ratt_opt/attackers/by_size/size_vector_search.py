@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
+from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
@@ -48,9 +49,10 @@ MOST_VECTORS = 5_000
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
 Where there are more, some make attacks, and the bound is that of the forced size and of prices."""
 
-PRICED_VECTORS = 100_000
-"""Vectors that prices know at most: listing so many takes a second. Beyond, links are counted. At 100 robots (28, 4066)
-has 8,413, (0, 4066) 97,873, (0, 4702) more than 240,000."""
+PRICED_SIZES, PRICED_SHARE = 10_000_000, 0.1
+"""Vectors that prices know at most, times robots, and of the time left, for listing them: a hundred thousand take a
+second and some tens of MiB. Beyond, links are counted. At 100 robots (28, 4066) has 8,413, (0, 4066) 97,873, (0, 4702)
+more than 240,000."""
 
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
@@ -146,8 +148,12 @@ class SizeVectorSearch:
 
     def _priced_vectors(self) -> list[Sizes] | None:
         """All vectors, or ``None`` where they are too many for prices to know them."""
-        further = list(islice(self._further, PRICED_VECTORS - MOST_VECTORS))
-        return None if len(further) == PRICED_VECTORS - MOST_VECTORS else [*self.vectors, *further]
+        n_robots, part, vectors = len(self.team.single), self.task.budget.part(PRICED_SHARE), list(self.vectors)
+        for sizes in self._further if n_robots <= LARGEST else ():
+            if len(vectors) >= PRICED_SIZES // n_robots or part.is_over:
+                return None
+            vectors.append(sizes)
+        return vectors if n_robots <= LARGEST else None
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""

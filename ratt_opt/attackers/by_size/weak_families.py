@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["WeakFamilies", "weakest_of"]
 
-EXCHANGES_SHARE, STRIDE = 0.2, 20
-"""Of the time, at most spent on exchanges before the bounds: large teams get fewer vectors, the first ones so far
-apart."""
+EXCHANGES_SHARE, SETTLED_SHARE, STRIDE = 0.2, 0.7, 20
+"""Of the time, at most spent on exchanges before the bounds, and of that, on families of all vectors before a few are
+shaken: large teams get fewer vectors, the first ones so far apart."""
 
 SHAKEN, SHAKES = 6, 40
 """Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
@@ -55,15 +55,16 @@ class WeakFamilies:
         """
         families: list[GroupExchanges] = []
         part = self._budget.part(EXCHANGES_SHARE)
+        first = part.part(SETTLED_SHARE)
         for sizes in _spread(vectors):
-            if families and part.stop() is not None:
+            if families and first.stop() is not None:
                 break
             self._budget.check()
-            family = self._settled(sizes, part)
-            for largest in () if part.is_over else self._weak_largest(sizes, part):
-                if part.is_over:
+            family = self._settled(sizes, first)
+            for largest in () if first.is_over else self._weak_largest(sizes, first):
+                if first.is_over:
                     break
-                family.around(largest, part)
+                family.around(largest, first)
             families.append(family)
         families.sort(key=attrgetter("value"))
         for family in families[:SHAKEN]:
