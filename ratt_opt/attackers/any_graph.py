@@ -69,7 +69,9 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     if prices is None:
         return forced_group_bound(task, team, least)
     prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
-    if _closed_by_sizes(task, team, least, looks=not is_brief):
+    # Of targets in three coordinates and more only their number is used, which proves nothing on sparse graphs.
+    looks = not is_brief and (team is not None or _is_dense(task.problem))
+    if _closed_by_sizes(task, team, least, looks=looks):
         return Stop.CLOSED
     if team is not None and groups is not None and _closed_by_partitions(task, team, groups, least):
         return Stop.CLOSED
