@@ -57,7 +57,7 @@ more than 240,000."""
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LISTED_SHARE, LARGEST_SHARE, ALIKE = 0.4, 0.2, 0.8
+LISTED_SHARE, LARGEST_SHARE, ALIKE = 0.4, 0.25, 0.8
 """Of the time left, for families whose sets can be listed, where these are not all, and for a first search by the
 largest group, before prices of families; and the value of the second best group of an attack, over the best, from which
 prices are asked: below, it is the largest group that decides."""
