@@ -29,7 +29,6 @@ MOST_OPEN = 50_000
 """Nodes kept by their bounds; beyond, the last ones are divided first, which keeps few more."""
 
 OPEN = -1
-Groups = tuple[frozenset[int], ...]
 
 
 class Pooled(SetFunction):
