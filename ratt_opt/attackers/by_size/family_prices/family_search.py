@@ -79,15 +79,16 @@ class FamilySearch:
     def narrow(self, *, is_last: bool = False) -> None:
         """Attacks and prices in turn within a limit of time, until it is up or the bracket closed.
 
-        ``is_last`` : nothing else is there for the time left; else this ends where prices prove nothing at first, or
-        neither end moves in a few turns
+        ``is_last`` : nothing else is there for the time left; else this ends where prices prove nothing at first and
+        leave a threshold open, or neither end moves in a few turns
         """
         bracket = self._task.bracket
         self.anneal(ANNEALED_SHARE, ANNEALED_STARTS)
         self.dive(DIVED_SHARE)
         proved, vain = bracket.lower, 0
         self.price(PRICED_SHARE)
-        while not bracket.is_closed and (is_last or (bracket.lower > proved and vain < MOST_VAIN)):
+        may_prove = bracket.lower > proved or (self._prices is not None and not self._prices.has_left_open)
+        while not bracket.is_closed and (is_last or (may_prove and vain < MOST_VAIN)):
             before = bracket.lower, bracket.upper
             if not self.dive(LATER_SHARE):
                 self.anneal(LATER_SHARE, 1)

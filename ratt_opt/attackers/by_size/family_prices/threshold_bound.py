@@ -76,6 +76,8 @@ class ThresholdBound:
         self._moves, self._effort = FIRST_MOVES, QUICK_EFFORT if self._finder.is_quick else FIRST_EFFORT
         self._beyond, self._unknown = np.inf, np.inf
         """The lowest thresholds out of reach, and left open with this effort."""
+        self.has_left_open = False
+        """Whether a search for sets that pay was given up."""
         self._easy = 0
         """Thresholds refuted soon, one after the other: the next is twice as near to what is not refuted."""
         self.learn(frozenset([i]) for i in range(self._n_robots))
@@ -100,7 +102,7 @@ class ThresholdBound:
             if verdict is _Verdict.REFUTED:
                 bracket.raise_lower(threshold)
             elif verdict is _Verdict.OPEN:
-                self._unknown = threshold
+                self._unknown, self.has_left_open = threshold, True
             else:
                 self._beyond = threshold
 
