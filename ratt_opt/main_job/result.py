@@ -125,7 +125,7 @@ class BoundReport:
 
     @property
     def n_max(self) -> int:
-        """Size of the largest group that link attacks are taken to leave: ``N - alpha_cs``."""
+        """Size of the largest group that link attacks are taken to leave, ``N - alpha_cs``: on networks a bound."""
         return self.problem.n_robots - self.alpha_cs
 
     @property

@@ -153,8 +153,9 @@ def _bracket(report: BoundReport) -> Table:
     table.add_row("certificate", verdict_text(report.certificate))
     table.add_row("certified ratio of RATT", share_text(report.ratt.worst_case.lower, report.upper))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
-    table.add_row("smallest largest group, n_max", str(report.n_max))
-    table.add_row("equivalent sensing attacks, alpha_cs", str(report.alpha_cs))
+    is_known = problem.threat.links_alike  # by CAA; on other graphs RATT may know but a bound
+    table.add_row("smallest largest group, n_max", f"{'' if is_known else 'at least '}{report.n_max}")
+    table.add_row("equivalent sensing attacks, alpha_cs", f"{'' if is_known else 'at most '}{report.alpha_cs}")
     for name, bracket in (("curvature k", report.curvature), ("total curvature c", report.total_curvature)):
         if bracket is not None:
             table.add_row(f"{name} over {bracket.domain} sets", bracket_text(bracket.lower, bracket.upper))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.report.tables import report_tables
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers import ratt as solver
 from tests.strategies import OBJECTIVES
@@ -127,6 +128,13 @@ def test_alpha_cs_is_computed_once(monkeypatch):
     report = ro.bound(SCENARIO.replace(links=((0, 1), (1, 2), (2, 3))))
     assert len(calls) == 1
     assert report.alpha_cs == solver.equivalent_sensing_attacks(report.problem)
+
+
+def test_off_complete_graphs_n_max_is_printed_as_a_bound():
+    for links, said in ((None, ""), (((0, 1), (1, 2), (2, 3)), "at least ")):
+        report = ro.bound(SCENARIO.replace(links=links))
+        cells = [cell for table in report_tables(report) for column in table.columns for cell in column.cells]
+        assert f"{said}{report.n_max}" in cells
 
 
 class RootOfTrace(InformationObjective):
