@@ -87,7 +87,7 @@ def test_a_bracket_that_is_closed_says_so(problem, limit):
     """Whatever ended the search: where the first bounds met, thresholds were decided until the time was up."""
     found = ro.worst_case_attack(problem, ro.myopic(problem).elements, time_limit=limit)
     width = max(1e-10 * abs(found.upper), problem.objective.rounding)
-    assert (found.stop in DONE) == (found.upper - found.lower <= width)
+    assert (found.stop in DONE) == (found.lower >= found.upper - width)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
