@@ -48,6 +48,12 @@ INNER_NODES = 500_000
 """Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
 teams, none of which need ever close."""
 
+FIRST_ASKED, ASKED_SHARE = 0.1, 0.5
+"""Of the seconds left to ask of each weak set, where they are few, whether an attack can leave it: slow and sure. The
+second on dense graphs after partitions, or where these are not searched. Two dense graphs, of 24 and 30 robots, were
+left open by 0.1 % where sizes and sets had a fifth together; with a half at first, a disk of mean degree 12 that
+partitions close in two seconds waited for 15."""
+
 DENSE, SPLIT_SHARE, SPLIT_NODES = 0.5, 0.2, 10_000_000
 """Share of all links from which partitions have but a share of the seconds, and at most so many nodes (some seconds),
 after possible sizes and before prices: a disk of 24 robots and mean degree 12 closes in 0.5 s by partitions, and not in
@@ -61,7 +67,7 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
         return _listed(task, team, groups, is_brief=is_brief)
     if is_brief and task.budget.max_nodes is None:
         task.budget.max_nodes = task.budget.nodes + INNER_NODES
-    if team is not None and is_dense and _closed_by_sizes(task, team, 0, asks=False):
+    if team is not None and is_dense and _closed_by_sizes(task, team, 0, asked=0.0):
         return Stop.CLOSED
     least = _by_trees(task, is_brief=is_brief)
     prices = _price_search(task) if task.budget.stop() is None else None
@@ -70,7 +76,8 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
     # Of targets in three coordinates and more only their number is used, which proves nothing on sparse graphs.
     looks = not is_brief and (team is not None or _is_dense(task.problem))
-    if _closed_by_sizes(task, team, least, looks=looks):
+    asked = ASKED_SHARE if is_dense and groups is None else FIRST_ASKED
+    if _closed_by_sizes(task, team, least, looks=looks, asked=asked):
         return Stop.CLOSED
     if team is not None and groups is not None and _closed_by_partitions(task, team, groups, least):
         return Stop.CLOSED
@@ -89,10 +96,10 @@ def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_b
 
 
 def _closed_by_partitions(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, least: int) -> bool:
-    """Whether partitions within their share close it, or sizes again after a worse attack that they found."""
-    before, most = task.bracket.upper, (SPLIT_SHARE, SPLIT_NODES)
+    """Whether partitions within their share close it, or the weak sets of possible sizes, asked one by one again."""
+    most = SPLIT_SHARE, SPLIT_NODES
     stop = _in_share(task, most, lambda part: _group_search(part, team, groups, is_many=False).run())
-    return stop is Stop.CLOSED or (task.bracket.upper < before and _closed_by_sizes(task, team, least))
+    return stop is Stop.CLOSED or _closed_by_sizes(task, team, least)
 
 
 def _group_search(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_many: bool) -> Resumable:
@@ -116,14 +123,14 @@ def last_stage(task: AttackTask, search: Resumable) -> Stop:
 
 
 def _closed_by_sizes(
-    task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True, asks: bool = True
+    task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True, asked: float = ASKED_SHARE
 ) -> bool:
     """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it.
 
-    ``asks`` : of each weak set whether an attack can leave it, which is long
+    ``asked`` : share of the seconds to ask of each weak set whether an attack can leave it
     """
     if looks:
-        least = possible_sizes_bound(task, team, least, asks=asks)
+        least = possible_sizes_bound(task, team, least, asked=asked)
     return task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED
 
 

@@ -33,10 +33,6 @@ SIZES_SHARE, SIZES_NODES = 0.2, 3_000_000
 """Of the seconds left, and of the nodes, at most so many, for groups of possible sizes. Lists of weak sets take most of
 them: at 50 robots of a dense graph, 10 blinded and 128 links cut, 2 million nodes and six seconds."""
 
-ASKED_SHARE = 0.5
-"""Of the seconds left, and of the nodes, to ask each of the weak sets, where they are few: it is slow and sure.
-With the share of sizes two dense graphs, of 24 and 30 robots, were left open by 0.1 %; they close with 5 and 16 s."""
-
 MOST_POSSIBLE = 1_000
 """Vectors of sizes to search: 10 at dense graphs, hundreds at 50 robots of sparser ones."""
 
@@ -57,11 +53,11 @@ def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
             task.offer(start.attack)
 
 
-def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, *, asks: bool = True) -> int:
+def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, *, asked: float = 1.0) -> int:
     """Raise the lower bound to the least that groups of possible sizes leave, whichever robots are in them.
 
-    ``least`` : seeing robots that are known to be left in some group; ``asks`` : of each weak set whether an attack can
-    leave it. Returns how many are left, by sizes too.
+    ``least`` : seeing robots that are known to be left in some group; ``asked`` : share of the seconds left to ask of
+    each weak set whether an attack can leave it. Returns how many are left, by sizes too.
 
     Raises
     ------
@@ -81,10 +77,10 @@ def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, 
             with _counted(part, budget):
                 within = replace(task, budget=part)
                 _sizes_bound(within, team, vectors)
-                sets = weak_sets(within, team, possible) if asks else None
+                sets = weak_sets(within, team, possible) if asked else None
             if sets is not None:
-                with _counted(asked := _share(budget, ASKED_SHARE), budget):
-                    largest_groups_bound(replace(task, budget=asked), possible, sets)
+                with _counted(rest := _share(budget, asked), budget):
+                    largest_groups_bound(replace(task, budget=rest), possible, sets)
     return vectors[0][0]
 
 
