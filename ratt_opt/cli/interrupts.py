@@ -29,6 +29,7 @@ class Interrupts:
         self.happened = False
         self._before: Any = None
         self._hook: Any = None
+        self._is_dropping = False
         self._met = False  # no event: its lock would be waited for by the handler that interrupts whoever holds it
 
     def __enter__(self) -> Self:
@@ -53,6 +54,8 @@ class Interrupts:
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:
         self.happened = True
+        if self._is_dropping:  # dropped too where raised: the one that comes again is not met yet
+            return
         self._met = True
         signal.default_int_handler(number, frame)
 
@@ -60,8 +63,9 @@ class Interrupts:
         if issubclass(what.exc_type, KeyboardInterrupt):
             self.happened = True
             # Raised from here it would be dropped again.
-            self._met = False
+            self._is_dropping, self._met = True, False
             threading.Thread(target=self._again, daemon=True).start()
+            self._is_dropping = False
         elif not self.happened:
             self._hook(what)
 

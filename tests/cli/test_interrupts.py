@@ -6,6 +6,7 @@ import gc
 import signal
 import subprocess
 import sys
+import threading
 import time
 from typing import Any
 
@@ -103,6 +104,22 @@ def test_one_that_python_drops_comes_again(capsys: pytest.CaptureFixture[str]) -
         gc.collect()
     assert interrupts.happened
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_one_that_comes_while_another_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a busy machine the one that comes again came before the hook had returned, and was dropped for good."""
+    start = threading.Thread.start
+
+    def interrupted(thread: threading.Thread) -> None:
+        start(thread)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(threading.Thread, "start", interrupted)
+    with Interrupts(), pytest.raises(KeyboardInterrupt):  # noqa: PT012  (it comes some time later)
+        _Collected()
+        gc.collect()
+        time.sleep(10)
 
 
 @pytest.mark.parametrize("moment", range(3, 15))
