@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from math import inf, isinf
 from numbers import Real
 from time import monotonic
+from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["Budget", "OutOfBudget"]
 
@@ -153,6 +158,27 @@ class Budget:
         seconds = None if self.time_limit is None else max(share * self.seconds_left, at_least)
         evaluations = None if isinf(self.evaluations_left) else int(share * self.evaluations_left)
         return Budget.inside(self, seconds, max_nodes, evaluations)
+
+    @contextmanager
+    def stage(self, share: float = 1.0, *, max_nodes: int | None = None) -> Iterator[Budget]:
+        """A part whose nodes count here too, and whose end is only the end of what is done ``with`` it.
+
+        ``share`` : of the seconds, evaluations and nodes left; ``max_nodes`` : no more nodes than these
+
+        Raises
+        ------
+        OutOfBudget : nothing is left before it; afterwards where the time is up here too or the user interrupted.
+        """
+        most = inf if max_nodes is None else max_nodes
+        if self.max_nodes is not None:
+            most = min(most, int(share * self.nodes_left(self.max_nodes)))
+        part = self.part(share, max_nodes=None if isinf(most) else int(most))
+        try:
+            with suppress(OutOfBudget):
+                yield part
+        finally:
+            self.nodes += part.nodes
+        self.check()
 
     def interrupt(self) -> Stop:
         """Note that the user interrupted; returns the reason to stop with."""

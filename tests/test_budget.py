@@ -74,3 +74,44 @@ def test_an_interrupt_is_heard_by_the_search_and_all_around_and_inside_it(inner_
 def test_limits_that_are_no_numbers_from_zero_are_refused(limits):
     with pytest.raises(InputError, match=r"time_limit|max_nodes"):
         Budget(**limits)
+
+
+def test_a_stage_takes_a_share_of_all_and_its_nodes_count_for_the_whole():
+    whole = Budget(time_limit=100.0, max_nodes=50)
+    whole.spend(10)
+    with whole.stage(0.5) as part:
+        assert 49 < part.seconds_left <= 50
+        part.spend(15)
+        part.spend(5)
+        part.spend()  # the 21st of half of forty
+        pytest.fail("a stage has no more nodes than its share")
+    assert (part.nodes, whole.nodes, whole.stop()) == (20, 30, None)
+    with whole.stage(max_nodes=7) as part:
+        assert part.nodes_left(100) == 7
+    with whole.stage(max_nodes=700) as part:
+        assert part.nodes_left(100) == 20
+
+
+def test_after_a_stage_that_used_up_the_whole_nothing_goes_on():
+    whole = Budget(max_nodes=3)
+    with whole.stage() as part:
+        part.spend(3)
+    assert whole.stop() is Stop.NODES
+    with pytest.raises(OutOfBudget), whole.stage():
+        pytest.fail("a stage begins without nodes")
+
+
+def test_an_interrupt_within_a_stage_ends_what_is_around_it():
+    whole = Budget()
+    with pytest.raises(OutOfBudget) as signal, whole.stage() as part:
+        part.interrupt()
+    assert signal.value.stop is whole.stop() is Stop.INTERRUPTED
+
+
+def test_an_error_within_a_stage_is_not_taken_for_its_end():
+    whole = Budget()
+    with pytest.raises(InputError), whole.stage() as part:
+        part.nodes += len([Budget(max_nodes=2), Budget(max_nodes=-1)])
+    assert whole.nodes == 0
+    with pytest.raises(InputError), whole.stage(max_nodes=-1):
+        pytest.fail("a stage of a negative number of nodes begins")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,15 +9,12 @@ from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.tree_bound import tree_bound
-from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.largest_group.spreading import forced_size
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ratt_opt.attackers.by_prices.price_search import PriceSearch
     from ratt_opt.attackers.task import AttackTask, Resumable
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -97,9 +93,9 @@ def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_b
 
 def _closed_by_partitions(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, least: int) -> bool:
     """Whether partitions within their share close it, or the weak sets of possible sizes, asked one by one again."""
-    most = SPLIT_SHARE, SPLIT_NODES
-    stop = _in_share(task, most, lambda part: _group_search(part, team, groups, is_many=False).run())
-    return stop is Stop.CLOSED or _closed_by_sizes(task, team, least)
+    with task.budget.stage(SPLIT_SHARE, max_nodes=SPLIT_NODES) as part:
+        _group_search(replace(task, budget=part), team, groups, is_many=False).run()
+    return task.bracket.is_closed or _closed_by_sizes(task, team, least)
 
 
 def _group_search(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_many: bool) -> Resumable:
@@ -131,7 +127,10 @@ def _closed_by_sizes(
     """
     if looks:
         least = possible_sizes_bound(task, team, least, asked=asked)
-    return task.bracket.is_closed or _forced_group_in_share(task, team, least) is Stop.CLOSED
+    if not task.bracket.is_closed:
+        with task.budget.stage(BOUND_SHARE, max_nodes=BOUND_NODES) as part:
+            forced_group_bound(replace(task, budget=part), team, least)
+    return task.bracket.is_closed
 
 
 def _is_dense(problem: Problem) -> bool:
@@ -164,23 +163,3 @@ def _price_search(task: AttackTask) -> PriceSearch | None:
         begun.task = task
         return begun
     return PriceSearch(task, team)
-
-
-def _forced_group_in_share(task: AttackTask, team: PlanarTeam | None, least: int) -> Stop:
-    """The bound of the forced size within its share of the seconds and nodes left."""
-    return _in_share(task, (BOUND_SHARE, BOUND_NODES), lambda part: forced_group_bound(part, team, least))
-
-
-def _in_share(task: AttackTask, most: tuple[float, int], stage: Callable[[AttackTask], Stop]) -> Stop:
-    """A stage within ``most`` = (share of the seconds and nodes left, nodes); the bracket keeps what it proves."""
-    budget, (share, at_most) = task.budget, most
-    nodes = math.inf if budget.max_nodes is None else share * budget.nodes_left(budget.max_nodes)
-    part = budget.part(share, max_nodes=int(min(nodes, at_most)))
-    try:
-        return stage(replace(task, budget=part))
-    except OutOfBudget as out:
-        if out.stop is Stop.INTERRUPTED:
-            raise
-        return out.stop
-    finally:
-        budget.nodes += part.nodes

@@ -9,17 +9,21 @@ import ratt_opt as ro
 from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_elements, random_problem
 
 
-def _bounded(problem, plan, budget=None, least=0):
-    """The bracket after the bound, and the seeing robots left in some group."""
+def _task(problem, plan, budget=None):
     attack = ro.Attack()
     bracket = AttackBracket(attack, problem.team_value(plan, attack), -np.inf, problem.objective.rounding)
-    task = AttackTask(problem, PlanValues(problem, plan), bracket, Budget() if budget is None else budget)
-    return bracket, possible_sizes_bound(task, PlanarTeam.of(problem.objective, plan), least)
+    return AttackTask(problem, PlanValues(problem, plan), bracket, Budget() if budget is None else budget)
+
+
+def _bounded(problem, plan, budget=None, least=0):
+    """The bracket after the bound, and the seeing robots left in some group."""
+    task = _task(problem, plan, budget)
+    return task.bracket, possible_sizes_bound(task, PlanarTeam.of(problem.objective, plan), least)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -58,6 +62,7 @@ def test_spent_time_and_interrupts_claim_nothing():
     interrupted = Budget()
     interrupted.interrupt()
     for budget in (Budget(time_limit=0.0), interrupted):
-        bracket, size = _bounded(problem, plan, budget, least=3)
-        assert bracket.lower == -np.inf
-        assert size >= 3
+        task, team = _task(problem, plan, budget), PlanarTeam.of(problem.objective, plan)
+        with pytest.raises(OutOfBudget):
+            possible_sizes_bound(task, team, 3)
+        assert task.bracket.lower == -np.inf

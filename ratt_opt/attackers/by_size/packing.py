@@ -11,7 +11,6 @@ import numpy as np
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -79,10 +78,9 @@ class Packer:
 
     def _largest_first(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int) -> Packing:
         """Each weak set of the largest size, and the other groups from what it leaves."""
-        part = self.budget.part(max_nodes=self.budget.nodes_left(effort))
-        others, decided = replace(self, budget=part), True
-        outside = frozenset(range(len(self.team.single))) - available
-        try:
+        outside, decided = frozenset(range(len(self.team.single))) - available, True
+        with self.budget.stage(max_nodes=effort) as part:
+            others = replace(self, budget=part)
             for found in WeakestSetSearch(self.team, sizes[0], threshold, outside=outside).run(part):
                 if found is None:
                     continue
@@ -90,9 +88,5 @@ class Packer:
                 if packing.groups is not None:
                     return Packing((found, *packing.groups))
                 decided = decided and packing.decided
-        except OutOfBudget:
-            self.budget.check()
-            return Packing(None, decided=False)
-        finally:
-            self.budget.nodes += part.nodes
-        return Packing(None, decided)
+            return Packing(None, decided)
+        return Packing(None, decided=False)

@@ -5,25 +5,20 @@ Relies on a non-decreasing objective. What is proved when the budget runs out is
 
 from __future__ import annotations
 
-from contextlib import contextmanager, suppress
 from dataclasses import replace
-from math import comb, inf
+from math import comb
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_size.largest_groups import largest_groups_bound, weak_sets
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.task import AttackBracket
-from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.link_scores import link_scores
 from ratt_opt.graph.possible_sizes import PossibleSizes
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-    from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
@@ -61,41 +56,28 @@ def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, 
 
     Raises
     ------
-    OutOfBudget : the time is up, or no node is left, before it begins.
+    OutOfBudget : the time is up, or no node is left to begin with; the bracket keeps what was proved.
     """
     threat, budget = task.problem.threat, task.budget
     n_seeing = threat.graph.n_robots - threat.n_blinded
     if n_seeing == 0 or threat.graph.n_robots > LARGEST or task.bracket.is_closed:
         return least
-    part = _share(budget, SIZES_SHARE)
-    possible = PossibleSizes(link_scores(threat.graph, threat.alpha_c, part), threat.n_blinded, least)
-    vectors = possible.vectors(part, MOST_POSSIBLE)
-    if vectors is None:
-        return possible.forced
-    if team is not None:
-        with suppress(OutOfBudget):
-            with _counted(part, budget):
-                within = replace(task, budget=part)
-                _sizes_bound(within, team, vectors)
-                sets = weak_sets(within, team, possible) if asked else None
-            if sets is not None:
-                with _counted(rest := _share(budget, asked), budget):
-                    largest_groups_bound(replace(task, budget=rest), possible, sets)
-    return vectors[0][0]
-
-
-def _share(budget: Budget, share: float) -> Budget:
-    nodes = inf if budget.max_nodes is None else share * budget.nodes_left(budget.max_nodes)
-    return budget.part(share, max_nodes=int(min(nodes, SIZES_NODES)))
-
-
-@contextmanager
-def _counted(part: Budget, budget: Budget) -> Iterator[None]:
-    """Nodes of a part are the whole budget's."""
-    try:
-        yield
-    finally:
-        budget.nodes += part.nodes
+    sets = None
+    with budget.stage(SIZES_SHARE, max_nodes=SIZES_NODES) as part:
+        possible = PossibleSizes(link_scores(threat.graph, threat.alpha_c, part), threat.n_blinded, least)
+        least = possible.forced
+        vectors = possible.vectors(part, MOST_POSSIBLE)
+        if vectors is None:
+            return least
+        least = vectors[0][0]
+        if team is not None:
+            within = replace(task, budget=part)
+            _sizes_bound(within, team, vectors)
+            sets = weak_sets(within, team, possible) if asked else None
+    if team is not None and sets is not None:
+        with budget.stage(asked, max_nodes=SIZES_NODES) as rest:
+            largest_groups_bound(replace(task, budget=rest), possible, sets)
+    return least
 
 
 def _sizes_bound(task: AttackTask, team: PlanarTeam, vectors: list[Sizes]) -> None:

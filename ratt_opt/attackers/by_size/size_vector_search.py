@@ -12,7 +12,7 @@ Where several groups are about alike, or there are too many vectors, ``family_pr
 
 from __future__ import annotations
 
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from itertools import islice
@@ -29,7 +29,6 @@ from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
@@ -272,15 +271,13 @@ class SizeVectorSearch:
 
     def _decide_in_share(self, share: float, decide: Callable[[], object]) -> None:
         """Either of both within a share of the time; what is still open then begins anew."""
-        task, packer, part = self.task, self.packer, self.task.budget.part(share)
-        self.task, self.packer = replace(task, budget=part), replace(packer, budget=part)
-        try:
-            with suppress(OutOfBudget):
+        task, packer = self.task, self.packer
+        with task.budget.stage(share) as part:
+            self.task, self.packer = replace(task, budget=part), replace(packer, budget=part)
+            try:
                 decide()
-        finally:
-            self.task, self.packer = task, packer
-            task.budget.nodes += part.nodes
-        task.budget.check()
+            finally:
+                self.task, self.packer = task, packer
 
     def _search(self, size: int, floor: float) -> None:
         """Offer every set of this size below the goal as a largest group."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,14 +11,13 @@ from ratt_opt.attackers.by_size.family_prices.family_dive import FamilyDive
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST, ThresholdBound
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.budget import OutOfBudget
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
     from ratt_opt.attackers.task import AttackTask
@@ -69,7 +67,8 @@ class FamilySearch:
 
     def run(self) -> Stop:
         """All of them, the attacks as long as there is time."""
-        self._within(self._part(FORCED_SHARE), self._weakest_of_forced_size)
+        with self._task.budget.stage(FORCED_SHARE) as part:
+            self._weakest_of_forced_size(part)
         if np.isfinite(self._task.budget.seconds_left):
             self.narrow(is_last=True)
         else:
@@ -113,7 +112,8 @@ class FamilySearch:
         """
         if self._finder.is_quick and not self._is_out_of_reach():
             before = self._task.bracket.upper
-            self._within(self._part(share), self._dive)
+            with self._task.budget.stage(share) as part:
+                self._dive(part)
             return self._task.bracket.upper < before
         return False
 
@@ -151,22 +151,8 @@ class FamilySearch:
             self._prices = ThresholdBound(self._team, self._threat, self._vectors, [*self._known, *self._dives.sets()])
         prices = self._prices
         most = None if np.isfinite(budget.seconds_left) else PRICED_NODES
-        self._within(self._part(share, most), lambda part: prices.run(bracket, part))
-
-    def _part(self, share: float, nodes: int | None = None) -> Budget:
-        """A share of the time left, and so many nodes or all that are left."""
-        budget = self._task.budget
-        nodes = budget.max_nodes if nodes is None else nodes
-        return budget.part(share, max_nodes=None if nodes is None else budget.nodes_left(nodes))
-
-    def _within(self, part: Budget, stage: Callable[[Budget], None]) -> None:
-        """A stage within a part of the budget; the bracket keeps what it proves."""
-        try:
-            with suppress(OutOfBudget):
-                stage(part)
-        finally:
-            self._task.budget.nodes += part.nodes
-        self._task.budget.check()
+        with budget.stage(share, max_nodes=most) as part:
+            prices.run(bracket, part)
 
     def _offer(self, groups: Iterable[frozenset[int]]) -> bool:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
