@@ -50,6 +50,10 @@ second on dense graphs after partitions, or where these are not searched. Two de
 left open by 0.1 % where sizes and sets had a fifth together; with a half at first, a disk of mean degree 12 that
 partitions close in two seconds waited for 15."""
 
+LOOKS_FROM = 2.0
+"""Seconds left from which possible sizes are looked at on sparse graphs, too: of one second they took a fifth, at 30 to
+50 robots, and raised the lower end from 0.80 to 0.83 of the attack, where the first threshold is at 0.9."""
+
 DENSE, SPLIT_SHARE, SPLIT_NODES = 0.5, 0.2, 10_000_000
 """Share of all links from which partitions have but a share of the seconds, and at most so many nodes (some seconds),
 after possible sizes and before prices: a disk of 24 robots and mean degree 12 closes in 0.5 s by partitions, and not in
@@ -70,8 +74,9 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     if prices is None:
         return forced_group_bound(task, team, least)
     prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
-    # Of targets in three coordinates and more only their number is used, which proves nothing on sparse graphs.
-    looks = not is_brief and (team is not None or _is_dense(task.problem))
+    # On sparse graphs they prove less than the first threshold; of targets in three coordinates and more only their
+    # number is used, which proves nothing there.
+    looks = not is_brief and (is_dense or (team is not None and task.budget.seconds_left > LOOKS_FROM))
     asked = ASKED_SHARE if is_dense and groups is None else FIRST_ASKED
     if _closed_by_sizes(task, team, least, looks=looks, asked=asked):
         return Stop.CLOSED

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attackers.by_prices import price_search
+from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups import cover
@@ -402,3 +404,29 @@ def test_prices_fall_for_groups_that_pay_until_none_does(seed, monkeypatch):
         assert not (found.groups and least < -1e8)
         assert (least_cost(problem, plan, threshold, (left.robot, blinded)) >= -1e-5) == (not found.groups)
     np.testing.assert_array_equal(at.robot, first.robot)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seconds", [2.0, 3.0, 7.0])
+def test_thresholds_are_within_reach_of_the_seconds_left(seed, seconds, monkeypatch):
+    """Each refutation takes a second; the last step is a small one, as one that does not end proves nothing."""
+    problem, plan = team_problem(seed, 5)
+    clock, asked = [0.0], []
+
+    def decide(_decision, threshold, _budget, _nodes):
+        asked.append(threshold)
+        clock[0] += 1.0
+        return Answer(verdict=Threshold.REFUTED)
+
+    values, nothing, budget = PlanValues(problem, plan), ro.Attack(), Budget(time_limit=seconds)
+    monkeypatch.setattr(price_search.ThresholdDecision, "decide", decide)
+    for module in ("ratt_opt.budget", "ratt_opt.attackers.by_prices.price_search"):
+        monkeypatch.setattr(f"{module}.monotonic", lambda: budget.started + clock[0])
+    bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
+    task = AttackTask(problem, values, bracket, budget)
+    with pytest.raises(OutOfBudget):
+        PriceSearch(task, PricedTeam.of(problem.objective, values.plan)).run()
+    steps = np.diff([0.0, *asked]) / (bracket.upper - np.array([0.0, *asked[:-1]]))
+    assert len(asked) == seconds
+    assert steps[0] == pytest.approx(0.5)
+    assert steps[-1] == pytest.approx(0.25)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from time import monotonic
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_prices.answer import Threshold
@@ -46,6 +47,9 @@ LONG, WIDE, QUARTER = 50_000, 5e-2, 0.25
 """Nodes of a refutation after which the next threshold is no more than a quarter up while the bracket is wider than
 this. Measured on a small world of 100 robots: 4 % more take ten times the nodes; half-way up, 65 s went for nothing."""
 
+REACH = 0.25
+"""Of the bracket, the next step where as many seconds are left as the last refutation took; less with less."""
+
 RESOLUTION = 0.05
 """Share of the bracket below an open threshold that is not worth another bisection: more effort is."""
 
@@ -64,6 +68,8 @@ class PriceSearch:
         planar = PlanarTeam.of(task.problem.objective, task.values.plan)
         self._decision = ThresholdDecision(team, links, threat, WeakSizes(team, planar))
         self._effort, self._share = FIRST_EFFORT, 0.5
+        self._took = 0.0
+        """Seconds of the last refutation."""
         self._unknown: float | None = None
         """The lowest threshold left open with this effort, if any."""
 
@@ -82,10 +88,11 @@ class PriceSearch:
                 self._effort, self._unknown = HARDER * self._effort, None
                 self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
                 continue
-            before, starts = budget.nodes, 0
+            before, began, starts = budget.nodes, monotonic(), 0
             answer = self._decision.decide(threshold, budget, budget.nodes_left(self._effort))
             spent = budget.nodes - before
             if answer.verdict is Threshold.REFUTED:
+                self._took = monotonic() - began
                 self._share = 0.5 if spent < LONG else QUARTER
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self._offer(answer.partition):
@@ -102,7 +109,10 @@ class PriceSearch:
         width, near = bracket.upper - bracket.lower, NEAR * abs(bracket.upper)
         if unknown is None or unknown > bracket.upper:
             share = self._share if width > WIDE * abs(bracket.upper) else 0.5
-            return bracket.goal if width <= near else bracket.lower + share * width
+            within_reach = REACH * self.task.budget.seconds_left / self._took if self._took > 0 else 1.0
+            if width <= near and within_reach >= share:
+                return bracket.goal
+            return bracket.lower + min(share, within_reach) * width
         below = unknown - bracket.lower
         return None if below <= max(RESOLUTION * width, BISECTED * abs(bracket.upper)) else bracket.lower + below / 2
 

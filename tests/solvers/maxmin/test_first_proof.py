@@ -151,3 +151,25 @@ def test_on_a_network_the_plan_that_more_is_proved_of_gets_the_rest(
     lower = ends[0][1] * known
     assert attacks.aims[1] == pytest.approx(level - incumbent.LEFT_EARLY * (level - lower))
     assert attacks.aims[0] == problem.objective([])
+
+
+@pytest.mark.parametrize("seconds", [0.3, 0.6, 1.0, 3.0])
+@pytest.mark.parametrize("family", ["dense", "disk-6", "small-world", "hubs"])
+def test_of_a_short_search_on_a_network_the_first_attack_has_nearly_all(
+    family: str, seconds: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With four fifths of a second 81 of 236 searches proved less of RATT's plan than an attack on it alone."""
+    problem = network_scenario(family, 24, 4, alpha_s=0.2, alpha_c=0.15, seed=0).problem()
+    parts = []
+
+    def attack(_: Adversary, _plan: IntArray, part: Budget, _aim: float) -> AttackResult:
+        assert part.time_limit is not None
+        parts.append(part.time_limit)
+        raise OutOfBudget(Stop.TIME)
+
+    monkeypatch.setattr(Adversary, "attack", attack)
+    first, budget = ratt(problem).elements, Budget(time_limit=seconds)
+    monkeypatch.setattr("ratt_opt.budget.monotonic", lambda: budget.started)
+    with pytest.raises(OutOfBudget):
+        Incumbent(problem, OutcomePool(problem), first, budget).start([first])
+    assert min(seconds, 1.0) >= parts[0] >= 0.9 * min(seconds, 1.0)

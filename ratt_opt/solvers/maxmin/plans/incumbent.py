@@ -161,9 +161,9 @@ Nearly all attacks on teams of up to 30 robots close in less."""
 NETWORK_SHARE = 0.02
 """The same share on networks, where attacks go on later where they ended. With a tenth (and 500,000 nodes) 20 of 120
 seconds went into two such attacks at 30 robots of hubs, with a third blinded and 30 % of the links cut."""
-FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
-"""So many seconds at least, if that is no more than this share of those left: a tenth of a second proves little. Of one
-second, half left 13 % of what a second proves of a disk of 50 robots unproved."""
+FIRST_SECONDS, SHORT_SHARE = 1.0, 0.95
+"""So many seconds at least, if that is no more than this share of those left: a tenth of a second proves little, and
+what a search of one second is asked for is what is proved of RATT's plan."""
 IMPROVED_SHARE = 0.1
 """Of the time left for the local search from one plan: at 100 robots each attack on the way takes up to two seconds."""
 RIVAL_SHARE = 0.5
