@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from ratt_opt.attackers.by_size import annealed_families, size_vector_search, weak_families
-from ratt_opt.attackers.by_size.family_prices import family_search, threshold_bound
-from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_sets
+from ratt_opt.attackers.by_size.family_prices import family_search, paying_tree, threshold_bound
+from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_of_size, annealed_sets
 from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgram
 from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
@@ -74,8 +74,13 @@ def test_pairs_bound_all_sets_with_their_prices(name):
             assert weakest <= min(team.value(one) for one in combinations(range(N_ROBOTS), size)) + 1e-9
 
 
+@pytest.mark.parametrize("by_minorants", [False, True])
 @pytest.mark.parametrize("name", OBJECTIVES)
-def test_who_pays_is_found_or_ruled_out(name):
+def test_who_pays_is_found_or_ruled_out(name, by_minorants, monkeypatch):
+    """By all sets; with minorants before pairs of robots are given more than a node, too."""
+    if by_minorants:
+        for constant, value in {"FIRST_TRIED": 1, "SHARPER": np.inf, "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
+            monkeypatch.setattr(paying_tree, constant, value)
     answers = set()
     for seed in range(12):
         team, rng = make_team(name, seed), np.random.default_rng([seed, 1])
@@ -123,6 +128,23 @@ def test_annealed_sets_are_weak_and_pay_what_they_say(name):
             assert team.value(np.flatnonzero(members)) < threshold * (1 + 1e-12)
             count += 1
     assert count >= (team.single < threshold).sum() > 0  # one with each weak robot
+
+
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_annealed_sets_of_a_size_stay_weak_and_pay_most(name):
+    dearest = 0
+    for seed in range(10):
+        team, rng = make_team(name, seed), np.random.default_rng(seed)
+        prices, (view,) = rng.normal(size=N_ROBOTS), views(team)
+        sets = sorted(combinations(range(N_ROBOTS), 4), key=team.value)
+        threshold = team.value(sets[len(sets) // 4])
+        members = annealed_of_size(view, threshold, prices, as_row(sets[0]), 2_000, rng)
+        weak = [prices[list(one)].sum() for one in sets if team.value(one) < threshold]
+        assert members.sum() == 4
+        assert team.value(np.flatnonzero(members)) < threshold * (1 + 1e-12)
+        dearest += prices[members].sum() >= max(weak) - 1e-9
+        assert prices[members].sum() >= prices[list(sets[0])].sum()
+    assert dearest >= 7
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     Found = Generator[frozenset[int] | None, None, None]
 
-__all__ = ["FamilyBound", "SetNode", "WeakestSetSearch", "bound_family"]
+__all__ = ["FamilyBound", "SetNode", "WeakestSetSearch", "bound_family", "heavy_robots"]
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -102,6 +102,11 @@ HEAVY_ROBOTS = ((50, 4), (10**9, 5))
 Each doubles the polytopes and sharpens the bound: with two instead of four, 1.7 times the nodes at 40 robots."""
 
 
+def heavy_robots(n_free: int) -> int:
+    """Robots per target whose patterns the minorant of sets of so many free robots enumerates."""
+    return next(heavy for most, heavy in HEAVY_ROBOTS if n_free <= most)
+
+
 @dataclass(frozen=True, slots=True)
 class FamilyBound:
     """No set is worth less than ``bound``; ``suggested`` (size,) are positions of robots that may come near it.
@@ -125,8 +130,7 @@ def bound_family(family: SetFamily, goal: float, parent: Minorant | None) -> Fam
     n_free = len(family.information)
     if not 0 < family.size < n_free:
         return FamilyBound(-np.inf)
-    heavy = next(heavy for most, heavy in HEAVY_ROBOTS if n_free <= most)
-    minorant = affine_minorant(family, heavy, goal, parent)
+    minorant = affine_minorant(family, heavy_robots(n_free), goal, parent)
     weakest = np.lexsort((minorant.scores, -minorant.fraction))[: family.size]
     return FamilyBound(minorant.bound(family.size), weakest, minorant)
 

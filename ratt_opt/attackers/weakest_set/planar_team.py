@@ -77,12 +77,14 @@ class SetFamily:
     """All sets of ``size`` of F free robots, beside those already chosen.
 
     ``start`` : (M, 3) prior plus the chosen robots' information; ``information`` : (F, M, 3)
+    ``lacking`` : (F,) where given, only sets of which it adds up to less than 0 belong to the family
     """
 
     team: PlanarTeam
     start: FloatArray
     information: FloatArray
     size: int
+    lacking: FloatArray | None = None
 
 
 def _criterion(objective: InformationObjective, sums: FloatArray) -> FloatArray:

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_sets
+from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_of_size, annealed_sets
 from ratt_opt.attackers.by_size.family_prices.pair_bound import views
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question, Sets
+from ratt_opt.attackers.weakest_set.exchanges import exchanged
+from ratt_opt.attackers.weakest_set.linear_descent import descended
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SetFinder"]
 
+OF_SIZE = 3
+"""How many times as many moves a set of one size has as one around a robot."""
 SEED = 0
 
 
@@ -28,24 +32,43 @@ class SetFinder:
     """
 
     def __init__(self, team: PlanarTeam, n_seeing: int) -> None:
-        self._n_seeing, self._sets = n_seeing, PayingSets(team)
+        self._team, self._n_seeing, self._sets = team, n_seeing, PayingSets(team)
         self.is_quick = self._sets.is_by_axis
         self._likely: set[int] = set()
         self._views, self._rng = views(team), np.random.default_rng(SEED)
+        self._weak: dict[int, tuple[BoolArray, float]] = {}
 
     def annealed(
         self, threshold: float, prices: FamilyPrices, least: float, moves: int, budget: Budget
     ) -> list[BoolArray]:
-        """Sets that pay more than ``least``, annealed around each robot; some may be the same."""
+        """Sets that pay more than ``least``, annealed around each robot and of each size; some may be the same.
+
+        For criteria without axes, where a set is weak if all targets together say so.
+        """
         found: list[BoolArray] = []
         has_limit = np.isfinite(prices.limits)
         sizes = np.arange(len(has_limit), dtype=np.float64)
         # Sizes that no group has are between others on the way from one set to the next.
         links = -np.interp(sizes, sizes[has_limit], prices.limits[has_limit])
-        for view in self._views:
-            sets = annealed_sets(view, threshold, prices.robots, links, moves, self._rng, budget)
-            found.extend(members for members, paid in sets if paid > least and has_limit[members.sum()])
+        (view,) = self._views
+        sets = annealed_sets(view, threshold, prices.robots, links, moves, self._rng, budget)
+        found.extend(members for members, paid in sets if paid > least and has_limit[members.sum()])
+        for size in np.flatnonzero(has_limit[: self._n_seeing + 1]).tolist():
+            weak, value = self._weakest(size, budget)
+            if value >= threshold or budget.is_over:
+                break
+            members = annealed_of_size(view, threshold, prices.robots, weak, OF_SIZE * moves, self._rng)
+            if float(prices.robots[members].sum()) - prices.limits[size] > least:
+                found.append(members)
         return found
+
+    def _weakest(self, size: int, budget: Budget) -> tuple[BoolArray, float]:
+        """A weak set (N,) of a size, and its value: where a descent and exchanges end."""
+        if size not in self._weak:
+            start = descended(self._team, np.argsort(self._team.single, kind="stable")[:size])
+            robots = sorted(exchanged(self._team, start.tolist(), budget=budget))
+            self._weak[size] = np.isin(np.arange(len(self._team.single)), robots), self._team.value(robots)
+        return self._weak[size]
 
     def searched(
         self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget, *, is_brief: bool = False

@@ -1,0 +1,180 @@
+"""Sets of one size that are weak and pay more than a limit, by bounds on pairs of robots and by affine minorants.
+
+Pairs (``paying_pairs.py``) are sharp for few robots, and a node takes half a millisecond: all sets of 12 of 60 robots
+are ruled out by some hundreds. For 24 robots of 60 they lack 20 of 260 where a minorant of value and prices together
+(``weakest_set/minorant.py``) lacks 5, and takes 30 milliseconds. There a best-first search divides nodes by minorants,
+which decide some robots for their children, and pairs end the smallest ones. Leaving every node to the pairs for a
+while took five times as long for sets of 12.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.attackers.by_size.family_prices.paying_pairs import (
+    FINISHED,
+    FOUND,
+    PairNodes,
+    search_pairs,
+    slack_of_pairs,
+)
+from ratt_opt.attackers.weakest_set.branch_and_bound import SetNode, heavy_robots
+from ratt_opt.attackers.weakest_set.minorant import affine_minorant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ratt_opt._validation import BoolArray
+    from ratt_opt.attackers.by_size.family_prices.pair_bound import View
+    from ratt_opt.attackers.by_size.family_prices.paying_pairs import Question
+    from ratt_opt.attackers.weakest_set.minorant import Minorant
+    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.budget import Budget
+
+__all__ = ["PayingTree"]
+
+ENOUGH = 6
+"""Sets found of one size before the prices are asked again; each pays more than those before."""
+FIRST_TRIED, SHARPER = 500, 0.5
+"""Nodes that pairs have for a question before a minorant of all sets is made, and the share of what pairs lack that it
+may lack at most to be worth its time."""
+TRIED, FEWEST, MOST, MORE, LESS = 30, 8, 3_000, 1.5, 0.7
+"""Nodes of pairs before further minorants: at first, at least, at most; their growth where they end a node, and where
+not."""
+MINORANT_NODES = 60
+"""Nodes of pairs that take as long as a minorant."""
+BETWEEN_LOOKS = 10_000_000
+"""Criteria of single targets between two looks at the clock: less than a tenth of a second."""
+
+
+class PayingTree:
+    """Answers questions about the sets of one size, one after the other; each search begins with the last minorant."""
+
+    def __init__(self, team: PlanarTeam, view: View, size: int) -> None:
+        self._team, self._view, self._size = team, view, size
+        self._root: Minorant | None = None
+        self._has_sharper_minorants = False
+        self._tried, self._serial = TRIED, 0
+
+    def search(self, question: Question, budget: Budget, nodes: int, found: list[BoolArray]) -> bool:
+        """Search to the end (true), or until enough is found or the nodes, and a minorant's more, are spent.
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or no node is left.
+        """
+        run = _Run(question, budget, budget.nodes + max(nodes, 1), found)
+        root = SetNode(-np.inf, 0, frozenset(), frozenset(), self._root)
+        pairs = self._pairs(root, run)
+        if not self._has_sharper_minorants:
+            if self._is_ended_by_pairs(pairs, run, FIRST_TRIED):
+                return not run.is_over
+            if run.is_over:
+                return False
+        waiting = self._divided(root, run)
+        if waiting and self._size > 2:
+            lacking = slack_of_pairs(self._view, question, self._pairs(root, run))
+            self._has_sharper_minorants = waiting[0].bound - question.threshold >= SHARPER * lacking
+            if not self._has_sharper_minorants:
+                return self._is_ended_by_pairs(pairs, run, nodes) and not run.is_over
+        while waiting and not run.is_over:
+            node = heapq.heappop(waiting)
+            if not self._is_ended(node, run):
+                if run.is_over:
+                    return False
+                for child in self._divided(node, run):
+                    heapq.heappush(waiting, child)
+        return not (waiting or run.is_over)
+
+    def _is_ended(self, node: SetNode, run: _Run) -> bool:
+        """Leave a node to the pairs for a while."""
+        n_decided = len(node.inside) + len(node.outside)
+        if len(node.inside) == self._size:
+            self._keep(node.inside, run)
+            return True
+        if self._size + len(node.outside) == len(self._view.information):
+            self._keep(frozenset(range(len(self._view.information))) - node.outside, run)
+            return True
+        assert n_decided < len(self._view.information), "a set of some of the open robots is asked for"
+        is_ended = self._is_ended_by_pairs(self._pairs(node, run), run, self._tried)
+        self._tried = int(np.clip(self._tried * (MORE if is_ended else LESS), FEWEST, MOST))
+        return is_ended
+
+    def _pairs(self, node: SetNode, run: _Run) -> PairNodes:
+        """Where pairs begin with a node."""
+        inside, outside = (np.array(sorted(robots), dtype=np.int64) for robots in (node.inside, node.outside))
+        left = self._size - len(inside)
+        known = 0.0 if node.minorant is None else node.minorant.multiplier
+        return PairNodes.of(
+            self._view, run.question, left, (inside, outside), known or run.question.threshold / left**2
+        )
+
+    def _is_ended_by_pairs(self, pairs: PairNodes, run: _Run, nodes: int) -> bool:
+        """Whether pairs come to an end within so many nodes."""
+        n_robots, n_targets = self._view.information.shape[:2]
+        search: Any = search_pairs
+        chunk, members = max(BETWEEN_LOOKS // (n_robots**2 * n_targets), 1), np.zeros(n_robots, dtype=np.bool_)
+        last = min(run.last, run.budget.nodes + nodes)
+        while run.budget.nodes < last and len(run.found) < ENOUGH:
+            most, before = run.budget.nodes_left(min(chunk, last - run.budget.nodes)), int(pairs.position[1])
+            code = search(self._view, run.asked(), pairs, most, members)
+            run.budget.nodes += int(pairs.position[1]) - before
+            if code == FOUND:
+                run.found.append(members.copy())
+            elif code == FINISHED:
+                return True
+        return False
+
+    def _keep(self, robots: Iterable[int], run: _Run) -> None:
+        """Add a set to those found if it is an answer."""
+        members = np.isin(np.arange(len(self._view.information)), list(robots))
+        paid = float(run.question.prices[members].sum())
+        if paid > run.asked().limit and self._team.value(np.flatnonzero(members)) < run.question.threshold:
+            run.found.append(members)
+
+    def _divided(self, node: SetNode, run: _Run) -> list[SetNode]:
+        """Nothing where a minorant closes the node; else one or two nodes with some more robots decided."""
+        question, budget = run.question, run.budget
+        budget.nodes += budget.nodes_left(MINORANT_NODES)
+        robots, left = node.undecided(self._team), self._size - len(node.inside)
+        if not 0 < left < len(robots):
+            return [node]
+        limit = question.limit - float(question.prices[list(node.inside)].sum())
+        family = replace(self._team.family(robots, left, node.inside), lacking=limit / left - question.prices[robots])
+        minorant = affine_minorant(family, heavy_robots(len(robots)), question.threshold, node.minorant)
+        if not (node.inside or node.outside):
+            self._root = minorant
+        bound = max(node.bound, minorant.bound(left))
+        if bound >= question.threshold:
+            return []
+        suggested = robots[np.lexsort((minorant.scores, -minorant.fraction))[:left]]
+        self._keep([*node.inside, *suggested.tolist()], run)
+        node, robots = replace(node, bound=bound, minorant=minorant).fixed(robots, left, question.threshold)
+        left, self._serial = self._size - len(node.inside), self._serial + 2
+        if not 0 < left < len(robots):
+            return [replace(node, serial=self._serial)]
+        return list(node.split(robots, bound, self._serial))
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """One search: the question, the budget, its nodes at the end, and what is found."""
+
+    question: Question
+    budget: Budget
+    last: int
+    found: list[BoolArray]
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the nodes are spent or enough is found."""
+        return self.budget.nodes >= self.last or len(self.found) >= ENOUGH
+
+    def asked(self) -> Question:
+        """For sets that pay more than those found: cheaper ones say less of what the prices should be."""
+        paid = [float(self.question.prices[members].sum()) for members in self.found]
+        return self.question._replace(limit=max([self.question.limit, *paid]))
