@@ -32,10 +32,17 @@ __all__ = ["PayingSets", "Question", "Sets"]
 
 @dataclass(frozen=True, slots=True)
 class Sets:
-    """``found`` sets (N,) that answer a question; with none, ``is_complete`` says that there is none."""
+    """``found`` sets (N,) that answer a question; no other one is worth less than ``lower``, which is infinite where
+    all others are ruled out.
+    """
 
     found: list[BoolArray]
-    is_complete: bool
+    lower: float
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether no set answers the question."""
+        return not self.found and self.lower == np.inf
 
 
 class PayingSets:
@@ -72,24 +79,28 @@ class PayingSets:
         OutOfBudget : the time is up, or no node is left.
         """
         found: list[BoolArray] = []
+        search = self._search_axes if self.is_by_axis else self._search_tree
         for view, floor in zip(self._views, self._floors[size], strict=True):
             if floor >= question.threshold:
                 continue
             before = budget.nodes
-            if self.is_by_axis:
-                is_complete = self._search_axes(view, question, size, budget, nodes, found)
-            else:
-                tree = self._trees.setdefault(size, PayingTree(self._team, view, size))
-                is_complete = tree.search(question, budget, nodes, found)
-            if not is_complete or len(found) >= ENOUGH:
-                return Sets(found, is_complete=False)
+            lower = search(view, question, size, budget, nodes, found)
+            if lower < np.inf or len(found) >= ENOUGH:
+                return Sets(found, lower if len(self._views) == 1 else -np.inf)
             nodes -= budget.nodes - before
-        return Sets(found, is_complete=not found)
+        return Sets(found, np.inf)
+
+    def _search_tree(  # noqa: PLR0917
+        self, view: View, question: Question, size: int, budget: Budget, nodes: int, found: list[BoolArray]
+    ) -> float:
+        """Search all targets at once."""
+        tree = self._trees.setdefault(size, PayingTree(self._team, view, size))
+        return tree.search(question, budget, nodes, found)
 
     def _search_axes(  # noqa: PLR0917
         self, view: View, question: Question, size: int, budget: Budget, nodes: int, found: list[BoolArray]
-    ) -> bool:
-        """Search one view to the end (true), or until enough is found or the nodes are spent."""
+    ) -> float:
+        """Search one target until all is decided (infinite), enough is found or the nodes are spent."""
         search: Any = search_axes
         state = AxisNodes.of(view, size, question.threshold)
         chunk = max(BETWEEN_LOOKS // (self._n_robots**2 * len(view.weights)), 1)
@@ -99,11 +110,11 @@ class PayingSets:
             code = search(view, question, state, most, members)
             budget.nodes += int(state.position[1]) - before
             if code == FINISHED:
-                return True
+                return np.inf
             if code == FOUND:
                 found.append(members.copy())
                 # Sets found next shall pay more: cheaper ones say less of what the prices should be.
                 question = question._replace(limit=max(question.limit, float(question.prices[members].sum())))
                 if len(found) >= ENOUGH:
-                    return False
-        return False
+                    break
+        return -np.inf

@@ -60,8 +60,10 @@ class PayingTree:
         self._has_sharper_minorants = False
         self._tried, self._serial = TRIED, 0
 
-    def search(self, question: Question, budget: Budget, nodes: int, found: list[BoolArray]) -> bool:
-        """Search to the end (true), or until enough is found or the nodes, and a minorant's more, are spent.
+    def search(self, question: Question, budget: Budget, nodes: int, found: list[BoolArray]) -> float:
+        """Search until all is decided, enough is found, or the nodes, and a minorant's more, are spent.
+
+        Returns what no set that is left undecided is worth less than: infinite where none is.
 
         Raises
         ------
@@ -72,23 +74,23 @@ class PayingTree:
         pairs = self._pairs(root, run)
         if not self._has_sharper_minorants:
             if self._is_ended_by_pairs(pairs, run, FIRST_TRIED):
-                return not run.is_over
+                return np.inf
             if run.is_over:
-                return False
+                return -np.inf
         waiting = self._divided(root, run)
         if waiting and self._size > 2:
             lacking = slack_of_pairs(self._view, question, self._pairs(root, run))
             self._has_sharper_minorants = waiting[0].bound - question.threshold >= SHARPER * lacking
             if not self._has_sharper_minorants:
-                return self._is_ended_by_pairs(pairs, run, nodes) and not run.is_over
+                return np.inf if self._is_ended_by_pairs(pairs, run, nodes) else waiting[0].bound
         while waiting and not run.is_over:
             node = heapq.heappop(waiting)
             if not self._is_ended(node, run):
                 if run.is_over:
-                    return False
+                    return node.bound
                 for child in self._divided(node, run):
                     heapq.heappush(waiting, child)
-        return not (waiting or run.is_over)
+        return waiting[0].bound if waiting else np.inf
 
     def _is_ended(self, node: SetNode, run: _Run) -> bool:
         """Leave a node to the pairs for a while."""

@@ -35,6 +35,7 @@ class SetFinder:
         self._team, self._n_seeing, self._sets = team, n_seeing, PayingSets(team)
         self.is_quick = self._sets.is_by_axis
         self._likely: set[int] = set()
+        self._hard: set[int] = set()
         self._views, self._rng = views(team), np.random.default_rng(SEED)
         self._weak: dict[int, tuple[BoolArray, float]] = {}
 
@@ -73,26 +74,32 @@ class SetFinder:
     def searched(
         self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget, *, is_brief: bool = False
     ) -> Sets:
-        """Sets that pay, or the proof that there is none; a size left open after so many nodes ends it.
+        """Sets that pay, or what those are worth at least that may be left; each size has so many nodes.
 
-        ``is_brief`` : sizes of which the last search found some come first, and the others are searched only where
-        these have none
+        ``is_brief`` : sizes of which the last search found some come first, those that it left open last, and where
+        some are found the others are not searched; else the first size left open ends the search
 
         Raises
         ------
         OutOfBudget : the time is up, or no node is left.
         """
         found: list[BoolArray] = []
+        lower = np.inf
         possible = [size for size in self._sets.sizes(threshold, self._n_seeing) if np.isfinite(prices.limits[size])]
-        likely, self._likely = self._likely if is_brief else set(), set()
-        for size in sorted(possible, key=lambda size: (size not in likely, size)):
+        if is_brief:
+            possible.sort(key=lambda size: (size not in self._likely, size in self._hard, size))
+        likely, self._likely, self._hard = self._likely, set(), self._hard if is_brief else set()
+        for size in possible:
             if is_brief and found and size not in likely:
-                return Sets(found, is_complete=False)
+                return Sets(found, -np.inf)
             question = Question(threshold, prices.robots, float(prices.limits[size]))
             sets = self._sets.of_size(question, size, budget, nodes)
             found.extend(sets.found)
+            lower = min(lower, sets.lower)
             if sets.found:
                 self._likely.add(size)
+            elif is_brief:
+                (self._hard.discard if sets.is_complete else self._hard.add)(size)
             elif not sets.is_complete:
-                return Sets(found, is_complete=False)
-        return Sets(found, is_complete=not found)
+                break
+        return Sets(found, lower)

@@ -100,7 +100,7 @@ class ThresholdBound:
         """
         while (threshold := self._threshold(bracket)) is not None:
             left, aim = budget.seconds_left, self._aim(threshold, bracket)
-            verdict = self._decide(threshold, aim, budget)
+            verdict = self._decide(threshold, aim, bracket, budget)
             is_easy = verdict is _Verdict.REFUTED and budget.seconds_left >= EASY * left
             self._easy = self._easy + 1 if is_easy else 0
             if verdict is _Verdict.REFUTED:
@@ -128,9 +128,10 @@ class ThresholdBound:
         high = min(top, self._unknown)
         return float(high - (high - bracket.lower) / 2 ** (1 + self._easy))
 
-    def _decide(self, threshold: float, aim: float, budget: Budget) -> _Verdict:
+    def _decide(self, threshold: float, aim: float, bracket: AttackBracket, budget: Budget) -> _Verdict:
         """Add sets that pay the prices of ``aim`` until there is none below the threshold, or they claim nothing.
 
+        Of a threshold that is left open the bracket has what the sets are worth at least that may pay.
         They are annealed as long as that finds more of them in a second than the last search did.
         """
         rate, is_annealing = 0.0, True
@@ -154,6 +155,8 @@ class ThresholdBound:
             if sets.is_complete:
                 return _Verdict.REFUTED
             if not (found := self._learn_all(sets.found)):
+                if not sets.found:
+                    bracket.raise_lower(min(sets.lower, threshold))
                 return _Verdict.OPEN
             rate, is_annealing = found / max(budget.elapsed - began, 1e-9), True
             self._moves = min(LONGER * self._moves, MOST_MOVES)
