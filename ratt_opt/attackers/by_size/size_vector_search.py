@@ -56,7 +56,7 @@ more than 240,000."""
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LISTED_SHARE, LARGEST_SHARE, ALIKE = 0.4, 0.25, 0.8
+LISTED_SHARE, LARGEST_SHARE, ALIKE = 0.4, 0.15, 0.8
 """Of the time left, for families whose sets can be listed, where these are not all, and for a first search by the
 largest group, before prices of families; and the value of the second best group of an attack, over the best, from which
 prices are asked: below, it is the largest group that decides."""
@@ -101,6 +101,8 @@ class SizeVectorSearch:
         self.packer = Packer(team, self.threat.protected_robots, task.budget)
         self.bounds: dict[Sizes, float] = {}
         """What the families of each vector that is open are worth at least."""
+        self._searches: dict[int, WeakestSetSearch] = {}
+        """By the size of the largest group."""
         self.left_open: list[tuple[float, frozenset[int]]] = []
         """Sets whose packing question was given up, with their values."""
         self.least_open = np.inf
@@ -131,7 +133,6 @@ class SizeVectorSearch:
             self._decide_listed(families)
         if not self.bracket.is_closed and is_about_families:
             self._decide_in_share(LARGEST_SHARE, self._decide_by_largest)
-            self.left_open, self.least_open, self.weakest = [], np.inf, np.inf
             FamilySearch(self.task, self.team, families, list(self.bounds)).narrow()
         if not self.bracket.is_closed and has_share:
             self._decide_listed(families)
@@ -280,8 +281,9 @@ class SizeVectorSearch:
                 self.task, self.packer = task, packer
 
     def _search(self, size: int, floor: float) -> None:
-        """Offer every set of this size below the goal as a largest group."""
-        search = WeakestSetSearch(self.team, size, self.bracket.goal, floor)
+        """Offer every set of this size below the goal as a largest group, from where an earlier search ended."""
+        search = self._searches.setdefault(size, WeakestSetSearch(self.team, size, self.bracket.goal, floor))
+        search.threshold = self.bracket.goal
         for found in search.run(self.task.budget):
             if found is not None:
                 self._offer(found)

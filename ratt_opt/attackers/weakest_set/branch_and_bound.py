@@ -179,15 +179,20 @@ class WeakestSetSearch:
     def run(self, budget: Budget) -> Iterator[frozenset[int] | None]:
         """Yield sets worth less than the threshold as they are found, and ``None`` where :attr:`lower` may have risen.
 
-        :attr:`lower` stays valid when the budget runs out or the user interrupts.
+        :attr:`lower` stays valid when the budget runs out or the user interrupts, and another run goes on from there.
         """
         if len(self._among) <= AT_ONCE:
             yield from self._enumerate_all(budget)
         while self._open and self._open[0].bound < self.threshold:
             node = heapq.heappop(self._open)
             self._in_hand = node.bound
-            yield from self._explore(node, budget)
-            self._in_hand = np.inf
+            try:
+                yield from self._explore(node, budget)
+            except BaseException:  # out of budget, interrupted, or closed: another run goes on with the node
+                heapq.heappush(self._open, replace(node, bound=self._in_hand))
+                raise
+            finally:
+                self._in_hand = np.inf
             yield None
         self._open.clear()
 

@@ -119,7 +119,7 @@ class ThresholdBound:
         """The next threshold to ask; ``None`` where none is worth it."""
         top, near = min(bracket.goal, self._beyond), NEAR * abs(bracket.upper)
         room = top - bracket.lower
-        if bracket.is_closed or room <= 0 or (room <= near and self._beyond < bracket.goal):
+        if bracket.is_closed or room <= 0 or (room <= near and self._beyond <= bracket.goal):
             return None
         if self._unknown - bracket.lower <= max(OPEN_SHARE * room, near):
             self._effort, self._unknown = HARDER * self._effort, np.inf
