@@ -117,6 +117,46 @@ def test_a_search_cut_short_says_so():
         sets.of_size(question, size, Budget(max_nodes=0), 10)
 
 
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_sets_left_open_are_worth_what_is_said(name, monkeypatch):
+    for constant, value in {"FIRST_TRIED": 1, "SHARPER": np.inf, "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
+        monkeypatch.setattr(paying_tree, constant, value)
+    bounds = 0
+    for seed in range(12):
+        team, rng = make_team(name, seed), np.random.default_rng([seed, 2])
+        prices, threshold, sets = rng.normal(size=N_ROBOTS), 0.95 * team.value(EVERYONE), PayingSets(team)
+        for size in set(sets.sizes(threshold, N_ROBOTS)) & {4, 5}:
+            paid = {one: prices[list(one)].sum() for one in combinations(range(N_ROBOTS), size)}
+            limit = float(np.quantile(list(paid.values()), 0.9))
+            weakest = min(team.value(one) for one, price in paid.items() if price > limit)
+            question = Question(min(threshold, weakest + 1e-9), prices, limit)
+            for nodes in (60, 120, 240):
+                left = sets.of_size(question, size, Budget(), nodes)
+                assert left.lower <= weakest + 1e-9 or left.lower == np.inf
+                assert left.found or left.lower < np.inf or question.threshold <= weakest + 2e-9
+                bounds += np.isfinite(left.lower)
+    assert bounds > 3
+
+
+def test_a_goal_out_of_reach_is_asked_once(monkeypatch):
+    """Where only the goal is left to ask, and prices claim nothing there: of links, of seven robots alike."""
+    asked, plain = [], ThresholdBound._decide
+
+    def decide(self, threshold, *arguments):
+        asked.append(threshold)
+        assert len(asked) == 1
+        return plain(self, threshold, *arguments)
+
+    monkeypatch.setattr(ThresholdBound, "_decide", decide)
+    prior, information = information_data(np.random.default_rng(0), 1, 3)
+    objective = OBJECTIVES["logdet"](prior, np.repeat(information, 7, axis=0))
+    problem, team = Problem(objective, np.arange(7), None, 0, 14), PlanarTeam.of(objective, np.arange(7))
+    bracket = AttackBracket(Attack(), team.value(range(4)), (1 - 1e-5) * team.value(range(4)))
+    ThresholdBound(team, problem.threat).run(bracket, Budget())
+    assert asked == [bracket.goal]
+    assert not bracket.is_closed
+
+
 @pytest.mark.parametrize("name", OBJECTIVES)
 def test_annealed_sets_are_weak_and_pay_what_they_say(name):
     team, rng = make_team(name, 2), np.random.default_rng(2)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from contextlib import suppress
 from itertools import combinations
 
 import numpy as np
@@ -19,6 +20,7 @@ from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
+from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.linear_descent import descended
@@ -242,6 +244,25 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
     assert problem.team_value(np.arange(13), result.attack) == result.upper
+
+
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_a_search_of_weak_sets_goes_on_where_it_ended(name, monkeypatch):
+    only_branch(monkeypatch)
+    objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), 13, 4, 1))
+    team = PlanarTeam.of(objective, np.arange(13))
+    values = {frozenset(one): team.value(one) for one in combinations(range(13), 5)}
+    threshold = float(np.mean(sorted(values.values())[20:22]))
+    search, found, runs = WeakestSetSearch(team, 5, threshold), set(), 0
+    while search.lower < np.inf:
+        runs += 1
+        with suppress(OutOfBudget):
+            for one in search.run(Budget(max_nodes=2)):
+                found |= {one} if one is not None else set()
+        left = [value for one, value in values.items() if value < threshold and one not in found]
+        assert search.lower <= min(left, default=np.inf) + 1e-9
+    assert runs > 2
+    assert found == {one for one, value in values.items() if value < threshold}
 
 
 @pytest.mark.parametrize("protected", [frozenset(), frozenset({0, 5, 9})])
