@@ -32,8 +32,8 @@ __all__ = ["PayingSets", "Question", "Sets"]
 
 @dataclass(frozen=True, slots=True)
 class Sets:
-    """``found`` sets (N,) that answer a question; no other one is worth less than ``lower``, which is infinite where
-    all others are ruled out.
+    """``found`` sets (N,) that answer a question; with none, no answer is worth less than ``lower``, which is infinite
+    where all sets are ruled out.
     """
 
     found: list[BoolArray]

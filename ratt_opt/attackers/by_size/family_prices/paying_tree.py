@@ -63,7 +63,7 @@ class PayingTree:
     def search(self, question: Question, budget: Budget, nodes: int, found: list[BoolArray]) -> float:
         """Search until all is decided, enough is found, or the nodes, and a minorant's more, are spent.
 
-        Returns what no set that is left undecided is worth less than: infinite where none is.
+        Returns, with nothing found, what no set that is left undecided is worth less than: infinite where none is.
 
         Raises
         ------
@@ -94,14 +94,12 @@ class PayingTree:
 
     def _is_ended(self, node: SetNode, run: _Run) -> bool:
         """Leave a node to the pairs for a while."""
-        n_decided = len(node.inside) + len(node.outside)
         if len(node.inside) == self._size:
             self._keep(node.inside, run)
             return True
         if self._size + len(node.outside) == len(self._view.information):
             self._keep(frozenset(range(len(self._view.information))) - node.outside, run)
             return True
-        assert n_decided < len(self._view.information), "a set of some of the open robots is asked for"
         is_ended = self._is_ended_by_pairs(self._pairs(node, run), run, self._tried)
         self._tried = int(np.clip(self._tried * (MORE if is_ended else LESS), FEWEST, MOST))
         return is_ended
