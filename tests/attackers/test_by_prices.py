@@ -19,7 +19,7 @@ from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SE
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.paying_groups import FORM_NODES, PayingSearch
+from ratt_opt.attackers.by_prices.paying_groups import NODES, PayingSearch, Way
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
@@ -314,12 +314,14 @@ def least_cost(problem, plan, threshold, prices, *, connected=False):
     return least
 
 
-def paying_search(team, links, threat, forms_at=None):
-    return PayingSearch(team, links, fitted_forms(threat, forms_at))
+def paying_search(team, links, threat, forms_at=None, way=Way.SEEING_WITH_FORMS):
+    search = PayingSearch(team, links, fitted_forms(threat, forms_at))
+    search._way = way
+    return search
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_long_search_is_made_both_ways_and_the_shorter_one_is_kept(seed, monkeypatch):
+def test_a_long_search_is_made_every_way_and_the_shortest_one_is_kept(seed, monkeypatch):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(6 * seed + 1, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
@@ -329,28 +331,25 @@ def test_a_long_search_is_made_both_ways_and_the_shorter_one_is_kept(seed, monke
         robot *= 0.6
     at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1), ConvexForms(threat).known)
     question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
-    spent = []
-    for forms in (ConvexForms(threat), fitted_forms(threat, robot)):
+    monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", np.inf)
+    spent = {}
+    for way in Way:
         budget = Budget()
-        assert PayingSearch(team, links, forms).find(at, question, budget, nodes=10**6, room=1).is_complete
-        spent.append(budget.nodes)
+        search = paying_search(team, links, threat, forms_at=robot, way=way)
+        assert search.find(at, question, budget, nodes=10**6, room=1).is_complete
+        spent[way] = budget.nodes * NODES[way]
     monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0)
     search, budget = paying_search(team, links, threat, forms_at=robot), Budget()
-    for once_more in range(2):
-        found = search.find(at, question, budget, nodes=10**6, room=1)
-        assert found.is_complete
-        assert not found.groups
-        monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", np.inf)
-        before, budget = budget.nodes, Budget()
-        if once_more:
-            assert before == spent[bool(spent[0] > FORM_NODES * spent[1])]
+    assert search.find(at, question, budget, nodes=10**6, room=1).is_complete
+    assert spent[search._way] == min(spent.values())
 
 
+@pytest.mark.parametrize("way", Way)
 @pytest.mark.parametrize("seed", range(24))
-def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_none_does(seed, monkeypatch):
+def test_the_search_for_groups_that_pay_finds_some_or_proves_that_none_does(seed, way, monkeypatch):
     monkeypatch.setattr(
         "ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0 if seed % 3 == 0 else 4
-    )  # 0: always both ways
+    )  # 0: always every way
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
@@ -362,7 +361,7 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
     piece = least_cost(problem, plan, threshold, prices, connected=True)  # of a group that pays, one piece pays
     assert least <= piece < 0
     at = Prices(prices[0], prices[1], np.ones(6), float(size), prices[1], np.ones(1), ConvexForms(threat).known)
-    search = paying_search(team, links, threat, forms_at=prices[0] if seed % 2 else None)
+    search = paying_search(team, links, threat, forms_at=prices[0] if seed % 2 else None, way=way)
     for limit, room in ((least - 1e-6, 5), (piece + 1e-6, 5), (-1e-6, 3)):
         question = Question(threshold, threat.n_blinded, limit, np.arange(6), 0, 0)
         found = search.find(at, question, Budget(), nodes=10**6, room=room)
@@ -374,12 +373,13 @@ def test_the_search_over_seeing_robots_finds_a_group_that_pays_or_proves_that_no
     assert not search.find(at, question, Budget(), nodes=0, room=3).is_complete
 
 
+@pytest.mark.parametrize("way", Way)
 @pytest.mark.parametrize("seed", range(24))
-def test_prices_fall_for_groups_that_pay_until_none_does(seed, monkeypatch):
+def test_prices_fall_for_groups_that_pay_until_none_does(seed, way, monkeypatch):
     """What is closed at higher prices stays closed: one search proves what the prices left at its end claim."""
     monkeypatch.setattr(
         "ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0 if seed % 3 == 0 else 4
-    )  # 0: always both ways
+    )  # 0: always every way
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
@@ -390,7 +390,7 @@ def test_prices_fall_for_groups_that_pay_until_none_does(seed, monkeypatch):
     first = PriceVector(robot=robot.copy(), blinded=blinded, links=float(robot.sum() - blinded * threat.n_blinded))
     at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1), ConvexForms(threat).known)
     question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
-    search = paying_search(team, links, threat, forms_at=robot if seed % 2 else None)
+    search = paying_search(team, links, threat, forms_at=robot if seed % 2 else None, way=way)
     for least in (-1e9, first.links - 0.5):
         falling = FallingPrices(program=GroupPrices(threat), threshold=threshold, prices=first, links=least)
         found = search.find(at, question, Budget(), falling, nodes=10**6, room=10**6)

@@ -14,7 +14,10 @@ import numpy as np
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, TRACE, team_criterion
 
-__all__ = ["add", "copy", "copy_row", "gather_seeing", "value_of"]
+__all__ = ["add", "copy", "copy_row", "gather_seeing", "least_level", "level_of", "value_of"]
+
+ROUNDING = 1e-12
+"""Relative, of a value."""
 
 
 @numba.njit(cache=True)
@@ -98,6 +101,26 @@ def _criterion(code: int, weights: Any, matrices: Any) -> float:
 def value_of(team: Any, sums: Any) -> float:
     """Value of a group whose posterior information is ``sums`` (M, T), never below 0."""
     return float(max(team.baseline - _criterion(team.code, team.weights, sums), 0.0))
+
+
+@numba.njit(cache=True)
+def level_of(team: Any, sums: Any) -> float:
+    """A concave function of ``sums`` (M, T) that rises with the value: the inverse of the error, or the log-det value.
+
+    The inverse of a trace of inverses or of their largest eigenvalue is concave (a parallel sum, a least eigenvalue),
+    and where values saturate it does not.
+    """
+    error = _criterion(team.code, team.weights, sums)
+    return float(team.baseline - error if team.code == LOG_DET else 1.0 / error)
+
+
+@numba.njit(cache=True)
+def least_level(team: Any, threshold: float) -> float:
+    """Sets whose level is this high are worth the threshold, rounding included; infinite where that is not sure."""
+    error = team.baseline - threshold - ROUNDING * (abs(team.baseline) + abs(threshold))
+    if team.code == LOG_DET:
+        return float(team.baseline - error)
+    return float(1.0 / error if error > 0.0 else np.inf)
 
 
 @numba.njit(cache=True)

@@ -17,9 +17,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
+from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row
 from ratt_opt.attackers.by_prices.groups.connections import connected_bound
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, always, augment, copy_flows, open_flow
+from ratt_opt.attackers.by_prices.groups.room import bound_room, close, count
 from ratt_opt.attackers.by_prices.groups.size_forms import (
     BLINDED,
     ELSE,
@@ -35,10 +36,6 @@ from ratt_opt.compiling import numba
 __all__ = ["Flows", "SeeingStack", "leave_node", "lower_prices", "search_seeing_sets"]
 
 FINISHED, PAUSED, FOUND = 0, 1, 2
-
-SURE = 1e-9
-"""Relative: averages must exceed the threshold by so much to prove that no more robots fit; above their rounding."""
-
 
 UNLIKELY = 1e-3
 """Added to the share of a robot that is inside at a form's point."""
@@ -58,7 +55,7 @@ class SeeingStack(NamedTuple):
     """Open nodes of the search; ``position`` : the last open node, nodes so far.
 
     For each open node: ``part`` (N,) what robots are; K flows; ``sums`` (M, T) of the seeing robots; ``worth`` (N,)
-    value with one robot more, ``copies`` (N,) with ``copied`` copies of one; ``room`` further robots that may see;
+    value with one robot more, ``copies`` (N,) level with ``copied`` copies of one; ``room`` more robots that may see;
     ``bound`` (K,) of the flows; ``grown`` whether the last robot decided sees; ``points`` of the forms
     """
 
@@ -111,61 +108,20 @@ def _begin(team: Any, links: Any, prices: Any, flows: Any, stack: Any) -> None:
 
 
 @numba.njit(cache=True)
-def _close(links: Any, flows: Any, stack: Any, node: int, robot: int) -> None:
+def _pay_in_full(links: Any, flows: Any, stack: Any, node: int, robot: int) -> None:
     """The robot does not see: it is outside, or blinded at its price."""
-    stack.part[node, robot] = OUTSIDE if links.seeing[robot] else ELSE
     for kind in range(len(flows.share)):
         rest = (1.0 - flows.share[kind]) * flows.blinded[kind]
         stack.out[node, kind, robot] += ALWAYS if links.seeing[robot] else rest
 
 
 @numba.njit(cache=True)
-def _mean_of_least(values: Any, count: int) -> float:
-    """Mean of the ``count`` least; the values are sorted in place."""
-    total = 0.0
-    for k in range(1, len(values)):
-        value, place = values[k], k
-        while place > 0 and values[place - 1] > value:
-            values[place] = values[place - 1]
-            place -= 1
-        values[place] = value
-    for k in range(count):
-        total += values[k]
-    return total / count
-
-
-@numba.njit(cache=True)
-def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node: int) -> int:  # noqa: PLR0917
-    """Close the robots that can no longer see, and bound the room; returns how many are open."""
-    part, sums, trial = stack.part[node], stack.sums[node], np.empty_like(team.prior)
-    n_open = 0
-    for i in range(len(part)):
-        if part[i] != OPEN:
-            continue
-        if stack.grown[node]:
-            add(trial, sums, 1.0, team, i)
-            stack.worth[node, i] = value_of(team, trial)
-        if stack.worth[node, i] < threshold and stack.room[node] > 0:
-            n_open += 1
-        else:
-            _close(links, flows, stack, node, i)
-    stack.room[node] = min(stack.room[node], n_open)
-    worths, k = np.empty(n_open), 0
-    while stack.room[node] > 1:
-        # Criteria are concave: k robots are worth at least the mean of k copies of each.
-        k, is_new = 0, stack.copied[node] != stack.room[node]
-        stack.copied[node] = stack.room[node]
-        for i in range(len(part)):
-            if part[i] == OPEN:
-                if is_new:
-                    add(trial, sums, stack.room[node], team, i)
-                    stack.copies[node, i] = value_of(team, trial)
-                worths[k] = stack.copies[node, i]
-                k += 1
-        if _mean_of_least(worths, stack.room[node]) < threshold * (1 + SURE):
-            break
-        stack.room[node] -= 1
-    return n_open
+def _fill(team: Any, links: Any, flows: Any, threshold: float, stack: Any, node: int, closed: Any) -> None:  # noqa: PLR0917
+    """Close the robots that can no longer see in the flows, too, and bound the room."""
+    bound_room(team, links, threshold, stack, node, closed)
+    for i in range(len(closed)):
+        if closed[i]:
+            _pay_in_full(links, flows, stack, node, i)
 
 
 @numba.njit(cache=True)
@@ -227,14 +183,6 @@ def _branch(stack: Any, sides: Any, budget: int) -> int:
 
 
 @numba.njit(cache=True)
-def _blinded(part: Any) -> int:
-    count = 0
-    for i in range(len(part)):
-        count += int(part[i] == BLINDED)
-    return count
-
-
-@numba.njit(cache=True)
 def _most_inside(stack: Any, form: int) -> int:
     """The open robot that is worth most times its share inside at a form's point; -1 where there is none."""
     node, chosen, most = stack.position[0], -1, 0.0
@@ -272,7 +220,8 @@ def _descend(team: Any, links: Any, flows: Any, stack: Any, robot: int) -> None:
         stack.copied[child] = 0
         stack.part[child, robot] = SEEING
         stack.points.at[node, :, robot] = 0.0
-        _close(links, flows, stack, node, robot)
+        close(links, stack.part[node], robot)
+        _pay_in_full(links, flows, stack, node, robot)
     else:
         stack.part[child, robot], stack.part[node, robot] = BLINDED, OUTSIDE
         always(stack.out[node], robot)
@@ -317,6 +266,7 @@ def search_seeing_sets(  # noqa: PLR0917
     n_robots, position = len(prices.robot), stack.position
     work = _work(n_robots, len(links.robot))
     sides = np.zeros((len(flows.share), n_robots), dtype=np.bool_)
+    closed = np.zeros(n_robots, dtype=np.bool_)
     tangents = (np.zeros(n_robots), np.zeros(n_robots), np.zeros(n_robots), np.arange(n_robots))
     if position[0] < 0 and position[1] == 0:
         _begin(team, links, prices, flows, stack)
@@ -325,8 +275,8 @@ def search_seeing_sets(  # noqa: PLR0917
         if node < 0:
             return FINISHED
         position[1] += 1
-        _fill(team, links, flows, question.threshold, stack, node)
-        state = node, stack.part[node], stack.room[node], _blinded(stack.part[node])
+        _fill(team, links, flows, question.threshold, stack, node, closed)
+        state = node, stack.part[node], stack.room[node], count(stack.part[node], BLINDED)
         form = open_form(prices, question, stack.points, state, tangents)
         done = form == len(prices.forms.constant)
         if done or _bounds(links, prices, flows, question, stack, sides, work) > question.limit:

@@ -18,10 +18,21 @@ import numpy as np
 from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
 from ratt_opt.compiling import numba
 
-__all__ = ["BLINDED", "ELSE", "OPEN", "OUTSIDE", "SEEING", "FormPoints", "SizeForms", "copy_points", "open_form"]
+__all__ = [
+    "BLINDED",
+    "ELSE",
+    "INSIDE",
+    "OPEN",
+    "OUTSIDE",
+    "SEEING",
+    "FormPoints",
+    "SizeForms",
+    "copy_points",
+    "open_form",
+]
 
-OPEN, SEEING, ELSE, BLINDED, OUTSIDE = 0, 1, 2, 3, 4
-"""What a robot of a node is: ELSE is blinded or outside the group."""
+OPEN, SEEING, ELSE, BLINDED, OUTSIDE, INSIDE = 0, 1, 2, 3, 4, 5
+"""What a robot of a node is: ELSE is blinded or outside the group, INSIDE sees or is blinded (``member_sets.py``)."""
 
 STEPS, LOOKS = 12, 2
 """Steps for a form at a node, and after how many of them it is given up if its point costs less than the limit."""
