@@ -99,7 +99,7 @@ def _weigh(team: Any, threshold: float, stack: Any, weight: Any) -> None:
     none, enough = level_of(team, stack.sums[node]), least_level(team, threshold) * (1 + SURE)
     for i in range(len(weight)):
         weight[i] = 1.0
-        if stack.room[node] > 1 and enough < np.inf:
+        if stack.room[node] > 1 and none < enough < np.inf:
             weight[i] = max((stack.copies[node, i] - none) / (enough - none), 0.0)
 
 
