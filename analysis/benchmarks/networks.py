@@ -34,8 +34,9 @@ SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
 """Of the robots blinded and of the links cut; ``None`` draws both up to twice a third of them."""
 GAP = 1e-6
 """That a max-min search is asked for."""
-WARM = 24
-"""Robots of the first problems of each objective, not counted: what is compiled is loaded then."""
+WARM, WARM_LARGE = 24, 64
+"""Robots of the first problems of each objective, not counted: what is compiled is loaded then. Large teams are asked
+who is inside first (``attackers/by_prices/paying_groups.py``)."""
 
 
 def instances(
@@ -93,6 +94,8 @@ def warm_up(objective: str) -> None:
         problem = ro.network_scenario(family, WARM, 5, alpha_s=1 / 3, alpha_c=0.3, seed=0).problem(objective)
         ro.worst_case_attack(problem, ro.ratt(problem).elements, time_limit=2)
         ro.solve_maxmin(problem, time_limit=2)
+    problem = ro.network_scenario("hubs", WARM_LARGE, 5, alpha_s=1 / 3, alpha_c=0.3, seed=0).problem(objective)
+    ro.worst_case_attack(problem, ro.ratt(problem).elements, time_limit=4)
 
 
 def _options() -> argparse.Namespace:
