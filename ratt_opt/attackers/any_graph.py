@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import isinf
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
@@ -72,7 +74,9 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     least = _by_trees(task, is_brief=is_brief)
     prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
-        return forced_group_bound(task, team, least)
+        stop = forced_group_bound(task, team, least)
+        is_done = stop is Stop.CLOSED or isinf(task.budget.seconds_left)
+        return stop if is_done else last_stage(task, AttackTree(task))
     prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
     # On sparse graphs they prove less than the first threshold; of targets in three coordinates and more only their
     # number is used, which proves nothing there.

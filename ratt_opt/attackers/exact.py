@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.any_graph import any_graph, last_stage
+from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
 from ratt_opt.attackers.by_size.relaxed_teams import unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
@@ -38,6 +40,9 @@ THRESHOLDS_FASTER = 15
 FEW_GROUPS, MANY_GROUPS, LISTING_SHARE = 10_000, 300_000, 0.1
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else; and
 of the seconds left, for listing them. It takes a second on sparse graphs of 50 robots, four on dense ones."""
+
+ANNEALING_SHARE = 0.5
+"""Of the seconds and values left for annealed attacks on set functions known by their values; then all are searched."""
 
 RENEWED = 4
 """Times as many seconds as an earlier attack on the plan had, from which its first stages, which had shares of them,
@@ -82,9 +87,12 @@ def worst_case_attack(
       robots can take hours to close (of another search's budget that limits nothing, half a million nodes). Relies on
       a non-decreasing objective, as above; targets of any dimension. Compiling takes about a minute once per machine.
     - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
-      steps and exchanges, annealing within a limit where no other search asks, and the bounds of ``any_function.py``.
-    - Otherwise an honest bracket (``forced_group.py``), with ``stop`` ``HEURISTIC`` where it did not close. Relies on a
-      non-decreasing objective (not checked).
+      steps and exchanges, and the bounds of ``any_function.py``; within a limit of time or values, annealing where no
+      other search asks, and where none does or it asks again with a memory, all attacks by branch and bound
+      (``attack_tree.py``).
+    - Otherwise (criteria of one's own) an honest bracket (``forced_group.py``), within a limit of time then all attacks
+      by branch and bound, without one ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not
+      checked).
 
     A keyboard interrupt or a spent budget returns the bracket reached. Interrupted before any attack
     is known, it evaluates the team without an attack and returns that; its lower bound, the value of no
@@ -154,8 +162,13 @@ def _unattacked(problem: Problem, values: PlanValues) -> float:
 
 def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     problem, plan = task.problem, task.values.plan
-    if task.memory.search is not None and task.budget.seconds_left <= RENEWED * task.memory.seconds:
-        return last_stage(task, task.memory.search)
+    begun = task.memory.search
+    if isinstance(begun, AttackTree):
+        goes_on = isinstance(problem.objective, InformationObjective) or not _has_table(task)
+    else:
+        goes_on = task.budget.seconds_left <= RENEWED * task.memory.seconds
+    if begun is not None and goes_on:
+        return last_stage(task, begun)
     task.memory.seconds = task.budget.seconds_left
     if not isinstance(problem.objective, InformationObjective):
         return _any_function(task, is_inner=is_inner)
@@ -189,17 +202,30 @@ def _any_function(task: AttackTask, *, is_inner: bool) -> Stop:
     """Thresholds where all sets of robots can be valued; where that is limited, and beyond, first what is quick."""
     n_robots, budget = task.problem.n_robots, task.budget
     is_limited = min(budget.seconds_left, budget.evaluations_left) < math.inf
-    has_table = n_robots <= LARGEST_COMPILED and 2**n_robots <= budget.evaluations_left
+    has_table = _has_table(task)
     if n_robots > LARGEST_COMPILED or is_limited:
         any_bound(task)
         exchange_attack(task)
         if is_limited and not (task.bracket.is_closed or has_table or is_inner):
-            annealed_attacks(task)
+            with budget.stage(ANNEALING_SHARE) as part:
+                annealed_attacks(replace(task, budget=part))
         if task.bracket.is_closed:
             return Stop.CLOSED
     if has_table:
         return threshold_search(task)
-    return Stop.CLOSED if task.bracket.is_closed else budget.stop() or Stop.HEURISTIC
+    if task.bracket.is_closed or not is_limited:
+        return Stop.CLOSED if task.bracket.is_closed else Stop.HEURISTIC
+    budget.check()
+    tree = AttackTree(task)
+    if is_inner:  # of many attacks: whoever asks again, with its memory, wants to know
+        task.memory.search = tree
+        return budget.stop() or Stop.HEURISTIC
+    return last_stage(task, tree)
+
+
+def _has_table(task: AttackTask) -> bool:
+    """Whether all sets of robots can be valued."""
+    return task.problem.n_robots <= LARGEST_COMPILED and 2**task.problem.n_robots <= task.budget.evaluations_left
 
 
 def _few_groups(task: AttackTask, team: PlanarTeam | None) -> SeparableGroups | None:

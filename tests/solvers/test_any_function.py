@@ -132,7 +132,7 @@ def test_what_is_not_enumerated_is_divided_until_it_closes(problem):
 @given(drawn_problems(largest=5), st.integers(1, 4))
 def test_plans_beyond_what_is_kept_by_bounds_are_divided_last_first(problem, most):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("ratt_opt.solvers.plan_tree.MOST_OPEN", most)
+        patch.setattr("ratt_opt.solvers.by_values.plan_tree.MOST_OPEN", most)
         found = ro.solve_maxmin(problem, time_limit=600)
     assert found.lower == pytest.approx(brute_force_optimum(problem), abs=1e-9)
     assert found.upper == pytest.approx(found.lower, abs=1e-9)

@@ -12,7 +12,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.link_choice.choice_search import best_choice
 from ratt_opt.attackers.link_choice.known_attacks import KnownAttacks
 from ratt_opt.attackers.link_choice.upgrades import Addition, Protection
-from ratt_opt.attackers.task import CLOSED_WIDTH, PlanValues
+from ratt_opt.attackers.task import CLOSED_WIDTH, AttackMemory, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.progress import Step
 from ratt_opt.stopping import Stop
@@ -152,6 +152,7 @@ class _LinkSearch:
         self.known = KnownAttacks(upgrade, self.values, budget)
         self.attacks = self.nodes = 0
         self.unproved_stop = Stop.HEURISTIC  # why the last attack that did not close stopped
+        self._last: tuple[tuple[Link, ...], Problem, AttackMemory] | None = None  # the last attack, to go on with
         self.links: tuple[Link, ...] = ()
         # Monotonicity, before any attack is known: all robots that all candidates could hold together.
         self.upper = max(self.values(group) for group in upgrade.together())
@@ -218,9 +219,12 @@ class _LinkSearch:
         self, links: tuple[Link, ...], *, share: float = ATTACK_SHARE, max_nodes: int | None = None
     ) -> AttackResult:
         """Attack the team that has these links, and keep them where the plan is proved to keep more than before."""
-        changed = self.upgrade.changed(links)
+        if self._last is None or self._last[0] != links:
+            self._last = links, self.upgrade.changed(links), AttackMemory()
+        _, changed, memory = self._last
         nodes = self.max_nodes if max_nodes is None else max_nodes
-        result = worst_case_attack(changed, self.values.plan, max_nodes=nodes, budget=self.budget.part(share))
+        part = self.budget.part(share)
+        result = worst_case_attack(changed, self.values.plan, max_nodes=nodes, budget=part, memory=memory)
         self.attacks, self.nodes = self.attacks + 1, self.nodes + result.nodes
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
             self.unproved_stop = result.stop

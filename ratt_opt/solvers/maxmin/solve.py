@@ -15,7 +15,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.problem import check_problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.any_function import search_any
+from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.descent import Descent
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
@@ -64,7 +64,7 @@ def solve_maxmin(
     Relies on a non-decreasing objective (not checked). For the information criteria: outer approximation
     and branch and bound. Every bound is derived from the problem's matrices by the leaf
     formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only the multipliers are used. Other set
-    functions are enumerated where that is possible, and bracketed where it is not (``solvers/any_function.py``).
+    functions are enumerated where that is possible, and bracketed where it is not (``solvers/by_values``).
 
     Parameters
     ----------

@@ -2,26 +2,28 @@
 
 No completion of such a team is worth more than the team under any known attack. The node of the largest bound is
 divided on one robot of the group that the team is left with; plans that known attacks rate above the best one are
-attacked, which closes them or teaches an attack. So it ends with the best plan where attacks on plans are exact.
+attacked, which closes them or teaches an attack. A plan that is left as the node of the largest bound is attacked until
+another one is. So it ends with the best plan, however long attacks take.
 """
 
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.setfunctions.base import SetFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
+from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.budget import Budget
-    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.problem import Problem
+    from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
 
 __all__ = ["PlanTree", "Pooled"]
 
@@ -52,84 +54,98 @@ class Pooled(SetFunction):
         return values if self._best is None else np.minimum(values, membership @ self._best)
 
 
-class Search(Protocol):
-    """What the tree asks of the search it is part of."""
-
-    elements: IntArray
-    lower: float
-
-    @property
-    def attacks(self) -> Mapping[Attack, list[frozenset[int]]]:
-        """Attacks known so far, and the seeing robots of the groups that each leaves."""
-
-    def worth(self, elements: frozenset[int]) -> float:
-        """Value of a set of elements."""
-
-    def attack(self, elements: IntArray) -> AttackResult:
-        """Attack a plan; keep it where more is proved of it than of the best one."""
-
-
 class PlanTree:
-    """The nodes that are left; valid whenever it stops."""
+    """The nodes that are left; valid whenever it stops.
 
-    def __init__(self, problem: Problem, search: Search, upper: float) -> None:
-        self._problem, self._search = problem, search
+    ``worth`` : of a set of elements, its value
+    """
+
+    def __init__(
+        self, problem: Problem, attacks: PlanAttacks, worth: Callable[[frozenset[int]], float], upper: float
+    ) -> None:
+        self._problem, self._attacks, self._worth = problem, attacks, worth
         nothing = np.full(problem.n_robots, OPEN, dtype=np.int64)
         self._heap: list[tuple[float, int, IntArray]] = [(-upper, 0, nothing)]
         self._last: list[tuple[float, int, IntArray]] = []
-        self._count, self._unproved = 0, -np.inf
+        self._count, self._settled = 0, -np.inf
         self._attacked: dict[bytes, float] = {}
         """What attacks leave of the plans that were attacked here."""
 
     @property
     def upper(self) -> float:
         """No plan of which less is known than of the best one is worth more."""
-        left = [-bound for bound, _, _ in [*self._heap[:1], *self._last]]
-        return max([self._unproved, *left])
+        return max(self._settled, self._largest_left())
 
     @property
     def is_finished(self) -> bool:
-        """Whether dividing can prove no more: what is left are plans whose attacks did not close."""
-        return -self._unproved <= min((node[0] for node in [*self._heap[:1], *self._last]), default=np.inf)
+        """Whether dividing can prove no more: what is left are plans of which attacks can prove no more."""
+        return self._settled >= self._largest_left()
+
+    def _largest_left(self) -> float:
+        return max((-node[0] for node in [*self._heap[:1], *self._last]), default=-np.inf)
 
     def divide(self, budget: Budget) -> None:
         """Take the next node: drop it, attack a plan of it, or divide it."""
-        node = self._last.pop() if self._last else heappop(self._heap)
-        search, partial = self._search, node[2]
-        bound = min(-node[0], *(self._team_value(partial, groups) for groups in search.attacks.values()))
+        is_largest = not self._last
+        node = heappop(self._heap) if is_largest else self._last.pop()
+        attacks, partial = self._attacks, node[2]
+        bound = min(-node[0], *(self._team_value(partial, groups) for groups in attacks.known.values()))
         budget.nodes += 1
-        if bound <= search.lower:
+        if bound <= attacks.lower:
             return
-        plan = np.where(partial == OPEN, search.elements, partial)
-        if plan.tobytes() not in self._attacked and self._plan_value(plan) > search.lower:
-            found = search.attack(plan)
+        is_plan = bool((partial != OPEN).all())
+        plan = np.where(partial == OPEN, attacks.elements, partial)
+        if is_plan and plan.tobytes() in self._attacked and is_largest and bound == -node[0]:
+            self._settle(plan, bound)
+            return
+        if plan.tobytes() not in self._attacked and self._plan_value(plan) > attacks.lower:
+            found = attacks.attack(plan)
             self._attacked[plan.tobytes()] = found.upper
-            bound = min(bound, self._team_value(partial, search.attacks[found.attack]))
-        if bound <= search.lower:
+            bound = min(bound, self._team_value(partial, attacks.known[found.attack]))
+        if bound <= attacks.lower:
             return
-        if (partial != OPEN).all():
-            self._unproved = max(self._unproved, min(bound, self._attacked[plan.tobytes()]))
+        if is_plan:
+            self._keep_plan(plan, min(bound, self._attacked.get(plan.tobytes(), bound)))
         else:
             self._push(partial, bound)
+
+    def _settle(self, plan: IntArray, bound: float) -> None:
+        """Attack a plan, of which no less is known than of any other, until one is, or no more can be proved of it."""
+        found = self._attacks.settle(plan, min(self._largest_left(), float(np.nextafter(bound, -np.inf))))
+        bound = min(bound, found.upper)
+        if bound <= self._attacks.lower:
+            return
+        if found.stop in {Stop.TIME, Stop.EVALUATIONS, Stop.GAP}:
+            self._keep_plan(plan, bound)
+        else:
+            self._settled = max(self._settled, bound)
 
     def _push(self, partial: IntArray, bound: float) -> None:
         """The parts of a node, one for each element of a robot of the group that the known attacks leave."""
         for e in self._elements_of(self._robot(partial)):
             child = partial.copy()
             child[self._problem.robot[e]] = e
-            self._count += 1
-            one = (-bound, self._count, child)
-            if len(self._heap) < MOST_OPEN:
-                heappush(self._heap, one)
-            else:
-                self._last.append(one)
+            self._keep(child, bound)
+
+    def _keep_plan(self, plan: IntArray, bound: float) -> None:
+        """Look at a plan again once no node has a larger bound."""
+        self._count += 1
+        heappush(self._heap, (-bound, self._count, plan))
+
+    def _keep(self, partial: IntArray, bound: float) -> None:
+        self._count += 1
+        one = (-bound, self._count, partial)
+        if len(self._heap) < MOST_OPEN:
+            heappush(self._heap, one)
+        else:
+            self._last.append(one)
 
     def _elements_of(self, robot: int) -> IntArray:
         return self._problem.choices[robot]
 
     def _robot(self, partial: IntArray) -> int:
         """The open robot whose decision lowers most what the worst known attack leaves of its best group."""
-        attacks = self._search.attacks.values()
+        attacks = self._attacks.known.values()
         groups = min(attacks, key=lambda groups: self._team_value(partial, groups))
         best = max(groups, key=lambda group: self._group_value(partial, group))
         inside = [i for i in sorted(best) if partial[i] == OPEN] or np.flatnonzero(partial == OPEN).tolist()
@@ -145,7 +161,7 @@ class PlanTree:
         return max(values)
 
     def _plan_value(self, plan: IntArray) -> float:
-        return min(self._team_value(plan, groups) for groups in self._search.attacks.values())
+        return min(self._team_value(plan, groups) for groups in self._attacks.known.values())
 
     def _team_value(self, partial: IntArray, groups: Iterable[frozenset[int]]) -> float:
         return max(self._group_value(partial, group) for group in groups)
@@ -155,4 +171,4 @@ class PlanTree:
         held: set[int] = set()
         for i in group:
             held.update(self._elements_of(i).tolist() if partial[i] == OPEN else (int(partial[i]),))
-        return self._search.worth(frozenset(held))
+        return self._worth(frozenset(held))

@@ -1,0 +1,162 @@
+"""Exact attacks on any non-decreasing function of any number of robots, by its values alone.
+
+Robots are placed one after the other, each in a group and blinded or not. What is placed cuts the links between its
+groups: nodes beyond a budget are left out. Whoever is placed later makes no group worth less, so the best group of the
+robots placed bounds every completion from below, and so does the strongest robot that can no longer be blinded. The
+node of the least bound is divided first: its bound is one on all attacks.
+"""
+
+from __future__ import annotations
+
+from heapq import heappop, heappush
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.attackers.task import AttackTask
+
+__all__ = ["AttackTree"]
+
+MOST_OPEN = 200_000
+"""Nodes kept by their bounds, some hundred megabytes; beyond, what the next one is divided into is searched in depth,
+which keeps few more."""
+
+
+class _Node(NamedTuple):
+    """Some robots placed; of nodes of one bound those that placed most go first."""
+
+    bound: float
+    left: int
+    number: int
+    group: tuple[int, ...]
+    """Of each robot placed, numbered as they began."""
+    blind: tuple[bool, ...]
+
+
+class AttackTree:
+    """Narrows the task's bracket; valid whenever it stops, and from there it can go on."""
+
+    def __init__(self, task: AttackTask) -> None:
+        self.task = task
+        problem, threat = task.problem, task.problem.threat
+        self._single = task.values.singletons()
+        self._order = _order(self._single, problem.communication.links)
+        at = {robot: k for k, robot in enumerate(self._order)}
+        self._near: list[list[int]] = [[] for _ in self._order]
+        self._held: list[set[int]] = [set() for _ in self._order]
+        for i, j in problem.communication.links:
+            first, last = sorted((at[i], at[j]))
+            self._near[last].append(first)
+            if (i, j) in problem.protected_links:
+                self._held[last].add(first)
+        self._sees = [robot in problem.protected_robots for robot in self._order]
+        self._most_blind, self._most_cut = threat.n_blinded, problem.alpha_c
+        self._count = 0
+        self._open = [_Node(-np.inf, len(self._order), 0, (), ())]
+        self._deep: list[_Node] = []
+        self._current: list[_Node] = []
+        """The node in work, until what it is divided into is kept: whatever ends the search, none is lost."""
+
+    def run(self) -> Stop:
+        """Divide nodes until none is below the goal.
+
+        Raises
+        ------
+        OutOfBudget : time, nodes or evaluations are spent.
+        """
+        bracket = self.task.bracket
+        while self._current or self._deep or self._open:
+            self._take()
+            if not self._deep:
+                bracket.raise_lower(min([bracket.goal, self._current[0].bound, *[n.bound for n in self._open[:1]]]))
+            if bracket.is_closed:
+                return Stop.CLOSED
+            if self._current[0].bound < bracket.goal:
+                self.task.budget.spend()
+                self._divide(self._current[0])
+            self._current.clear()
+        bracket.raise_lower(bracket.goal)
+        return Stop.CLOSED
+
+    def _take(self) -> None:
+        """The next node, unless one is in work. Those in depth bound nothing: what they come from does."""
+        if not self._current and self._deep:
+            self._current.append(self._deep.pop())
+        elif not self._current:
+            self._current.append(self._open[0])
+            heappop(self._open)
+
+    def _divide(self, node: _Node) -> None:
+        """Place one more robot wherever the budgets allow, or offer the attack where all are placed."""
+        if not node.left:
+            self._offer(node)
+            return
+        k, groups = len(node.group), max(node.group, default=-1) + 1
+        inside = np.bincount([node.group[j] for j in self._near[k]], minlength=groups + 1)
+        held = {node.group[j] for j in self._held[k]}
+        left = self._most_cut - self._cut(node) - len(self._near[k])
+        homes = [g for g in range(groups + 1) if left + inside[g] >= 0 and held <= {g}]
+        worth = self._worth(node, homes)
+        children = [self._child(node, g, max(node.bound, value), is_blind=False) for g, value in worth]
+        if not self._sees[k] and sum(node.blind) < self._most_blind:
+            children += [self._child(node, g, node.bound, is_blind=True) for g in homes]
+        is_full = bool(self._deep) or len(self._open) >= MOST_OPEN
+        for child in sorted(children, reverse=True):
+            if child.bound >= self.task.bracket.goal:
+                continue
+            if is_full:
+                self._deep.append(child)
+            else:
+                heappush(self._open, child)
+
+    def _child(self, node: _Node, group: int, bound: float, *, is_blind: bool) -> _Node:
+        self._count += 1
+        blind = (*node.blind, is_blind)
+        bound = max(bound, self._strongest_left(blind))
+        return _Node(bound, node.left - 1, self._count, (*node.group, group), blind)
+
+    def _strongest_left(self, blind: tuple[bool, ...]) -> float:
+        """The largest individual value of a robot to be placed, once the strongest that may be are blinded."""
+        later = self._order[len(blind) :]
+        sees = self._sees[len(blind) :]
+        free = sorted((self._single[i] for i, sure in zip(later, sees, strict=True) if not sure), reverse=True)
+        sure = [self._single[i] for i, sure in zip(later, sees, strict=True) if sure]
+        return float(max([*free[self._most_blind - sum(blind) :][:1], *sure], default=-np.inf))
+
+    def _worth(self, node: _Node, homes: list[int]) -> list[tuple[int, float]]:
+        """Groups, and what the robots that see there are worth once the next one sees there too."""
+        sets = np.zeros((len(homes), len(self._order)), dtype=np.bool_)
+        sets[:, self._order[len(node.group)]] = True
+        for robot, group, blind in zip(self._order, node.group, node.blind, strict=False):
+            if not blind and group in homes:
+                sets[homes.index(group), robot] = True
+        return list(zip(homes, self.task.values.evaluate(sets).tolist(), strict=True)) if homes else []
+
+    def _cut(self, node: _Node) -> int:
+        """Links between the groups of the robots placed."""
+        group = node.group
+        return sum(group[j] != group[k] for k in range(len(group)) for j in self._near[k])
+
+    def _offer(self, node: _Node) -> None:
+        parts: list[list[int]] = [[] for _ in range(max(node.group) + 1)]
+        for robot, group in zip(self._order, node.group, strict=True):
+            parts[group].append(robot)
+        self.task.offer_split(parts, [i for i, blind in zip(self._order, node.blind, strict=True) if blind])
+
+
+def _order(single: FloatArray, links: frozenset[tuple[int, int]]) -> list[int]:
+    """Robots as they are placed: next to most of those placed before, the strongest of these."""
+    near = np.zeros((len(single), len(single)), dtype=np.int64)
+    for i, j in links:
+        near[i, j] = near[j, i] = 1
+    order: list[int] = []
+    placed = np.zeros(len(single), dtype=np.int64)
+    while len(order) < len(single):
+        rest = [i for i in range(len(single)) if i not in order]
+        order.append(max(rest, key=lambda i: (placed[i], single[i], -i)))
+        placed += near[order[-1]]
+    return order

@@ -1,0 +1,95 @@
+"""Attacks on plans of a function known by its values: which are known, and which plan keeps most."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attackers.any_function import metered_problem
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.task import AttackMemory
+from ratt_opt.budget import OutOfBudget
+from ratt_opt.stopping import Stop
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.budget import Budget
+    from ratt_opt.problem import Attack, Problem
+
+__all__ = ["ATTACK_SHARE", "PlanAttacks"]
+
+ATTACK_SHARE = 0.2
+"""Of the seconds and values left, for the first attack on a plan. Not tuned."""
+FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
+"""So many seconds at least for the first attack, if that is no more than this share of those left: with a fifth of one
+second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
+
+
+class PlanAttacks:
+    """``elements`` keep ``lower`` under every attack, as ``worst_case`` proved, once there is one.
+
+    ``known`` : attacks found so far, and the seeing robots of the groups that each leaves
+    """
+
+    def __init__(self, problem: Problem, budget: Budget, elements: IntArray, lower: float) -> None:
+        self._given, self._budget = problem, budget
+        self.problem = metered_problem(problem, budget)
+        self.elements, self.lower = elements, lower
+        self.worst_case: AttackResult | None = None
+        self.known: dict[Attack, list[frozenset[int]]] = {}
+        self._first: bytes | None = None
+        self._begun: dict[bytes, AttackMemory] = {}
+        """Of attacks that can go on: on the first plan, and on the last other one; some megabytes each."""
+        self._cut_short: set[bytes] = set()
+        """Plans whose last attack a share of the budget ended."""
+
+    def first(self, elements: IntArray) -> AttackResult:
+        """Attack the plan that all others are compared with."""
+        self._first = elements.tobytes()
+        seconds = min(FIRST_SECONDS, SHORT_SHARE * self._budget.seconds_left)
+        # Of evaluations it does not need what a short time may not do for: a table takes a known number of them.
+        share = ATTACK_SHARE if np.isinf(self._budget.evaluations_left) else SHORT_SHARE
+        return self.attack(elements, self._budget.part(share, at_least=seconds))
+
+    def attack(self, elements: IntArray, part: Budget | None = None, aim: float = -np.inf) -> AttackResult:
+        """Attack a plan, from where that ended; keep it where more is proved of it than of the one kept.
+
+        ``part`` : a share of what is left where absent; ``aim`` : what an attack has to leave at most to end it
+
+        Raises
+        ------
+        OutOfBudget : the user interrupted it; what it had proved counts.
+        """
+        part = self._budget.part(ATTACK_SHARE) if part is None else part
+        key = elements.tobytes()
+        memory = self._begun.pop(key, None) or AttackMemory()
+        if self.worst_case is not None:
+            aim = max(aim, self.lower)  # a plan that keeps no more is of no use
+        result = worst_case_attack(self.problem, elements, budget=part, aim=aim, memory=memory)
+        self._cut_short.discard(key)
+        if result.stop in {Stop.TIME, Stop.EVALUATIONS}:
+            self._cut_short.add(key)
+        if result.stop in {Stop.TIME, Stop.EVALUATIONS, Stop.HEURISTIC, Stop.GAP}:
+            first = {k: self._begun[k] for k in [self._first] if k in self._begun}
+            self._begun = first | {key: memory}
+        self.known.setdefault(result.attack, self._given.groups_left(result.attack))
+        if self.worst_case is None or result.lower > self.lower:
+            self.elements, self.lower, self.worst_case = elements.copy(), max(result.lower, self.lower), result
+        if result.stop is Stop.INTERRUPTED:
+            raise OutOfBudget(result.stop)
+        return result
+
+    def go_on(self, elements: IntArray) -> None:
+        """Attack a plan with all that is left where a share ended its last attack."""
+        if elements.tobytes() in self._cut_short & self._begun.keys() and not self._budget.is_over:
+            self.attack(elements, self._budget.part())
+
+    def settle(self, elements: IntArray, aim: float) -> AttackResult:
+        """Attack a plan exactly with all that is left, until it is known to keep no more than ``aim``.
+
+        Where first attacks end as ``HEURISTIC`` the second one goes on to the end; so do both where nothing is limited.
+        """
+        result = self.attack(elements, self._budget.part(), aim)
+        return self.attack(elements, self._budget.part(), aim) if result.stop is Stop.HEURISTIC else result
