@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import ratt_opt as ro
 from ratt_opt.attackers import attack_tree
 from ratt_opt.attackers.attack_tree import AttackTree
+from ratt_opt.attackers.link_choice import best_links
 from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.setfunctions.metered import Metered
@@ -83,11 +84,15 @@ def test_nothing_ends_before_its_values_are_spent(robots, seed, family, most):
         assert ro.solve_maxmin(hidden, max_evaluations=most).stop in LIMITED
 
 
+@pytest.mark.parametrize("share", [0.2, 0.0])
 @pytest.mark.parametrize("seed", range(2))
-def test_links_of_functions_known_by_their_values_are_chosen_until_the_time_is_up(seed):
-    problem, plan, as_it_is = network(21, seed)
-    for search in ro.links_to_add, ro.links_to_protect:
-        found = search(problem, plan, 1, candidates=sorted(search(as_it_is, plan, 2).links), time_limit=2)
+def test_links_of_functions_known_by_their_values_are_chosen_until_the_time_is_up(seed, share, monkeypatch):
+    """Also where the first attacks have no time to begin their trees."""
+    monkeypatch.setattr(best_links, "ATTACK_SHARE", share)
+    problem, plan, as_it_is = network(24, seed, alpha_s=5, alpha_c=11)
+    for search, candidates in (ro.links_to_add, [(0, 1), (2, 3), (4, 5)]), (ro.links_to_protect, as_it_is.graph.edges):
+        free = [link for link in candidates if search is ro.links_to_protect or not as_it_is.graph.has_edge(*link)]
+        found = search(problem, plan, 1, candidates=free, time_limit=1)
         assert found.stop in LIMITED
         assert found.before.lower <= ro.worst_case_attack(as_it_is, plan).upper * (1 + 1e-9)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -173,6 +174,8 @@ class _LinkSearch:
                 self._attack(self.upgrade.candidates, max_nodes=0)
                 while self._improve():
                     pass
+            elif not self.budget.is_over and self.after.stop is Stop.HEURISTIC:
+                self._settle(())
         except OutOfBudget as out:
             stop = out.stop
         except KeyboardInterrupt:
@@ -204,8 +207,14 @@ class _LinkSearch:
         before = len(known.ascending), self.after.lower
         self._attack(links)
         if (len(known.ascending), self.after.lower) == before:  # an attack that did not close, known already
-            self._attack(links, share=1.0)
+            self._settle(links)
         return (len(known.ascending), self.after.lower) != before
+
+    def _settle(self, links: tuple[Link, ...]) -> None:
+        """Attack the team that has these links in all the time that is left."""
+        first = self._attack(links, share=1.0)
+        if first.stop is Stop.HEURISTIC and math.isfinite(self.budget.seconds_left):
+            self._attack(links, share=1.0)  # which goes on by branch and bound
 
     def _links_of(self, chosen: int) -> tuple[Link, ...]:
         """The candidates of a bit mask, ascending."""
