@@ -71,9 +71,9 @@ MOVES, WARM, COLD = 1_500, 2.0, 0.05
 """Moves around each robot to find groups that pay the prices, and the temperatures [links] they cool between. Measured
 at 50 robots of a small world: with 4,000 moves three quarters of the time goes into them."""
 
-MOST_ROUNDS = 50
-"""Of annealing at the prices that claim most: some 3 s at 100 robots of hubs, where a threshold at 94 % of the attack
-then takes 800 nodes, and 25,000 do not do at the prices for few groups."""
+MOST_ROUNDS, ROUNDS_SHARE = 50, 0.05
+"""Of annealing at the prices that claim most, and of the seconds left for it. At 100 robots of hubs three seconds make
+a threshold at 94 % of the attack one of 800 nodes, where 25,000 do not do at the prices for few groups."""
 
 FIRST_CHUNK, ROOM, NEW_GROUPS = 50, 100_000, 100
 """Nodes before the first look at the clock; groups listed for covers; groups added to the program at a time."""
@@ -228,11 +228,11 @@ class ThresholdDecision:
 
         The first rounds ask the prices that claim most: slack is measured against all groups, and not against few.
         """
-        rounds, links = MOST_ROUNDS, self.threat.alpha_c + MARGIN
+        rounds, links, part = MOST_ROUNDS, self.threat.alpha_c + MARGIN, budget.part(ROUNDS_SHARE)
         while True:
             budget.check()
             found = self.prices.solve(threshold, budget.seconds_left)
-            if rounds and found.links > links:
+            if rounds and found.links > links and not part.is_over:
                 rounds = rounds - 1 if self.prices.add(self._cheap(found, threshold, budget)) else 0
                 continue
             asked = found.scaled(links) if found.links > links else found
