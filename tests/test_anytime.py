@@ -108,7 +108,7 @@ def test_larger_degenerate_teams_close(name, kind):
 
 
 @pytest.mark.parametrize("graph", ["complete", "ring", "random"])
-@pytest.mark.parametrize("n_robots", [14, 30, 70])
+@pytest.mark.parametrize("n_robots", [6, 9, 12, 14, 30, 70])
 def test_what_is_known_at_once_is_not_empty(n_robots, graph):
     rng = np.random.default_rng(n_robots)
     graphs = {

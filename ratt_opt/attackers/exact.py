@@ -94,9 +94,9 @@ def worst_case_attack(
       by branch and bound, without one ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not
       checked).
 
-    A keyboard interrupt or a spent budget returns the bracket reached. Interrupted before any attack
-    is known, it evaluates the team without an attack and returns that; its lower bound, the value of no
-    measurement, relies on a non-decreasing objective until the 2**N values of a small team are tabulated.
+    A keyboard interrupt or a spent budget returns the bracket reached; the lower bound of up to 12 robots
+    then relies on a non-decreasing objective too. Interrupted before any attack is known, it evaluates the team
+    without an attack and returns that, and the value of no measurement.
 
     Parameters
     ----------
@@ -173,7 +173,11 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     if not isinstance(problem.objective, InformationObjective):
         return _any_function(task, is_inner=is_inner)
     if problem.n_robots <= LARGEST_PLAIN:
-        return threshold_search(task)
+        try:
+            return threshold_search(task)
+        except (OutOfBudget, KeyboardInterrupt):
+            task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
+            raise
     task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
     return Stop.CLOSED if task.bracket.is_closed else _larger_team(task, is_inner=is_inner)
 

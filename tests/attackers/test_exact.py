@@ -86,11 +86,12 @@ def test_the_bracket_is_valid_wherever_the_search_stops(seed):
         assert part.lower <= full.upper <= part.upper
         assert problem.team_value(elements, part.attack) == part.upper
         assert part.nodes <= nodes
-        assert (part.stop is ro.Stop.NODES) == (nodes < full.nodes)
+        is_closed = part.lower >= part.upper - 1e-9 * abs(part.upper)  # what is known at once may do
+        assert (part.stop is ro.Stop.NODES) == (nodes < full.nodes and not is_closed)
 
 
 def test_budgets_are_checked_and_kept():
-    rng = np.random.default_rng(0)
+    rng = np.random.default_rng(3)  # what is known at once does not close it
     problem = random_problem(rng, 5, kind="trace", complete=True)
     elements = random_elements(rng, problem)
     assert worst_case_attack(problem, elements, time_limit=0).stop is ro.Stop.TIME
