@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy
-from ratt_opt.attackers.by_prices.groups.member_sets import MemberStack, _weigh
+from ratt_opt.attackers.by_prices.groups.member_bounds import weigh
+from ratt_opt.attackers.by_prices.groups.member_sets import MemberStack
 from ratt_opt.attackers.by_prices.groups.room import bound_room
 from ratt_opt.attackers.by_prices.groups.size_forms import ELSE, INSIDE, OPEN, OUTSIDE, SEEING
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
@@ -47,7 +48,7 @@ def test_no_weak_set_has_more_robots_than_the_room_or_weighs_more(first):
         free = np.flatnonzero(np.isin(stack.part[0], [OPEN, INSIDE])).tolist()
         closed, weight = np.zeros(N_ROBOTS, dtype=np.bool_), np.empty(N_ROBOTS)
         bound_room(team, Links.of(problem.threat), threshold, stack, 0, closed)
-        _weigh(team, threshold, stack, weight)
+        weigh(team, threshold, stack, weight)
         room, most, heaviest = int(stack.room[0]), 0, 0.0
         for size in range(1, len(free) + 1):
             for more in combinations(free, size):
