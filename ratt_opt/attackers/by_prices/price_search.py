@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from time import monotonic
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.by_prices.answer import Threshold
@@ -88,11 +87,11 @@ class PriceSearch:
                 self._effort, self._unknown = HARDER * self._effort, None
                 self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
                 continue
-            before, began, starts = budget.nodes, monotonic(), 0
+            before, began, starts = budget.nodes, budget.elapsed, 0
             answer = self._decision.decide(threshold, budget, budget.nodes_left(self._effort))
             spent = budget.nodes - before
             if answer.verdict is Threshold.REFUTED:
-                self._took = monotonic() - began
+                self._took = budget.elapsed - began
                 self._share = 0.5 if spent < LONG else QUARTER
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self._offer(answer.partition):

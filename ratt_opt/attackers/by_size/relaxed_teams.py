@@ -74,7 +74,7 @@ def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, 
             within = replace(task, budget=part)
             _sizes_bound(within, team, vectors)
             sets = weak_sets(within, team, possible) if asked else None
-    if team is not None and sets is not None:
+    if sets is not None:
         with budget.stage(asked, max_nodes=SIZES_NODES) as rest:
             largest_groups_bound(replace(task, budget=rest), possible, sets)
     return least
