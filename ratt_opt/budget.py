@@ -117,6 +117,11 @@ class Budget:
         return None
 
     @property
+    def is_interrupted(self) -> bool:
+        """Whether the user interrupted: nothing is begun any more that compiles on first use, however short it is."""
+        return self._interrupt.happened
+
+    @property
     def is_over(self) -> bool:
         """Whether the time is up, no evaluation is left or the user interrupted; nodes are not asked."""
         return self.stop() not in {None, Stop.NODES}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import re
 import shutil
 import signal
@@ -191,3 +192,53 @@ def test_compiled_code_is_kept_while_all_sources_in_it_stay_the_same(file, text,
         found.append(_kept_code.fingerprint(package / "outer.py"))
         (package / file).write_text(text)
     assert (found[0] != found[1]) is changes
+
+
+INTERRUPTED = """
+from collections import Counter
+import networkx as nx, numpy as np
+import ratt_opt as ro
+from numba.core import event
+from ratt_opt.budget import Budget
+from tests.strategies import OBJECTIVES, information_data
+
+class Compiled(event.Listener):
+    def on_start(self, event):
+        compiled[str(event.data["dispatcher"])] += 1
+    def on_end(self, event):
+        pass
+
+compiled = Counter()
+event.register("numba:compile", Compiled())
+for robots, dimension in [(10, 1), (24, 2), (24, 3)]:
+    for graph in (None, nx.barabasi_albert_graph(robots, 4, seed=1)):
+        for kind in OBJECTIVES.values():
+            f = kind(*information_data(np.random.default_rng(robots), 2 * robots, 3, dimension))
+            problem = ro.Problem(f, np.repeat(np.arange(robots), 2), graph, robots // 5, robots)
+            plan = 2 * np.arange(robots)
+            interrupted = Budget()
+            interrupted.interrupt()
+            searches = {
+                "attack": lambda: ro.worst_case_attack(problem, plan, budget=interrupted),
+                "best plan": lambda: ro.solve_maxmin(problem, budget=interrupted),
+                "nobody attacks": lambda: ro.nonrobust_optimum(problem, budget=interrupted),
+                "survey": lambda: ro.attack_survey(problem, plan, budget=interrupted),
+                "total curvature": lambda: ro.total_curvature(f, problem.robot, budget=interrupted),
+                "budgets": lambda: ro.breaking_budgets(problem, plan, 1.0, budget=interrupted),
+                "links": lambda: ro.links_to_protect(problem, plan, 2, budget=interrupted),
+            }
+            for name, search in searches.items():
+                search()
+                assert not compiled, (name, robots, graph, kind, compiled)
+print("nothing")
+"""
+
+
+def test_after_an_interrupt_nothing_is_compiled_any_more(tmp_path):
+    """On a first run that took 8 seconds: searches that know something at once were asked for it, and compiled."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED], env=environment, capture_output=True, text=True, check=False,
+        cwd=Path(ratt_opt.__file__).parent.parent,
+    )  # fmt: skip
+    assert done.stdout == "nothing\n", done.stderr

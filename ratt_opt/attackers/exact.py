@@ -179,6 +179,8 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
             task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
             raise
     task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
+    if task.budget.is_interrupted:
+        return Stop.INTERRUPTED
     return Stop.CLOSED if task.bracket.is_closed else _larger_team(task, is_inner=is_inner)
 
 

@@ -134,7 +134,9 @@ class PlanarBrackets(MarginalBrackets):
             self.most[x] = max(min(high.bound / self._data.scale, self.most[x]), self.seen_most[x])
 
     def _highest_level(self, options: Options) -> float:
-        """Proved upper bound on the smallest level of any context."""
+        """Proved upper bound on the smallest level of any context; an interrupt leaves none."""
+        if self._budget.is_interrupted:
+            return np.inf
         everything = np.ones(len(options.elements), dtype=np.bool_)
         program = LevelProgram(options, self._data.prior, self._data.prior, None, allowed=everything)
         return program.bound(0.0, self._budget).ceiling
