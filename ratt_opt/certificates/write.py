@@ -97,7 +97,7 @@ def certify_if_possible(
     if not _is_known(problem):
         return Certification(why_not="only the trace, log-det and max-eigenvalue criteria have certificates")
     if result.proof is None:
-        return Certification(why_not="the search stopped before it proved a bound")
+        return Certification(why_not="the best plan was enumerated, which leaves no proof")
     try:
         return Certification(certificate=certify(problem, result, path, budget=budget, source=source))
     except (InputError, UndecidedError, MemoryError) as error:

@@ -12,13 +12,14 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.problem import check_problem
+from ratt_opt.problem import Attack, check_problem
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.descent import Descent
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
+from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import Known
@@ -140,13 +141,14 @@ def _search_and_prove(search: Descent, turns: Turns, progress: Progress) -> Stop
 
 
 def _result(problem: Problem, incumbent: Incumbent, search: Descent | None, stop: Stop, gap: float) -> MaxMinResult:
-    before = problem.information_objective.prior_criterion
-    # Before any cut bounds all plans, monotonicity does: no plan is worth more than all elements together.
-    everything = problem.objective(range(problem.objective.n))
-    bounded = search is not None and np.isfinite(search.upper)
-    proved = incumbent.proved
+    before, proved = problem.information_objective.prior_criterion, incumbent.proved
     lower = proved.lower
-    upper = max(search.upper if search is not None and bounded else everything, lower)
+    if search is not None and np.isfinite(search.upper):
+        upper, proof = search.upper, search.proof()
+    else:  # before any cut bounds all plans, monotonicity does
+        known = monotone_bound(problem, Attack() if proved.worst_case is None else proved.worst_case.attack)
+        upper, proof = known.upper, known.proof
+    upper = max(upper, lower)
     rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
     if upper - lower <= ROUNDING * abs(lower) + rounding:
         stop = Stop.CLOSED
@@ -161,7 +163,7 @@ def _result(problem: Problem, incumbent: Incumbent, search: Descent | None, stop
         nodes=incumbent.budget.nodes,
         posterior_gap=None if before is None or before <= lower else float((upper - lower) / (before - lower)),
         worst_case=proved.worst_case,
-        proof=search.proof() if search is not None and bounded else None,
+        proof=proof,
     )
 
 
