@@ -2,8 +2,9 @@
 
 Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
 those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
-fails with an error of its own. So it is raised again as soon as the callback has ended. What is kept of compiled code:
-``_kept_code``.
+fails with an error of its own. So it is raised again as soon as the callback has ended. Where the compiler takes a
+module over, an interrupt just after it left two owners, each of which freed it: there, too, it comes again a little
+later. What is kept of compiled code: ``_kept_code``.
 
 An interrupt while compiled loops run came when the arrays that they return are made, for each of which Python was asked
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
@@ -21,6 +22,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numba
+from llvmlite.binding import executionengine, ffi, linker
 from numba.core import boxing, event, pythonapi, types
 from numba.core.caching import CompileResultCacheImpl
 from numba.core.registry import cpu_target
@@ -35,8 +37,20 @@ __all__ = ["numba"]
 
 DROPPED_IN = {"_raw_object_cache_notify", "_raw_object_cache_getbuffer", "__del__"}
 """Functions called by compiled code or the collector, which drop exceptions."""
+HANDS_OVER = {
+    function.__code__
+    for function in (
+        linker.link_modules,
+        executionengine.create_mcjit_compiler,
+        executionengine.ExecutionEngine.add_module,
+        executionengine.ExecutionEngine.remove_module,
+        ffi.ObjectRef.close,
+        ffi.OutputString.close,
+    )
+}
+"""Code of the functions that note who owns a thing only after they have handed it over, or freed it."""
 AGAIN_AFTER = 0.01
-"""Seconds until a dropped interrupt comes again."""
+"""Seconds until an interrupt that cannot be met where it came comes again."""
 
 
 class _Interrupts(event.Listener):
@@ -67,15 +81,16 @@ class _Interrupts(event.Listener):
             self._before = None
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:
-        if _is_dropped_in(frame):
+        if _must_wait(frame):
             threading.Timer(AGAIN_AFTER, signal.raise_signal, [number]).start()
         else:
             self._before(number, frame)
 
 
-def _is_dropped_in(frame: FrameType | None) -> bool:
+def _must_wait(frame: FrameType | None) -> bool:
+    """Whether an interrupt in this frame would be dropped, or leave something with two owners."""
     while frame is not None:
-        if frame.f_code.co_name in DROPPED_IN:
+        if frame.f_code.co_name in DROPPED_IN or frame.f_code in HANDS_OVER:
             return True
         frame = frame.f_back
     return False
@@ -111,6 +126,8 @@ def _interrupts_afterwards() -> Iterator[None]:
 with _interrupts_afterwards():
     cpu_target.typing_context.refresh()
     cpu_target.target_context.refresh()
-event.register("numba:llvm_lock", _Interrupts())  # type: ignore[no-untyped-call]
+INTERRUPTS = _Interrupts()
+for kind in ("numba:compiler_lock", "numba:llvm_lock"):  # all of compiling; what is freed later
+    event.register(kind, INTERRUPTS)  # type: ignore[no-untyped-call]
 pythonapi._boxers.functions[types.Array] = _array_of_constant_class
 CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

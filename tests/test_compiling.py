@@ -113,6 +113,45 @@ def test_one_while_types_are_listed_leaves_nothing_out():
     assert done.stdout == "answered\n8\n", done.stderr
 
 
+HANDED_OVER = """
+import gc, signal, sys, time
+from llvmlite.binding import ffi
+from ratt_opt.compiling import numba
+import numpy as np
+
+name, met = sys.argv[1], []
+original = getattr(ffi.lib, name)
+
+def interrupted(*arguments):
+    result = original(*arguments)
+    if compiling and not met:
+        met.append(name)
+        signal.raise_signal(signal.SIGINT)
+    return result
+
+ffi.lib._fntab[name] = interrupted
+compiling = False
+numba.njit(lambda x: x.sum())(np.ones(2))
+compiling = True
+try:
+    numba.njit(lambda x: np.argsort(x).sum() + np.diag(x).sum())(np.ones(3))
+    time.sleep(5)
+    print("not answered", met)
+except KeyboardInterrupt:
+    print("answered", met)
+for _ in range(5):
+    gc.collect()
+    print(numba.njit(lambda x: x.sum())(np.ones(2)))
+"""
+
+
+@pytest.mark.parametrize("name", ["LLVMPY_LinkModules", "LLVMPY_AddModule", "LLVMPY_DisposeString"])
+def test_one_while_a_module_changes_its_owner_does_not_free_it_twice(name):
+    done = subprocess.run([sys.executable, "-c", HANDED_OVER, name], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == f"answered {[name]}\n" + 5 * "2.0\n"
+
+
 def test_every_module_of_compiled_loops_takes_numba_from_there():
     direct = [path for path in SOURCES if re.search(r"^\s*(import numba|from numba)\b", path.read_text(), re.M)]
     assert [path.name for path in direct] == ["_kept_code.py", "compiling.py"]
