@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
@@ -47,6 +48,9 @@ LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
 """The largest shave is at least so many times what the objective's values are off by."""
 LOWER_SHARE = 0.4
 """Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
+RESERVED, LEAST_RESERVED = 1.5, 0.1
+"""Times as many seconds as the upper end took to bound, and seconds besides, that are kept from verifying both ends:
+where that does not end, the file is verified with the upper end alone."""
 
 
 def problem_document(problem: Problem) -> dict[str, Any]:
@@ -121,8 +125,8 @@ def certify(
     The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
     (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the limits of ``lower.py`` and
     two fifths of the time, a value some hundredths lower is tried in two fifths of the rest (``lower_shaved`` says
-    by how much). Where that is not proved either, the lower end is stated as enumerated in floating point and
-    ``verified.lower_proved`` is False. An interrupt propagates; no file is left.
+    by how much). Where that is not proved either, or not verified in time, the lower end is stated as enumerated in
+    floating point and ``verified.lower_proved`` is False. An interrupt propagates; no file is left.
 
     Parameters
     ----------
@@ -179,10 +183,15 @@ def write_certificate(
     with Step("certificate, written and checked") as step, watched(step.say):
         record, plan = problem_document(problem), problem.check_plan(elements).tolist()
         prior_range = _prior_range(problem, record, plan)
+        began = monotonic()
         check = UpperCheck(Statement(record, plan, prior_range))
         high = max(float(upper), _proved_upper(check, upper_part), 0.0)
+        reserve = RESERVED * (monotonic() - began) + LEAST_RESERVED
         origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
+        is_undecided = False
         for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
+            if is_undecided and lower_part is not ENUMERATED:
+                continue
             document = {
                 "format": FORMAT,
                 "version": VERSION,
@@ -195,10 +204,12 @@ def write_certificate(
                 "lower": lower_part,
             }
             try:
-                return _write_verified(document, path, lower - low, high - upper)
+                with limited(seconds_left() - (0.0 if lower_part is ENUMERATED else reserve)):
+                    return _write_verified(document, path, lower - low, high - upper)
             except ProofError as error:
-                if lower_part is ENUMERATED or isinstance(error, UndecidedError):
+                if lower_part is ENUMERATED:
                     raise
+                is_undecided = isinstance(error, UndecidedError)
         raise AssertionError  # the last claim is an enumeration
 
 

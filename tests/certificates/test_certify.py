@@ -24,11 +24,13 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
+from ratt_opt.certificates import write
 from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.write import _prior_range, certify, problem_document
+from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
 from tests.oracles import brute_force_worst_case
@@ -216,3 +218,23 @@ def test_public_names():
     assert ratt_opt.certify is certify
     assert ratt_opt.verify_certificate is verify_certificate
     assert issubclass(FileFormatError, InputError)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_where_time_ends_the_upper_end_is_proved_alone(kind, tmp_path, monkeypatch):
+    """Verifying both ends took longer than was left, and nothing was written."""
+    problem, asked = random_scenario(5, 4, alpha_s=1, alpha_c=4, seed=2).problem(kind), []
+
+    def endless(file, **options):
+        asked.append(json.loads(file.read_text())["lower"]["kind"])
+        if asked[-1] != "enumerated":
+            raise UndecidedError("not decided within 1 s")
+        return verify_certificate(file, **options)
+
+    monkeypatch.setattr(write, "verify_certificate", endless)
+    result = solve_maxmin(problem)
+    verified = certify(problem, result, tmp_path / "c.json", time_limit=30).verified
+    assert asked[1:] == ["enumerated"]
+    assert not verified.lower_proved
+    assert verified.upper >= exhaustive_optimum(problem).lower * (1 - 1e-9)
+    assert verified.upper == pytest.approx(result.upper, rel=1e-9)
