@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.budget import Budget
 from ratt_opt.compiling import numba
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["CompiledThresholdTest"]
 
 FAR = int(UNREACHABLE)
+AT_ONCE = 20_000_000
+"""Groups times numbers of blinded robots looked at between two looks at the clock: some hundredths of a second."""
 
 
 @numba.njit(cache=True)
@@ -97,12 +100,20 @@ def _group_of(mask: int, groups: Any, is_group: Any, start: Any, best: Any, tabl
 
 
 @numba.njit(cache=True)
-def _fill(masks: Any, groups: Any, is_group: Any, start: Any, tables: Any) -> None:
+def _fill(masks: Any, groups: Any, is_group: Any, start: Any, tables: Any, first: int, steps: int) -> int:  # noqa: PLR0917
+    """Fill the rows of ``tables`` from ``first`` on until so many groups were looked at; returns the next row."""
     links = tables[3]
     best = np.zeros(links.shape[1], dtype=np.int16)
-    for k in range(1, len(masks)):
-        _group_of(masks[k], groups, is_group, start, best, tables)
+    k = first
+    while k < len(masks) and steps > 0:
+        mask = masks[k]
+        low = mask & -mask
+        lowest = count_ones(low - 1)
+        steps -= 1 + min(start[lowest + 1] - start[lowest], 1 << count_ones(mask ^ low))
+        _group_of(mask, groups, is_group, start, best, tables)
         links[k] = best
+        k += 1
+    return k
 
 
 class CompiledThresholdTest:
@@ -133,13 +144,22 @@ class CompiledThresholdTest:
         self._groups = groups[order]
         self._start = np.searchsorted(lowest[order], np.arange(n_robots + 1))
 
-    def split(self, threshold: float) -> GroupSplit | None:
-        """Return an attack's groups and survivors with team value at most ``threshold``, or ``None``."""
+    def split(self, threshold: float, budget: Budget | None = None) -> GroupSplit | None:
+        """Return an attack's groups and survivors with team value at most ``threshold``, or ``None``.
+
+        Raises
+        ------
+        OutOfBudget : the time of ``budget`` is up, or the user interrupted.
+        """
+        budget = Budget() if budget is None else budget
         need = fewest_blinded(self.threat, self.values, threshold).astype(np.int16)
         links = np.full((len(self._masks), self.threat.alpha_s + 1), FAR, dtype=np.int16)
         links[0] = 0
         tables = (self._inside, self._row, need, links)
-        _fill(self._masks, self._groups, self._is_group, self._start, tables)
+        row, steps = 1, AT_ONCE // links.shape[1]
+        while row < len(self._masks):
+            budget.check()
+            row = _fill(self._masks, self._groups, self._is_group, self._start, tables, row, steps)
         if links[-1, -1] > self.threat.alpha_c:
             return None
         return self._trace(tables, threshold)

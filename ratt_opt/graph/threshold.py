@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Budget
 from ratt_opt.graph.connected_partitions import SubsetLattice, submasks
 
 if TYPE_CHECKING:
@@ -85,12 +86,19 @@ class ThresholdTest:
         self._levels = _levels(SubsetLattice.of(threat), threat.alpha_c, self._sizes, largest_group or self.n_robots)
         self._level_of = {int(self._sizes[level.sets[0]]): level for level in self._levels}
 
-    def split(self, threshold: float) -> GroupSplit | None:
-        """Return an attack's groups and survivors with team value at most ``threshold``, or ``None``."""
+    def split(self, threshold: float, budget: Budget | None = None) -> GroupSplit | None:
+        """Return an attack's groups and survivors with team value at most ``threshold``, or ``None``.
+
+        Raises
+        ------
+        OutOfBudget : the time of ``budget`` is up, or the user interrupted.
+        """
+        budget = Budget() if budget is None else budget
         need = fewest_blinded(self.threat, self.values, threshold)
         links = np.full((2**self.n_robots, self.threat.alpha_s + 1), UNREACHABLE, dtype=np.int16)
         links[0] = 0
         for level in self._levels:
+            budget.check()
             links[level.sets] = np.minimum.reduceat(_costs(level, links, need), level.start, axis=0)
         if links[-1, -1] > self.threat.alpha_c:
             return None

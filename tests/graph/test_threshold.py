@@ -3,8 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph import compiled_threshold
 from ratt_opt.graph.compiled_threshold import CompiledThresholdTest
 from ratt_opt.graph.threshold import ThresholdTest
+from ratt_opt.stopping import Stop
 from tests.strategies import random_problem
 
 
@@ -24,7 +27,9 @@ def check_split(threat, values, split, threshold):
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_compiled_and_plain_tests_agree(seed):
+def test_compiled_and_plain_tests_agree(seed, monkeypatch):
+    """Filled in one piece and in many."""
+    monkeypatch.setattr(compiled_threshold, "AT_ONCE", [compiled_threshold.AT_ONCE, 20][seed % 2])
     rng = np.random.default_rng(seed)
     n_robots = int(rng.integers(1, 9))
     threat = random_problem(rng, n_robots, kind="logdet", controls=1).threat
@@ -36,3 +41,21 @@ def test_compiled_and_plain_tests_agree(seed):
         for split in (first, second):
             if split is not None:
                 check_split(threat, values, split, threshold)
+
+
+@pytest.mark.parametrize("kind", [ThresholdTest, CompiledThresholdTest])
+def test_the_budget_is_asked_on_the_way(kind, monkeypatch):
+    """A test of 18 robots took three seconds of a processor in one piece, which no limit and no interrupt ended."""
+    monkeypatch.setattr(compiled_threshold, "AT_ONCE", 1000)
+    threat = random_problem(np.random.default_rng(4), 8, kind="logdet", controls=1).threat
+    test, asked = kind(threat, np.random.default_rng(5).normal(size=2**8)), []
+
+    class Spent(Budget):
+        def check(self):
+            asked.append(self)
+            if len(asked) == 3:
+                raise OutOfBudget(Stop.TIME)
+
+    with pytest.raises(OutOfBudget):
+        test.split(0.0, Spent())
+    assert len(asked) == 3

@@ -60,7 +60,7 @@ class ThresholdSearch:
         while self._low < self._high:
             middle = (self._low + self._high) // 2
             self.task.budget.spend()
-            split = test.split(float(levels[middle]))
+            split = test.split(float(levels[middle]), self.task.budget)
             if split is None:
                 self._low = middle + 1
                 bracket.raise_lower(float(levels[self._low]))
