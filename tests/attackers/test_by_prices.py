@@ -13,8 +13,8 @@ from ratt_opt.attackers.by_prices import price_search
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
-from ratt_opt.attackers.by_prices.groups import cover
-from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, WEAK, weak_subset
+from ratt_opt.attackers.by_prices.groups import blinding, cover
+from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, WEAK, may_be_weak, weak_subset
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
@@ -126,6 +126,24 @@ def test_weak_subsets_against_all_of_them(seed):
                 left = [plan[i] for i in members if not found[i]]
                 assert found.sum() == blinded
                 assert problem.objective(left) < threshold
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_weak_subsets_in_pieces_are_those_in_one(seed, monkeypatch):
+    """Of 53 robots and targets of four coordinates one piece took 1.9 s, which no limit and no interrupt ended."""
+    problem, plan = team_problem(seed, 9)
+    team, rng, asked = PricedTeam.of(problem.objective, plan), np.random.default_rng(seed), []
+    group, nobody = rng.random(9) < 0.8, np.zeros(9, dtype=np.bool_)
+    most = problem.objective([plan[i] for i in np.flatnonzero(group)])
+    for blinded in range(int(group.sum()) + 1):
+        for threshold, limit in zip(rng.uniform(0, 1.1, 8) * most, (1, 2, 5, 6, 20, 100, 10**4, 10**4), strict=True):
+            monkeypatch.setattr(blinding, "AT_ONCE", 10**6)
+            whole = weak_subset(team, nobody, group, blinded, threshold, limit, nobody.copy()) != ABSENT
+            for pieces in (1, 3, 10**6):
+                monkeypatch.setattr(blinding, "AT_ONCE", pieces)
+                found = may_be_weak(team, group, blinded, threshold, limit, lambda: asked.append(1))
+                assert found == whole
+    assert len(asked) > 9 * 8 * 3 // 2
 
 
 def fitted_forms(threat, prices=None):

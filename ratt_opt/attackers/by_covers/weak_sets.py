@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, weak_subset
+from ratt_opt.attackers.by_prices.groups.blinding import may_be_weak
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -75,10 +75,5 @@ class WeakSets:
 
     def _has_weak(self, robots: int, size: int, values: int = VALUES) -> bool:
         """Whether so many of the robots may be worth less; true also where that is not decided."""
-        n_robots = len(self._strongest)
-        inside, found = (
-            np.array([robots >> i & 1 for i in range(n_robots)], dtype=np.bool_),
-            np.zeros(n_robots, np.bool_),
-        )
-        nobody, spared = np.zeros(n_robots, dtype=np.bool_), robots.bit_count() - size
-        return bool(weak_subset(self._team, nobody, inside, spared, self._threshold, values, found) != ABSENT)
+        inside = np.array([robots >> i & 1 for i in range(len(self._strongest))], dtype=np.bool_)
+        return may_be_weak(self._team, inside, robots.bit_count() - size, self._threshold, values, self._check)

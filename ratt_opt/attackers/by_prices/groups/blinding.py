@@ -5,16 +5,24 @@ Imported only where compiled loops are used.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, gather_seeing, value_of
 from ratt_opt.compiling import numba
 
-__all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "trade", "weak_subset"]
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import BoolArray
+    from ratt_opt.attackers.by_prices.team import PricedTeam
+
+__all__ = ["ABSENT", "UNDECIDED", "WEAK", "exchange", "may_be_weak", "trade", "weak_subset"]
 
 ABSENT, WEAK, UNDECIDED = 0, 1, 2
+AT_ONCE = 5_000
+"""Values between two looks at the clock: a tenth of a second where targets have four coordinates, max-eigenvalue."""
 
 
 @numba.njit(cache=True)
@@ -42,18 +50,24 @@ def _can_blind(seeing: Any, members: Any, first: int) -> bool:
 
 
 @numba.njit(cache=True)
-def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: float, limit: int, found: Any) -> int:  # noqa: PLR0917
-    """Whether blinding so many robots can leave ``group`` (N,) less than the threshold: ABSENT, WEAK or UNDECIDED.
+def _begun(team: Any, group: Any) -> Any:
+    """Where a search for blinded robots of ``group`` (N,) begins; it goes on in place.
 
-    ``seeing`` : (N,) robots that cannot be blinded; ``limit`` : values looked at before giving up;
-    ``found`` : (N,) becomes the blinded robots. The strongest are decided first, blinded before kept.
+    The members, the information of those kept at each depth, what was tried there, and (2,) depth and blinded so far.
     """
     members = _strongest_first(team, group)
-    size, asked = len(members), 0
-    sums = np.empty((size + 1, *team.prior.shape))
+    sums = np.empty((len(members) + 1, *team.prior.shape))
     copy(sums[0], team.prior)
-    choice = np.zeros(size + 1, dtype=np.int64)  # 0: nothing tried, 1: blinding tried, 2: keeping tried
-    depth, used = 0, 0
+    choice = np.zeros(len(members) + 1, dtype=np.int64)  # 0: nothing tried, 1: blinding tried, 2: keeping tried
+    return members, sums, choice, np.zeros(2, dtype=np.int64)
+
+
+@numba.njit(cache=True)
+def _go_on(team: Any, seeing: Any, place: Any, blinded: int, threshold: float, limit: int, found: Any) -> int:  # noqa: PLR0917
+    """:func:`weak_subset` from where it was: UNDECIDED before the first value beyond the limit, and then to go on."""
+    members, sums, choice, at = place
+    size, asked = len(members), 0
+    depth, used = at[0], at[1]
     while depth >= 0:
         if (depth == size or size - depth <= blinded - used) and _can_blind(seeing, members, depth):
             found[:] = False
@@ -70,20 +84,48 @@ def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: flo
             if depth <= size:
                 choice[depth] = 0
             continue
+        if step < 2 and asked >= limit:
+            at[0], at[1] = depth, used
+            return UNDECIDED
         if step == 1:
             used -= 1
         if step < 2:
             choice[depth] = 2
             add(sums[depth + 1], sums[depth], 1.0, team, robot)
             asked += 1
-            if asked > limit:
-                return UNDECIDED
             if value_of(team, sums[depth + 1]) < threshold:
                 depth += 1
                 choice[depth] = 0
                 continue
         depth -= 1
     return ABSENT
+
+
+@numba.njit(cache=True)
+def weak_subset(team: Any, seeing: Any, group: Any, blinded: int, threshold: float, limit: int, found: Any) -> int:  # noqa: PLR0917
+    """Whether blinding so many robots can leave ``group`` (N,) less than the threshold: ABSENT, WEAK or UNDECIDED.
+
+    ``seeing`` : (N,) robots that cannot be blinded; ``limit`` : values looked at before giving up;
+    ``found`` : (N,) becomes the blinded robots. The strongest are decided first, blinded before kept.
+    """
+    return _go_on(team, seeing, _begun(team, group), blinded, threshold, limit, found)
+
+
+def may_be_weak(  # noqa: PLR0917
+    team: PricedTeam, group: BoolArray, blinded: int, threshold: float, limit: int, check: Callable[[], None]
+) -> bool:
+    """:func:`weak_subset` of a group any of whose robots can be blinded, in pieces; true also where undecided.
+
+    ``check`` : raises where the time is up
+    """
+    nobody, found = np.zeros((2, len(group)), dtype=np.bool_)
+    place = _begun(team, group)
+    for begin in range(0, limit, AT_ONCE):
+        check()
+        answer = _go_on(team, nobody, place, blinded, threshold, min(AT_ONCE, limit - begin), found)
+        if answer != UNDECIDED:
+            return bool(answer == WEAK)
+    return True
 
 
 @numba.njit(cache=True)

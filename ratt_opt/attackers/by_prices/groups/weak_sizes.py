@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, weak_subset
+from ratt_opt.attackers.by_prices.groups.blinding import may_be_weak
 from ratt_opt.attackers.by_prices.groups.compiled import value_of
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
@@ -42,11 +42,9 @@ class WeakSizes:
     def largest(self, threshold: float, budget: Budget) -> int:
         """A size that no set of robots worth less than the threshold exceeds."""
         n_robots, values = len(self._team.single), SIZE_WORK // (len(self._team.prior) * self._team.prior.shape[1] ** 2)
-        everyone, nobody = np.ones(n_robots, dtype=np.bool_), np.zeros(n_robots, dtype=np.bool_)
+        everyone = np.ones(n_robots, dtype=np.bool_)
         for size in range(self._by_floors(threshold, budget), 0, -1):
-            budget.check()
-            spared, found = n_robots - size, nobody.copy()
-            if weak_subset(self._team, nobody, everyone, spared, threshold, values, found) != ABSENT:
+            if may_be_weak(self._team, everyone, n_robots - size, threshold, values, budget.check):
                 return size
         return 0
 
