@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["any_graph", "last_stage"]
 
-TREE_SHARE, BOUND_SHARE, BOUND_NODES = 0.05, 0.3, 500_000
+TREE_SHARE, BOUND_SHARE, BOUND_NODES = 0.01, 0.3, 500_000
 """Of what is left of the budget for tree inequalities, which on dense graphs are not asked: there they used up their
 share and proved nothing; then, and at most so many nodes, for the weakest group of the forced size; prices get the
 rest. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the attack in a minute, prices

@@ -19,7 +19,7 @@ from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SE
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.paying_groups import NODES, PayingSearch, Way
+from ratt_opt.attackers.by_prices.paying_groups import PayingSearch, Way
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
@@ -338,8 +338,8 @@ def paying_search(team, links, threat, forms_at=None, way=Way.SEEING_WITH_FORMS)
     return search
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_a_long_search_is_made_every_way_and_the_shortest_one_is_kept(seed, monkeypatch):
+def unpaid_question(seed):
+    """A team of six robots, its threshold, and prices that no group of theirs pays."""
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(6 * seed + 1, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
@@ -348,26 +348,60 @@ def test_a_long_search_is_made_every_way_and_the_shortest_one_is_kept(seed, monk
     while least_cost(problem, plan, threshold, (robot, blinded)) < 1e-3:
         robot *= 0.6
     at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1), ConvexForms(threat).known)
-    question = Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
-    monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", np.inf)
-    spent = {}
-    for way in Way:
+    return (team, links, threat), at, Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
+
+
+@pytest.mark.parametrize("way", Way)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_search_asked_again_goes_on_where_it_was(seed, way, monkeypatch):
+    """All ways have their part; the one that ends is the first to be asked the next time."""
+    monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.NEARLY", 0)
+    (team, links, threat), at, question = unpaid_question(seed)
+    alone = {}
+    for only in Way:
         budget = Budget()
-        search = paying_search(team, links, threat, forms_at=robot, way=way)
+        search = paying_search(team, links, threat, forms_at=at.robot, way=only)
         assert search.find(at, question, budget, nodes=10**6, room=1).is_complete
-        spent[way] = budget.nodes * NODES[way]
-    monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0)
-    search, budget = paying_search(team, links, threat, forms_at=robot), Budget()
-    assert search.find(at, question, budget, nodes=10**6, room=1).is_complete
-    assert spent[search._way] == min(spent.values())
+        alone[only] = budget.nodes
+    search, budget, nodes = paying_search(team, links, threat, forms_at=at.robot, way=way), Budget(), 2
+    while not search.find(at, question, budget, nodes=nodes, room=1).is_complete:
+        nodes += 2
+    assert budget.nodes <= sum(alone.values())
+    assert budget.nodes >= alone[search._way]
+
+
+@pytest.mark.parametrize("way", Way)
+def test_a_search_that_nearly_ends_goes_on_beyond_its_nodes(way, monkeypatch):
+    (team, links, threat), at, question = unpaid_question(1)
+    for nearly in (0.0, 1.0):
+        monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.NEARLY", nearly)
+        search = paying_search(team, links, threat, forms_at=at.robot, way=way)
+        assert search.find(at, question, Budget(), nodes=3, room=1).is_complete == (nearly == 1.0)
+
+
+@pytest.mark.parametrize("way", Way)
+@pytest.mark.parametrize("seed", range(12))
+def test_a_search_whose_prices_fell_is_not_gone_on_with_at_higher_prices(seed, way):
+    rng = np.random.default_rng(seed)
+    (team, links, threat), at, question = unpaid_question(seed)
+    problem, plan = team_problem(6 * seed + 1, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    robot = at.robot + rng.uniform(0.0, 1.0, 6)  # some groups may pay now
+    first = PriceVector(robot=robot, blinded=at.blinded, links=float(robot.sum() - at.blinded * threat.n_blinded))
+    search, nodes, found = paying_search(team, links, threat, forms_at=robot, way=way), 1, None
+    while found is None or not found.is_complete:
+        falling = FallingPrices(
+            program=GroupPrices(threat), threshold=question.threshold, prices=first, links=first.links - 100.0
+        )
+        found = search.find(at._replace(robot=robot), question, Budget(), falling, nodes=nodes, room=10**6)
+        assert not found.groups
+        nodes += 1
+    left = falling.prices.robot, at.blinded
+    assert least_cost(problem, plan, question.threshold, left) >= -1e-5
 
 
 @pytest.mark.parametrize("way", Way)
 @pytest.mark.parametrize("seed", range(24))
-def test_the_search_for_groups_that_pay_finds_some_or_proves_that_none_does(seed, way, monkeypatch):
-    monkeypatch.setattr(
-        "ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0 if seed % 3 == 0 else 4
-    )  # 0: always every way
+def test_the_search_for_groups_that_pay_finds_some_or_proves_that_none_does(seed, way):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
@@ -393,11 +427,8 @@ def test_the_search_for_groups_that_pay_finds_some_or_proves_that_none_does(seed
 
 @pytest.mark.parametrize("way", Way)
 @pytest.mark.parametrize("seed", range(24))
-def test_prices_fall_for_groups_that_pay_until_none_does(seed, way, monkeypatch):
+def test_prices_fall_for_groups_that_pay_until_none_does(seed, way):
     """What is closed at higher prices stays closed: one search proves what the prices left at its end claim."""
-    monkeypatch.setattr(
-        "ratt_opt.attackers.by_prices.paying_groups.AGAIN", 0 if seed % 3 == 0 else 4
-    )  # 0: always every way
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat

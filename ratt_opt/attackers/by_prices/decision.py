@@ -60,7 +60,7 @@ LOWERED, FALL = 0.003, 0.1
 """By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative; and links
 by which prices that claim too few may fall for groups before."""
 
-FIRST_ATTEMPT, LONGER = 50_000, 3
+FIRST_ATTEMPT, LONGER = 10_000, 3
 """Nodes of the first search over seeing robots at each of a few prices, and their growth while none of them ends."""
 
 DEARER, LISTING = 200, 10

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
+from math import isinf
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.by_prices.answer import Threshold
+from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.starts import Starts
@@ -32,8 +33,9 @@ PATIENCE = 3
 """Times as many starts as the best attack took. On hubs of 30 robots, (10, 31), the best of 60 was the 33rd, 36th
 and 4th with three seeds, and the ones before it the 19th, 34th and 3rd."""
 
-ANNEALING_SHARE = 0.3
-"""Of the seconds left that the first starts may take, where the limit is short."""
+ANNEALING_SHARE, SHORT_SHARE, SHORT = 0.1, 0.3, 3.0
+"""Of the seconds left that starts may take; and of those of a short search, up to so many seconds. At 50 robots of hubs
+patience took 34 s of 120 at first, the last 27 of them in vain."""
 
 FIRST_EFFORT, HARDER = 500_000, 4
 """Nodes of one enumeration before a threshold is left open, and their growth when the lower ones are exhausted."""
@@ -42,9 +44,14 @@ NEAR, BISECTED = 2e-2, 2e-3
 """Relative widths below which the attack in hand is tested instead of the middle, and below which an open threshold
 is not bisected. Measured on a disk graph of 24 robots: the test takes 10 s, thresholds from a tenth below a minute."""
 
-LONG, WIDE, QUARTER = 50_000, 5e-2, 0.25
+LONG, QUARTER = 50_000, 0.25
 """Nodes of a refutation after which the next threshold is no more than a quarter up while the bracket is wider than
-this. Measured on a small world of 100 robots: 4 % more take ten times the nodes; half-way up, 65 s went for nothing."""
+``NEAR``. Measured on a small world of 100 robots: 4 % more take ten times the nodes; half-way up, 65 s went for
+nothing."""
+
+FOR_ONE, AS_LAST = 0.35, 2.0
+"""Of the seconds left, for one threshold while the bracket is wider than ``NEAR``; at least so many times as many as
+the last refutation took."""
 
 REACH = 0.25
 """Of the bracket, the next step where as many seconds are left as the last refutation took; less with less."""
@@ -74,7 +81,7 @@ class PriceSearch:
 
     def anneal(self, starts: int) -> None:
         """Offer the first annealed attacks, one of them from the attack in hand."""
-        part = self.task.budget.part(ANNEALING_SHARE)
+        part = _annealing_part(self.task.budget)
         self._take(partial(self._starts.near, self.task.bracket.attack), part)
         self._anneal(starts, part)
 
@@ -85,10 +92,11 @@ class PriceSearch:
             threshold = self._threshold(self._unknown)
             if threshold is None:
                 self._effort, self._unknown = HARDER * self._effort, None
-                self._anneal(FURTHER_STARTS, budget.part(ANNEALING_SHARE))
+                self._anneal(FURTHER_STARTS, _annealing_part(budget))
                 continue
-            before, began, starts = budget.nodes, budget.elapsed, 0
-            answer = self._decision.decide(threshold, budget, budget.nodes_left(self._effort))
+            before, began, starts, answer = budget.nodes, budget.elapsed, 0, Answer(verdict=Threshold.OPEN)
+            with budget.stage(self._patience()) as part:
+                answer = self._decision.decide(threshold, part, part.nodes_left(self._effort))
             spent = budget.nodes - before
             if answer.verdict is Threshold.REFUTED:
                 self._took = budget.elapsed - began
@@ -99,15 +107,22 @@ class PriceSearch:
             else:
                 self._unknown = None
             if not bracket.is_closed:
-                self._anneal(starts + spent // NODES_A_START, budget.part(ANNEALING_SHARE))
+                self._anneal(starts + spent // NODES_A_START, _annealing_part(budget))
         return Stop.CLOSED
+
+    def _patience(self) -> float:
+        """Share of the seconds left for one threshold: little while the bracket is wide."""
+        bracket, left = self.task.bracket, self.task.budget.seconds_left
+        if bracket.upper - bracket.lower <= NEAR * abs(bracket.upper) or isinf(left):
+            return 1.0
+        return min(max(FOR_ONE, AS_LAST * self._took / left), 1.0) if left > 0 else 1.0
 
     def _threshold(self, unknown: float | None) -> float | None:
         """The next threshold to decide; ``None`` where those below the unknown one are too close to it."""
         bracket = self.task.bracket
         width, near = bracket.upper - bracket.lower, NEAR * abs(bracket.upper)
         if unknown is None or unknown > bracket.upper:
-            share = self._share if width > WIDE * abs(bracket.upper) else 0.5
+            share = self._share if width > near else 0.5
             within_reach = REACH * self.task.budget.seconds_left / self._took if self._took > 0 else 1.0
             if width <= near and within_reach >= share:
                 return bracket.goal
@@ -139,3 +154,8 @@ class PriceSearch:
         """Offer an attack and teach its groups to the prices."""
         self._decision.learn(partition)
         return self.task.offer(partition.attack(self.task.problem.threat))
+
+
+def _annealing_part(budget: Budget) -> Budget:
+    """Of a budget, for starts."""
+    return budget.part(ANNEALING_SHARE, at_least=min(SHORT_SHARE * budget.seconds_left, SHORT))

@@ -31,7 +31,7 @@ class MemberStack(NamedTuple):
     For each open node: ``part`` (N,) what robots are; ``sums`` (M, T) of the seeing robots; ``worth`` (N,) value with
     one robot more, ``copies`` (N,) level with ``copied`` copies of one; ``room`` more robots that may see; ``dear``,
     the fee of a blinded robot, and the ``share`` of it that weight pays, where the parent's bound was best; ``grown``
-    whether the last robot decided sees
+    whether the last robot decided sees; ``weight``, halved at every decision, of 1 at the root
     """
 
     position: Any
@@ -44,6 +44,7 @@ class MemberStack(NamedTuple):
     share: Any
     dear: Any
     grown: Any
+    weight: Any
 
     @classmethod
     def of(cls, prior: Any, n_robots: int) -> MemberStack:
@@ -60,6 +61,7 @@ class MemberStack(NamedTuple):
             share=np.zeros(depth),
             dear=np.zeros(depth),
             grown=np.zeros(depth, dtype=np.bool_),
+            weight=np.zeros(depth),
         )
 
 
@@ -69,7 +71,7 @@ def _begin(team: Any, prices: Any, stack: Any) -> None:
     copy(stack.sums[0], team.prior)
     stack.part[0], stack.room[0], stack.grown[0], stack.copied[0] = OPEN, int(prices.capacity), True, 0
     stack.share[0], stack.dear[0] = 1.0, prices.blinded
-    stack.position[0] = 0
+    stack.weight[0], stack.position[0] = 1.0, 0
 
 
 @numba.njit(cache=True)
@@ -110,6 +112,8 @@ def _child(stack: Any) -> int:
     stack.copied[child], stack.room[child] = stack.copied[node], stack.room[node]
     stack.share[child], stack.dear[child] = stack.share[node], stack.dear[node]
     stack.grown[child], stack.grown[node] = False, False
+    stack.weight[node] *= 0.5
+    stack.weight[child] = stack.weight[node]
     stack.position[0] = child
     return int(child)
 

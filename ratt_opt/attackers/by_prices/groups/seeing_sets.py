@@ -56,7 +56,8 @@ class SeeingStack(NamedTuple):
 
     For each open node: ``part`` (N,) what robots are; K flows; ``sums`` (M, T) of the seeing robots; ``worth`` (N,)
     value with one robot more, ``copies`` (N,) level with ``copied`` copies of one; ``room`` more robots that may see;
-    ``bound`` (K,) of the flows; ``grown`` whether the last robot decided sees; ``points`` of the forms
+    ``bound`` (K,) of the flows; ``grown`` whether the last robot decided sees; ``points`` of the forms;
+    ``weight``, halved at every decision, of 1 at the root
     """
 
     position: Any
@@ -72,6 +73,7 @@ class SeeingStack(NamedTuple):
     bound: Any
     grown: Any
     points: Any
+    weight: Any
 
     @classmethod
     def of(cls, n_arcs: int, n_bounds: tuple[int, int], prior: Any, n_robots: int) -> SeeingStack:
@@ -91,6 +93,7 @@ class SeeingStack(NamedTuple):
             bound=np.zeros((depth, n_flows)),
             grown=np.zeros(depth, dtype=np.bool_),
             points=FormPoints.of(depth, n_forms, n_robots),
+            weight=np.zeros(depth),
         )
 
 
@@ -104,7 +107,7 @@ def _begin(team: Any, links: Any, prices: Any, flows: Any, stack: Any) -> None:
         for i in range(len(cost)):
             cost[i] = flows.share[kind] * flows.blinded[kind] - prices.robot[i]
         stack.bound[0, kind] = open_flow(links, cost, (stack.into[0, kind], stack.out[0, kind], stack.along[0, kind]))
-    stack.position[0] = 0
+    stack.weight[0], stack.position[0] = 1.0, 0
 
 
 @numba.njit(cache=True)
@@ -203,6 +206,8 @@ def _copy(stack: Any, node: int, child: int) -> None:
     copy_row(stack.copies[child], stack.copies[node])
     stack.copied[child] = stack.copied[node]
     stack.room[child] = stack.room[node]
+    stack.weight[node] *= 0.5
+    stack.weight[child] = stack.weight[node]
 
 
 @numba.njit(cache=True)
