@@ -3,8 +3,9 @@
 Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
 those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
 fails with an error of its own. So it is raised again as soon as the callback has ended. Where the compiler takes a
-module over, an interrupt just after it left two owners, each of which freed it: there, too, it comes again a little
-later. What is kept of compiled code: ``_kept_code``.
+module over, an interrupt just after it left two owners, each of which freed it; one at the very end of compiling left
+interrupts handled as while it lasts: there, too, it comes again a little later. What is kept of compiled code:
+``_kept_code``.
 
 An interrupt while compiled loops run came when the arrays that they return are made, for each of which Python was asked
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
@@ -23,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numba
 from llvmlite.binding import executionengine, ffi, linker
-from numba.core import boxing, event, pythonapi, types
+from numba.core import boxing, compiler_lock, event, pythonapi, types
 from numba.core.caching import CompileResultCacheImpl
 from numba.core.registry import cpu_target
 
@@ -40,6 +41,10 @@ DROPPED_IN = {"_raw_object_cache_notify", "_raw_object_cache_getbuffer", "__del_
 HANDS_OVER = {
     function.__code__
     for function in (
+        compiler_lock._CompilerLock.__enter__,
+        compiler_lock._CompilerLock.__exit__,
+        ffi._LLVMLock.__enter__,
+        ffi._LLVMLock.__exit__,
         linker.link_modules,
         executionengine.create_mcjit_compiler,
         executionengine.ExecutionEngine.add_module,
@@ -48,7 +53,8 @@ HANDS_OVER = {
         ffi.OutputString.close,
     )
 }
-"""Code of the functions that note who owns a thing only after they have handed it over, or freed it."""
+"""Code of the functions that note who owns a thing, a lock or the handling of interrupts only after they have handed it
+over, or freed it."""
 AGAIN_AFTER = 0.01
 """Seconds until an interrupt that cannot be met where it came comes again."""
 
@@ -65,10 +71,10 @@ class _Interrupts(event.Listener):
         del event
         if threading.current_thread() is not threading.main_thread():
             return
-        self._depth += 1
-        if self._depth == 1 and callable(before := signal.getsignal(signal.SIGINT)):
+        if self._depth == 0 and callable(before := signal.getsignal(signal.SIGINT)):
             self._before = before
             signal.signal(signal.SIGINT, self._interrupt)
+        self._depth += 1
 
     def on_end(self, event: object) -> None:
         """Handle them as before."""

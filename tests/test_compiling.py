@@ -12,11 +12,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba.core import event
 from numba.core.registry import cpu_target
 
 import ratt_opt
 from ratt_opt import _kept_code
-from ratt_opt.compiling import numba
+from ratt_opt.compiling import INTERRUPTS, numba
 
 SOURCES = sorted(Path(ratt_opt.__file__).parent.rglob("*.py"))
 
@@ -54,6 +55,39 @@ def test_one_in_a_callback_of_the_compiler_comes_after_it(callback, cached, monk
     assert met
     assert signal.getsignal(signal.SIGINT) is before
     assert doubled((1.0, 2.0)) == 6.0
+
+
+@pytest.mark.parametrize("kind", ["numba:compiler_lock", "numba:llvm_lock"])
+@pytest.mark.parametrize("status", ["on_start", "on_end"])
+def test_one_as_a_lock_is_taken_or_left_changes_nothing_for_the_next(kind, status):
+    """Before anybody else hears that compiling begins or has ended: then nobody did, and interrupts stayed held."""
+    before, met = signal.getsignal(signal.SIGINT), []
+
+    class First(event.Listener):
+        def _interrupt(self, name):
+            if name == status and not met:
+                met.append(name)
+                signal.raise_signal(signal.SIGINT)
+
+        def on_start(self, _):
+            self._interrupt("on_start")
+
+        def on_end(self, _):
+            self._interrupt("on_end")
+
+    first = First()
+    event._registered[kind].insert(0, first)
+    try:
+        with pytest.raises(KeyboardInterrupt):  # noqa: PT012  (it comes some time later)
+            while True:
+                numba.njit(lambda x: 2 * x)(1.0)
+    finally:
+        event.unregister(kind, first)
+    gc.collect()
+    assert met
+    assert signal.getsignal(signal.SIGINT) is before
+    assert INTERRUPTS._depth == 0
+    assert numba.njit(lambda x: 2 * x)(1.0) == 2.0
 
 
 RETURNS_TWO = """
