@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
@@ -22,16 +22,20 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.weakest_set.decomposition import Decomposition
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
     from ratt_opt.budget import Budget
 
     Found = Generator[frozenset[int] | None, None, None]
 
-__all__ = ["FamilyBound", "SetNode", "WeakestSetSearch", "bound_family", "heavy_robots"]
+__all__ = ["FamilyBound", "SetNode", "WeakestSetSearch", "bound_family"]
+
+
+Bound = TypeVar("Bound", "Minorant", "Decomposition")
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class SetNode:
+class SetNode(Generic[Bound]):
     """Sets of robots that contain ``inside`` and avoid ``outside``; none is worth less than ``bound``.
 
     ``minorant`` : over the undecided robots, strongest first, of these sets or of more
@@ -41,14 +45,14 @@ class SetNode:
     serial: int
     inside: frozenset[int] = field(compare=False)
     outside: frozenset[int] = field(compare=False)
-    minorant: Minorant | None = field(compare=False, default=None)
+    minorant: Bound | None = field(compare=False, default=None)
 
     def undecided(self, team: PlanarTeam) -> IntArray:
         """Robots neither inside nor outside, strongest first."""
         order = np.argsort(-team.single, kind="stable")
         return np.array([i for i in order.tolist() if i not in self.inside and i not in self.outside], dtype=np.int64)
 
-    def fixed(self, robots: IntArray, size: int, threshold: float) -> tuple[SetNode, IntArray]:
+    def fixed(self, robots: IntArray, size: int, threshold: float) -> tuple[SetNode[Bound], IntArray]:
         """Decide robots by reduced cost: on their other side the minorant reaches the threshold.
 
         ``robots`` : the undecided ones, of which ``size`` are chosen
@@ -77,7 +81,7 @@ class SetNode:
         affine = AffineBound(self.minorant.constant, self.minorant.scores)
         return Enumeration.surest_first(team, robots, self.inside, size, affine)
 
-    def split(self, robots: IntArray, bound: float, serial: int) -> tuple[SetNode, SetNode]:
+    def split(self, robots: IntArray, bound: float, serial: int) -> tuple[SetNode[Bound], SetNode[Bound]]:
         """Two nodes, by the robot with the most hidden concavity (the strongest where there is no minorant).
 
         Rather one whose side is clear: its other side is soon closed, and its own hides less. Preferring robots on
@@ -166,7 +170,7 @@ class WeakestSetSearch:
         self.team, self.size, self.threshold = team, size, threshold
         self._inside, self._among = inside, frozenset(range(len(team.single))) - outside
         self._work = LONGEST_ENUMERATION
-        self._open = [SetNode(floor, 0, inside, outside)]
+        self._open: list[SetNode[Minorant]] = [SetNode(floor, 0, inside, outside)]
         self._serial = 1
         self._in_hand = np.inf
         """No set of the node that is being looked at is worth less."""
@@ -196,7 +200,7 @@ class WeakestSetSearch:
             yield None
         self._open.clear()
 
-    def _explore(self, node: SetNode, budget: Budget) -> Found:
+    def _explore(self, node: SetNode[Minorant], budget: Budget) -> Found:
         """Bound a node, then decide it by enumeration or split it."""
         budget.spend()
         robots, size = node.undecided(self.team), self.size - len(node.inside)
@@ -219,7 +223,7 @@ class WeakestSetSearch:
                 heapq.heappush(self._open, child)
             self._serial += 2
 
-    def _try(self, node: SetNode, others: IntArray, budget: Budget) -> Found:
+    def _try(self, node: SetNode[Minorant], others: IntArray, budget: Budget) -> Found:
         """The set that the bound suggests, and as improved by exchanges."""
         candidate = node.inside | frozenset(others.tolist())
         for one in (candidate, exchanged(self.team, candidate, among=self._among, fixed=self._inside, budget=budget)):

@@ -7,9 +7,6 @@ ones are enumerated and get scores of their own.
 
 Slopes and scores are raised by a smoothed ascent (``smoothed_dual.py``). The minorant's constant is recomputed
 here from all vertices, so nothing depends on the ascent, nor on its end.
-
-Where only sets with ``lacking(R) < 0`` are asked for, ``value(R) > value(R) + multiplier lacking(R)`` for any
-multiplier >= 0: it is one more slope, of a target that is worth nothing.
 """
 
 from __future__ import annotations
@@ -41,9 +38,6 @@ children; at 40 robots a tenth of it changes no node."""
 class Minorant:
     """``value(R) >= constant + sum of scores over R`` for every set of the family.
 
-    Of a family of which something is lacking that holds for the sets that belong to it, and for any of them with
-    ``multiplier`` times what they lack on the left.
-
     ``scores`` : (F,); ``slopes`` : (M, 3) in the information; ``own`` : (M, h) scores of the ``heavy`` robots (M, h)
     of each target, -1 for those no longer there; ``fraction`` : (F,) where a relaxation puts the weakest set;
     ``tension`` : (F,) each robot's share of what concavity hides there; ``normals`` : (M, A, 3) half-spaces that
@@ -58,7 +52,6 @@ class Minorant:
     fraction: FloatArray
     tension: FloatArray
     normals: FloatArray
-    multiplier: float = 0.0
 
     def bound(self, size: int) -> float:
         """No set of ``size`` robots is worth less."""
@@ -80,17 +73,15 @@ class Minorant:
 def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None) -> Minorant:
     """Best found affine minorant; valid whatever the solver answers.
 
-    ``family`` : 0 < size < F; ``goal`` : no better bound is needed, finite where something is lacking; ``parent`` : a
-    minorant of a larger family, or of this one where other things were lacking, whose slopes and half-spaces are a good
-    start
+    ``family`` : 0 < size < F; ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family, whose
+    slopes and half-spaces are a good start
     """
     points = outer_polytopes(family, n_heavy, None if parent is None else parent.normals)
     program = _program(family, points)
     fraction = np.full(len(family.information), family.size / len(family.information))
     start = _start(family, points, fraction, parent)
-    if family.lacking is None or family.lacking.sum() <= 0:
-        # No bound is better than a relaxation's value at any fractions of sets that belong to the family.
-        goal = min(goal, float(target_values(family, _mean(family, fraction)).sum()))
+    # No bound is better than a relaxation's value at any fractions.
+    goal = min(goal, float(target_values(family, _mean(family, fraction)).sum()))
     unsound = float(target_values(family, family.start)[~points.sound].sum())
     better, fraction = program.ascend(start, goal - unsound, cold=parent is None)
     return _recompute(family, points, program, better, fraction)
@@ -109,16 +100,7 @@ def _start(family: SetFamily, points: OuterPolytopes, fraction: FloatArray, pare
         target, place = np.nonzero(parent.heavy >= 0)
         shares[target, parent.heavy[target, place]] = parent.own[target, place]
     own = np.take_along_axis(shares, points.heavy, axis=1)
-    start = Multipliers(slopes * points.sound[:, None], own * points.sound[:, None])
-    if family.lacking is None:
-        return start
-    first = float(np.std(shares.sum(axis=0))) / _scale(family.lacking) if parent is None else parent.multiplier
-    return start.with_price(first * _scale(family.lacking, family.size))
-
-
-def _scale(lacking: FloatArray, size: int = 1) -> float:
-    """What sets of a size lack, or do not, by and large."""
-    return float(np.sqrt(size * (lacking**2).mean())) or 1.0
+    return Multipliers(slopes * points.sound[:, None], own * points.sound[:, None])
 
 
 def _program(family: SetFamily, points: OuterPolytopes) -> DualProgram:
@@ -126,9 +108,7 @@ def _program(family: SetFamily, points: OuterPolytopes) -> DualProgram:
     np.put_along_axis(information.transpose(1, 0, 2), points.heavy[..., None], 0.0, axis=1)
     patterns = points.patterns.astype(np.float64)
     vertices = points.first, points.pattern, points.values, points.light
-    program = DualProgram(*vertices, patterns, points.heavy, information, family.size)
-    lacking = family.lacking
-    return program if lacking is None else program.with_price(lacking / _scale(lacking, family.size))
+    return DualProgram(*vertices, patterns, points.heavy, information, family.size)
 
 
 def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:
@@ -175,32 +155,25 @@ def _recompute(
     family: SetFamily, points: OuterPolytopes, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
 ) -> Minorant:
     """The minorant with these multipliers: its constant from the vertices; targets without any get none."""
-    n_targets = len(points.sound)
-    slopes = multipliers.slopes[:n_targets] * points.sound[:, None]
-    own = multipliers.own[:n_targets] * points.sound[:, None]
-    shares = np.einsum("fmt,mt->mf", program.information[:, :n_targets], slopes)
+    slopes, own = multipliers.slopes * points.sound[:, None], multipliers.own * points.sound[:, None]
+    shares = np.einsum("fmt,mt->mf", program.information, slopes)
     np.put_along_axis(shares, points.heavy, own, axis=1)
     without = target_values(family, family.start)  # without a sound polytope: what is chosen already
     rest = program.rest(multipliers)
-    constants = np.where(points.sound, program.least(rest)[:n_targets], without)
-    scores, multiplier = shares.sum(axis=0), 0.0
-    if family.lacking is not None:
-        multiplier = max(float(multipliers.slopes[n_targets, 0]), 0.0) / _scale(family.lacking, family.size)
-        scores = scores + multiplier * family.lacking
+    constants = np.where(points.sound, program.least(rest), without)
     mean = _mean(family, fraction)
     hidden = np.maximum(target_values(family, mean) - constants - shares @ fraction, 0.0)
     trace = family.information[..., 0] + family.information[..., 2]
     share = np.minimum(trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300), 1.0)  # of a target's information
     return Minorant(
         constant=float(constants.sum()),
-        scores=scores,
+        scores=shares.sum(axis=0),
         slopes=slopes,
         own=own,
         heavy=points.heavy,
         fraction=fraction,
         tension=np.asarray(share @ np.where(np.isfinite(hidden), hidden, 0.0)),
         normals=_normals(family, points, slopes, rest, constants).astype(np.float32),
-        multiplier=multiplier,
     )
 
 

@@ -46,11 +46,6 @@ class Multipliers:
     slopes: FloatArray
     own: FloatArray
 
-    def with_price(self, multiplier: float) -> Multipliers:
-        """These, and one of what the robots lack (:meth:`DualProgram.with_price`)."""
-        slopes = np.concatenate([self.slopes, [[multiplier, 0.0, 0.0]]])
-        return Multipliers(slopes, np.concatenate([self.own, np.zeros((1, self.own.shape[1]))]))
-
 
 @dataclass(frozen=True, slots=True)
 class DualProgram:
@@ -59,7 +54,6 @@ class DualProgram:
     ``first`` : (M + 1,) target ``j`` owns points ``first[j]:first[j + 1]``; ``pattern``, ``values`` : (V,);
     ``light`` : (V, 3) information of the light robots there; ``patterns`` : (P, h); ``heavy`` : (M, h);
     ``information`` : (F, M, 3), zero for each target's heavy robots; ``size`` robots are chosen
-    ``is_priced`` : the last target has no points, and a slope >= 0 in what the robots lack, its only information
     """
 
     first: IntArray
@@ -70,18 +64,6 @@ class DualProgram:
     heavy: IntArray
     information: FloatArray
     size: int
-    is_priced: bool = False
-
-    def with_price(self, lacking: FloatArray) -> DualProgram:
-        """The program of the sets whose robots lack (F,) less than 0 in all."""
-        column = np.concatenate([lacking[:, None, None], np.zeros((len(lacking), 1, 2))], axis=2)
-        return replace(
-            self,
-            first=np.append(self.first, self.first[-1]),
-            heavy=np.concatenate([self.heavy, np.zeros((1, self.heavy.shape[1]), dtype=self.heavy.dtype)]),
-            information=np.concatenate([self.information, column], axis=1),
-            is_priced=True,
-        )
 
     @property
     def _points(self) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
@@ -177,19 +159,9 @@ class _Ascent:
         """The multipliers of the best bound met, and the fractions there."""
         from scipy.optimize import minimize
 
-        further: Any = {"options": {"maxiter": STEPS, "maxcor": MEMORY}, "callback": self._stop_at_goal}
-        if self._program.is_priced:
-            further["bounds"] = self._bounds()
-        minimize(self._negated, self._best, jac=True, method="L-BFGS-B", **further)
+        options: Any = {"maxiter": STEPS, "maxcor": MEMORY}
+        minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=self._stop_at_goal, options=options)
         return self._multipliers(self._best), self._fraction
-
-    def _bounds(self) -> Any:
-        """That the multiplier of what the robots lack is not below 0: its coordinate is the slope itself."""
-        from scipy.optimize import Bounds
-
-        low = np.full((len(self._program.heavy), 3 + self._program.heavy.shape[1]), -np.inf)
-        low[-1, 0] = 0.0
-        return Bounds(low.ravel(), np.inf)
 
     def _stop_at_goal(self, xk: FloatArray) -> None:  # noqa: ARG002  (the name SciPy looks for)
         if self._bound >= self._goal:

@@ -14,13 +14,17 @@ from ratt_opt.setfunctions.criteria import two_by_two
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
-__all__ = ["target_value", "team_criterion"]
+__all__ = ["matrix_of_gradient", "target_gradient", "target_value", "team_criterion"]
 
 TRACE, LOG_DET = TraceObjective.compiled_code, LogDetObjective.compiled_code
 
 _determinant = numba.njit(two_by_two.determinant)
 _trace_of_inverse = numba.njit(two_by_two.trace_of_inverse)
 _largest_of_inverse = numba.njit(two_by_two.largest_of_inverse)
+_trace_gradient = numba.njit(two_by_two.trace_gradient)
+_logdet_gradient = numba.njit(two_by_two.logdet_gradient)
+_of_trace_gradient = numba.njit(two_by_two.matrix_of_trace_gradient)
+_of_logdet_gradient = numba.njit(two_by_two.matrix_of_logdet_gradient)
 
 
 @numba.njit(cache=True)
@@ -53,3 +57,18 @@ def target_value(code: int, weight: float, prior: Any, matrix: Any) -> float:
     if code == TRACE:
         return float(weight * (_trace_of_inverse(prior[0], prior[1], prior[2]) - _trace_of_inverse(a, b, c)))
     return float(weight * np.log(determinant / _determinant(prior[0], prior[1], prior[2])))
+
+
+@numba.njit(cache=True)
+def target_gradient(code: int, weight: float, matrix: Any) -> Any:
+    """Slopes in (a, b, c) of one target's value, trace or log-det, at a triple."""
+    a, b, c = matrix
+    x, y, z = _trace_gradient(a, b, c) if code == TRACE else _logdet_gradient(a, b, c)
+    return weight * x, weight * y, weight * z
+
+
+@numba.njit(cache=True)
+def matrix_of_gradient(code: int, weight: float, gradient: Any) -> Any:
+    """The triple at which one target's value has a positive definite gradient, given as a triple of a matrix."""
+    a, b, c = gradient[0] / weight, gradient[1] / weight, gradient[2] / weight
+    return _of_trace_gradient(a, b, c) if code == TRACE else _of_logdet_gradient(a, b, c)

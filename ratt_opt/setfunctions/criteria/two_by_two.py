@@ -16,6 +16,8 @@ __all__ = [
     "eigenvalues",
     "largest_of_inverse",
     "logdet_gradient",
+    "matrix_of_logdet_gradient",
+    "matrix_of_trace_gradient",
     "trace_gradient",
     "trace_of_inverse",
     "triples",
@@ -53,15 +55,30 @@ def largest_of_inverse(a: Any, b: Any, c: Any) -> Any:
 
 def logdet_gradient(a: Any, b: Any, c: Any) -> Any:
     """Derivatives of ``log det L`` in ``a``, ``b`` and ``c``: the inverse, its off-diagonal entry twice."""
-    det = determinant(a, b, c)
+    det = a * c - b * b
     return c / det, -2 * b / det, a / det
 
 
 def trace_gradient(a: Any, b: Any, c: Any) -> Any:
     """Derivatives of ``-tr(L^{-1})`` in ``a``, ``b`` and ``c``: ``L^{-2}``, its off-diagonal entry twice."""
-    det = determinant(a, b, c)
+    det = a * c - b * b
     p, q, r = c / det, -b / det, a / det
     return p * p + q * q, 2 * (q * (p + r)), q * q + r * r
+
+
+def matrix_of_logdet_gradient(a: Any, b: Any, c: Any) -> Any:
+    """The matrix at which ``log det`` has the gradient ``[[a, b], [b, c]]``, positive definite."""
+    det = a * c - b * b
+    return c / det, -b / det, a / det
+
+
+def matrix_of_trace_gradient(a: Any, b: Any, c: Any) -> Any:
+    """The matrix at which ``-tr(L^{-1})`` has that gradient ``G``: ``G^{-1/2}``, as ``G^{1/2} = (G + s) / t``
+    with ``s = det(G)^{1/2}`` and ``t = (tr(G) + 2 s)^{1/2}``.
+    """
+    root = np.sqrt(a * c - b * b)
+    scale = np.sqrt(a + c + 2 * root) * root
+    return (c + root) / scale, -b / scale, (a + root) / scale
 
 
 def triples(matrices: Any) -> Any:

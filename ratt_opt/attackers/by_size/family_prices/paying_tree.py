@@ -1,10 +1,10 @@
 """Sets of one size that are weak and pay more than a limit, by bounds on pairs of robots and by affine minorants.
 
 Pairs (``paying_pairs.py``) are sharp for few robots, and a node takes half a millisecond: all sets of 12 of 60 robots
-are ruled out by some hundreds. For 24 robots of 60 they lack 20 of 260 where a minorant of value and prices together
-(``weakest_set/minorant.py``) lacks 5, and takes 30 milliseconds. There a best-first search divides nodes by minorants,
-which decide some robots for their children, and pairs end the smallest ones. Leaving every node to the pairs for a
-while took five times as long for sets of 12.
+are ruled out by some hundreds. For 18 robots of 60 they lack 31 of 248 where a minorant of value and prices together
+(``weakest_set/decomposition.py``) lacks 2, and takes a tenth of a second, at first half a second. There a best-first
+search divides nodes by minorants, which decide some robots for their children, and pairs end the smallest ones.
+Leaving every node to the pairs for a while took five times as long for sets of 12.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from ratt_opt.attackers.by_size.family_prices.paying_pairs import (
     search_pairs,
     slack_of_pairs,
 )
-from ratt_opt.attackers.weakest_set.branch_and_bound import SetNode, heavy_robots
-from ratt_opt.attackers.weakest_set.minorant import affine_minorant
+from ratt_opt.attackers.weakest_set.branch_and_bound import SetNode
+from ratt_opt.attackers.weakest_set.decomposition import decomposed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.by_size.family_prices.pair_bound import View
     from ratt_opt.attackers.by_size.family_prices.paying_pairs import Question
-    from ratt_opt.attackers.weakest_set.minorant import Minorant
+    from ratt_opt.attackers.weakest_set.decomposition import Decomposition
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
 
@@ -45,7 +45,7 @@ may lack at most to be worth its time."""
 TRIED, FEWEST, MOST, MORE, LESS = 30, 8, 3_000, 1.5, 0.7
 """Nodes of pairs before further minorants: at first, at least, at most; their growth where they end a node, and where
 not."""
-MINORANT_NODES = 60
+MINORANT_NODES = 200
 """Nodes of pairs that take as long as a minorant."""
 BETWEEN_LOOKS = 10_000_000
 """Criteria of single targets between two looks at the clock: less than a tenth of a second."""
@@ -56,7 +56,7 @@ class PayingTree:
 
     def __init__(self, team: PlanarTeam, view: View, size: int) -> None:
         self._team, self._view, self._size = team, view, size
-        self._root: Minorant | None = None
+        self._root: Decomposition | None = None
         self._has_sharper_minorants = False
         self._tried, self._serial = TRIED, 0
 
@@ -70,7 +70,7 @@ class PayingTree:
         OutOfBudget : the time is up, or no node is left.
         """
         run = _Run(question, budget, budget.nodes + max(nodes, 1), found)
-        root = SetNode(-np.inf, 0, frozenset(), frozenset(), self._root)
+        root: SetNode[Decomposition] = SetNode(-np.inf, 0, frozenset(), frozenset(), self._root)
         pairs = self._pairs(root, run)
         if not self._has_sharper_minorants:
             if self._is_ended_by_pairs(pairs, run, FIRST_TRIED):
@@ -92,7 +92,7 @@ class PayingTree:
                     heapq.heappush(waiting, child)
         return waiting[0].bound if waiting else np.inf
 
-    def _is_ended(self, node: SetNode, run: _Run) -> bool:
+    def _is_ended(self, node: SetNode[Decomposition], run: _Run) -> bool:
         """Leave a node to the pairs for a while."""
         if len(node.inside) == self._size:
             self._keep(node.inside, run)
@@ -104,7 +104,7 @@ class PayingTree:
         self._tried = int(np.clip(self._tried * (MORE if is_ended else LESS), FEWEST, MOST))
         return is_ended
 
-    def _pairs(self, node: SetNode, run: _Run) -> PairNodes:
+    def _pairs(self, node: SetNode[Decomposition], run: _Run) -> PairNodes:
         """Where pairs begin with a node."""
         inside, outside = (np.array(sorted(robots), dtype=np.int64) for robots in (node.inside, node.outside))
         left = self._size - len(inside)
@@ -136,7 +136,7 @@ class PayingTree:
         if paid > run.asked().limit and self._team.value(np.flatnonzero(members)) < run.question.threshold:
             run.found.append(members)
 
-    def _divided(self, node: SetNode, run: _Run) -> list[SetNode]:
+    def _divided(self, node: SetNode[Decomposition], run: _Run) -> list[SetNode[Decomposition]]:
         """Nothing where a minorant closes the node; else one or two nodes with some more robots decided."""
         question, budget = run.question, run.budget
         budget.nodes += budget.nodes_left(MINORANT_NODES)
@@ -145,7 +145,7 @@ class PayingTree:
             return [node]
         limit = question.limit - float(question.prices[list(node.inside)].sum())
         family = replace(self._team.family(robots, left, node.inside), lacking=limit / left - question.prices[robots])
-        minorant = affine_minorant(family, heavy_robots(len(robots)), question.threshold, node.minorant)
+        minorant = decomposed(family, question.threshold, budget, node.minorant)
         if not (node.inside or node.outside):
             self._root = minorant
         bound = max(node.bound, minorant.bound(left))

@@ -34,7 +34,7 @@ LARGEST = 200
 """Robots up to which a bound on pairs of all of them takes some milliseconds."""
 NEAR = 2e-4
 """Relative width between what is refuted and what is out of reach, or the attack, not worth another threshold."""
-FIRST_EFFORT, QUICK_EFFORT, HARDER = 5_000, 300_000, 4
+FIRST_EFFORT, QUICK_EFFORT, HARDER = 8_000, 300_000, 4
 """Nodes of a size before a threshold is left open, some milliseconds each or (quick ones) microseconds, and their
 growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3

@@ -1,0 +1,327 @@
+"""What a target's best choice of robots is worth at least, proved by cells of slopes: compiled.
+
+The value ``phi`` of a target is concave in its information matrix, so for slopes ``C`` and every positive definite
+``X``, ``q(C) = max over M of [phi(M) - <C, M>] >= phi(X) - <C, X>``, and ``phi(L) = min over C of [<C, L> + q(C)]``,
+where the gradient at ``L`` is a minimiser. What choices ``S`` of ``size`` robots are worth at least, less their shares,
+
+    min over S of [phi(L(S)) - share(S)] = min over C of [q(C) + h(C)],    h(C) = min over S of [<C, L(S)> - share(S)],
+
+where ``h`` is concave, a sum of smallest terms. In a simplex of slopes with corners ``C_v`` the right side is therefore
+at least the least ``phi(X) - <C_v, X> + h(C_v)`` over the corners, for any ``X``. Simplices that may contain a gradient
+are divided, the one of the least bound first. Among the ``X`` that are tried is the one that makes all corners alike:
+where all choose the same set, it is that set's information, and the bound is exact.
+
+Slopes are measured in coordinates in which the mean information is the unit matrix. Gradients there have eigenvalues
+between ``low`` and ``high``: by the strongest choice of all, and by what is chosen already.
+
+Imported only where a large team is attacked: compiling takes seconds, once per machine (cached).
+"""
+
+from __future__ import annotations
+
+from heapq import heappop, heappush
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ratt_opt.attackers.weakest_set.target_choices import Family, choose
+from ratt_opt.compiling import numba
+from ratt_opt.setfunctions.criteria.compiled import LOG_DET, matrix_of_gradient, target_gradient, target_value
+
+__all__ = ["least_choice"]
+
+RADIAL = 3.0
+"""Quotient of the traces of two corners beyond which a simplex is divided between them."""
+MIXED = (0.0, 0.35, 0.7)
+"""Shares of the matrix of the middle slopes in the matrices tried beside it; the rest makes all corners alike."""
+MARGIN = 1e-7
+"""Relative margin of the eigenvalues that gradients may have."""
+ROUNDING = 1e-12
+"""Margin of a bound, relative to the sizes of its terms."""
+HEAVY, SHARE = 4, 0.5
+"""Robots of a target with and without which its choices are searched apart, at most, and their share of the mean."""
+SOUND = 1e-7
+"""Quotient of the eigenvalues of what is chosen already, in the coordinates, below which nothing is claimed."""
+
+
+class _Corners(NamedTuple):
+    """``white`` (V, 3) : entries of slopes in the coordinates; ``slopes`` (V, 3) in (a, b, c); ``heights`` (V,)."""
+
+    white: Any
+    slopes: Any
+    heights: Any
+
+
+@numba.njit(cache=True)
+def _axes(matrix: Any) -> Any:
+    """Inverse of the lower-triangular factor of a positive definite triple: its entries (1, 1), (2, 1), (2, 2)."""
+    first = np.sqrt(matrix[0])
+    below = matrix[1] / first
+    second = np.sqrt(max(matrix[2] - below * below, 1e-300))
+    return 1 / first, -below / (first * second), 1 / second
+
+
+@numba.njit(cache=True)
+def _whitened(axes: Any, matrix: Any) -> Any:
+    """Information in the coordinates."""
+    p, r, s = axes
+    a, b, c = matrix
+    return p * p * a, p * (r * a + s * b), r * r * a + 2 * r * s * b + s * s * c
+
+
+@numba.njit(cache=True)
+def _as_gradient(axes: Any, white: Any) -> Any:
+    """The matrix of slopes whose entries in the coordinates are ``white``."""
+    p, r, s = axes
+    a, b, c = white
+    return p * p * a + 2 * p * r * b + r * r * c, s * (p * b + r * c), s * s * c
+
+
+@numba.njit(cache=True)
+def _range(family: Any, target: int, axes: Any, mean: Any) -> Any:
+    """Eigenvalues of gradients in the coordinates, at least and at most; -1 where rounding forbids to say."""
+    information, start = family.information[target], family.start[target]
+    traces = np.empty(len(information))
+    a, b, c = _whitened(axes, (start[0], start[1], start[2]))
+    for i in range(len(information)):
+        x, _, z = _whitened(axes, (information[i, 0], information[i, 1], information[i, 2]))
+        traces[i] = x + z
+    strongest = a + c + np.sort(traces)[len(traces) - family.size :].sum()
+    larger = (a + c) / 2 + np.sqrt(((a - c) / 2) ** 2 + b * b)
+    smaller = (a * c - b * b) / larger
+    weight = family.weights[target]
+    if not (weight > 0 and smaller > SOUND * strongest):
+        return -1.0, -1.0
+    # The logarithm's gradient L^-1 is the inverse in any coordinates.
+    if family.code == LOG_DET:
+        return weight / strongest * (1 - MARGIN), weight / smaller * (1 + MARGIN)
+    # With L = R W R', L^-2 is in the coordinates W^-1 (R'R)^-1 W^-1, and (R'R)^-1 has the mean's inverse eigenvalues.
+    trace, determinant = mean[0] + mean[2], mean[0] * mean[2] - mean[1] * mean[1]
+    low, high = 1 / trace, trace / determinant
+    return weight * low / strongest**2 * (1 - MARGIN), weight * high / smaller**2 * (1 + MARGIN)
+
+
+@numba.njit(cache=True)
+def _clipped(white: Any, low: float) -> Any:
+    """A triple with eigenvalues raised to ``low``, the smaller one before, and the axis that it belongs to."""
+    a, b, c = white
+    middle, radius = (a + c) / 2, np.sqrt(((a - c) / 2) ** 2 + b * b)
+    one, two = max(middle - radius, low), max(middle + radius, low)
+    x, y = ((a - c) / 2 / radius, b / radius) if radius > 0 else (1.0, 0.0)
+    mean, half = (one + two) / 2, (two - one) / 2
+    angle = np.arctan2(y, x) / 2 + np.pi / 2
+    return (mean + half * x, half * y, mean - half * x), middle - radius, (np.cos(angle), np.sin(angle))
+
+
+@numba.njit(cache=True)
+def _is_outside(corners: Any, cell: Any, axis: Any, low: float) -> bool:
+    """Whether slopes of the cell are too small along an axis to be gradients, or in all."""
+    u, v = axis
+    most, largest = -np.inf, -np.inf
+    for k in cell:
+        a, b, c = corners.white[k]
+        most = max(most, a * u * u + 2 * b * u * v + c * v * v)
+        largest = max(largest, a + c)
+    return most < low or largest < 2 * low
+
+
+@numba.njit(cache=True)
+def _bound_with(family: Any, target: int, corners: Any, cell: Any, matrix: Any) -> float:
+    """The bound of a cell with one matrix."""
+    value = target_value(family.code, family.weights[target], family.prior[target], matrix)
+    if value == -np.inf:
+        return -np.inf
+    bound, size = np.inf, 0.0
+    for k in cell:
+        along = 0.0
+        for t in range(3):
+            along += corners.slopes[k, t] * matrix[t]
+            size += abs(corners.slopes[k, t] * matrix[t])
+        bound = min(bound, value - along + corners.heights[k])
+        size += abs(corners.heights[k])
+    return bound - ROUNDING * (abs(value) + size)
+
+
+@numba.njit(cache=True)
+def _levelling(corners: Any, cell: Any) -> Any:
+    """The matrix that makes all corners of a cell alike (Cramer's rule); zeros where there is none."""
+    rows, right, first = np.empty((3, 3)), np.empty(3), cell[0]
+    for r in range(3):
+        right[r] = corners.heights[cell[r + 1]] - corners.heights[first]
+        for t in range(3):
+            rows[r, t] = corners.slopes[cell[r + 1], t] - corners.slopes[first, t]
+    x, y, z = rows[:, 0], rows[:, 1], rows[:, 2]
+    determinant = _triple_product(x, y, z)
+    if determinant == 0:
+        return 0.0, 0.0, 0.0
+    one, two = _triple_product(right, y, z) / determinant, _triple_product(x, right, z) / determinant
+    return one, two, _triple_product(x, y, right) / determinant
+
+
+@numba.njit(cache=True)
+def _triple_product(x: Any, y: Any, z: Any) -> float:
+    return float(
+        x[0] * (y[1] * z[2] - y[2] * z[1]) - y[0] * (x[1] * z[2] - x[2] * z[1]) + z[0] * (x[1] * y[2] - x[2] * y[1])
+    )
+
+
+@numba.njit(cache=True)
+def _bound(family: Any, target: int, corners: Any, cell: Any, setting: Any, enough: float) -> Any:  # noqa: PLR0917
+    """What the choices of gradients in a cell are worth at least, infinite for none; and the middle (3,), clipped."""
+    axes, low = setting
+    a, b, c = 0.0, 0.0, 0.0
+    for k in cell:
+        a, b, c = a + corners.white[k, 0] / 4, b + corners.white[k, 1] / 4, c + corners.white[k, 2] / 4
+    middle, smaller, axis = _clipped((a, b, c), low)
+    if smaller < low and _is_outside(corners, cell, axis, low):
+        return np.inf, middle
+    one = matrix_of_gradient(family.code, family.weights[target], _as_gradient(axes, middle))
+    best = _bound_with(family, target, corners, cell, one)
+    if best < enough:
+        two = _levelling(corners, cell)
+        for share in MIXED:
+            x = two[0] + share * (one[0] - two[0])
+            y = two[1] + share * (one[1] - two[1])
+            z = two[2] + share * (one[2] - two[2])
+            best = max(best, _bound_with(family, target, corners, cell, (x, y, z)))
+    return best, middle
+
+
+@numba.njit(cache=True)
+def _difference(points: Any, one: int, two: int) -> Any:
+    return points[one, 0] - points[two, 0], points[one, 1] - points[two, 1], points[one, 2] - points[two, 2]
+
+
+@numba.njit(cache=True)
+def _longest_edge(corners: Any, cell: Any, middle: Any) -> Any:
+    """The two corners of a cell between which it is divided: far apart in size, or from the middle's point of view."""
+    a, b, c = middle
+    determinant = a * c - b * b
+    p, q, r = c / determinant, -b / determinant, a / determinant
+    small, large, ends, longest = np.inf, -np.inf, (0, 0), -1.0
+    x0, x1 = 0, 0
+    for x in range(4):
+        trace = corners.white[cell[x], 0] + corners.white[cell[x], 2]
+        if trace < small:
+            small, x0 = trace, x
+        if trace > large:
+            large, x1 = trace, x
+        for y in range(x):
+            d, e, f = _difference(corners.white, cell[x], cell[y])
+            first, second, third, fourth = p * d + q * e, p * e + q * f, q * d + r * e, q * e + r * f
+            length = first * first + 2 * second * third + fourth * fourth
+            if length > longest:
+                longest, ends = length, (x, y)
+    return (x0, x1) if large > RADIAL * small else ends
+
+
+@numba.njit(cache=True)
+def _add_corner(  # noqa: PLR0917
+    family: Any, shares: Any, corners: Any, k: int, axes: Any, work: Any, best: float, slopes: Any
+) -> float:
+    """Fill slopes and height of a corner; the set chosen there is worth what is returned, less its shares.
+
+    ``slopes`` : becomes the gradient at that set where it is worth less than ``best``
+    """
+    a, b, c = _as_gradient(axes, (corners.white[k, 0], corners.white[k, 1], corners.white[k, 2]))
+    corners.slopes[k, 0], corners.slopes[k, 1], corners.slopes[k, 2] = a, 2 * b, c
+    corners.heights[k], value = choose(family, 0, shares, corners.slopes[k], work)
+    # Sums of F terms: the height is rounded.
+    corners.heights[k] -= ROUNDING * np.abs(work[0]).sum()
+    if value < best:
+        matrix = work[2][0], work[2][1], work[2][2]
+        slopes[0], slopes[1], slopes[2] = target_gradient(family.code, family.weights[0], matrix)
+    return float(value)
+
+
+@numba.njit(cache=True)
+def _search_cells(family: Any, shares: Any, slopes: Any, known: float, tolerance: float, most: int) -> Any:  # noqa: PLR0917
+    """:func:`least_choice` of the only target of a family, where it is at most ``known``."""
+    n_robots, best = len(shares), known
+    work = np.empty(n_robots), np.zeros(n_robots, dtype=np.bool_), np.empty(3)
+    mean = family.start[0].copy()
+    for i in range(n_robots):
+        mean += family.information[0, i] * (family.size / n_robots)
+    axes = _axes(mean)
+    low, high = _range(family, 0, axes, mean)
+    if low < 0:
+        return -np.inf, best
+    corners = _Corners(np.empty((most + 4, 3)), np.empty((most + 4, 3)), np.empty(most + 4))
+    # Matrices of trace t without negative eigenvalues are a disk, and in the triangle around it.
+    corners.white[0] = 0.0
+    for k in range(1, 4):
+        x, y = 2 * np.cos(2 * np.pi * k / 3), 2 * np.sin(2 * np.pi * k / 3)
+        corners.white[k, 0], corners.white[k, 1], corners.white[k, 2] = high * (1 + x), high * y, high * (1 - x)
+    for k in range(4):
+        best = min(best, _add_corner(family, shares, corners, k, axes, work, best, slopes))
+    cells = np.empty((2 * most + 2, 4), dtype=np.int64)
+    cells[0] = np.arange(4)
+    bound, _ = _bound(family, 0, corners, cells[0], (axes, low), np.inf)
+    waiting, n_corners, n_cells = [(bound, 0)], 4, 1
+    while n_corners < most + 4 and len(waiting) > 0 and waiting[0][0] < best - tolerance:
+        bound, one = heappop(waiting)
+        cell = cells[one]
+        _, middle = _bound(family, 0, corners, cell, (axes, low), -np.inf)
+        x, y = _longest_edge(corners, cell, middle)
+        corners.white[n_corners] = (corners.white[cell[x]] + corners.white[cell[y]]) / 2
+        best = min(best, _add_corner(family, shares, corners, n_corners, axes, work, best, slopes))
+        cells[n_cells] = cell
+        cells[n_cells, x] = n_corners
+        cells[one, y] = n_corners
+        n_corners += 1
+        for child in (one, n_cells):
+            mine, _ = _bound(family, 0, corners, cells[child], (axes, low), best - tolerance)
+            if mine < np.inf:
+                heappush(waiting, (max(bound, mine), child))
+        n_cells += 1
+    least = waiting[0][0] if len(waiting) > 0 else best
+    return min(least, best), best
+
+
+@numba.njit(cache=True)
+def _heavy(family: Any, target: int) -> Any:
+    """Robots without which the mean information of the others is much smaller, (h,), and all others (F - h,)."""
+    information = family.information[target]
+    n_robots, is_light = len(information), np.ones(len(information), dtype=np.bool_)
+    for _ in range(min(HEAVY, family.size, n_robots - family.size)):
+        part = family.size / is_light.sum()
+        mean = family.start[target].copy()
+        for i in range(n_robots):
+            if is_light[i]:
+                mean += information[i] * part
+        axes, heaviest, most = _axes(mean), -1, -np.inf
+        for i in range(n_robots):
+            x, _, z = _whitened(axes, (information[i, 0], information[i, 1], information[i, 2]))
+            if is_light[i] and x + z > most:
+                heaviest, most = i, x + z
+        if most * part < SHARE:
+            break
+        is_light[heaviest] = False
+    return np.flatnonzero(~is_light), np.flatnonzero(is_light)
+
+
+@numba.njit(cache=True)
+def least_choice(family: Any, target: int, shares: Any, slopes: Any, tolerance: float, most: int) -> Any:  # noqa: PLR0917
+    """What choices (``target_choices.py``) of a target are worth at least, less their shares (F,); the least one met.
+
+    Minus infinity where rounding forbids to say. ``slopes`` (3,) : those of a good choice, replaced by a better one's;
+    ``tolerance`` : between the bound and the least, from which no cell is divided; ``most`` : corners of each search
+    """
+    n_robots = len(shares)
+    work = np.empty(n_robots), np.zeros(n_robots, dtype=np.bool_), np.empty(3)
+    _, best = choose(family, target, shares, slopes, work)
+    heavy, light = _heavy(family, target)
+    information, lighter = family.information[target], np.empty((1, len(light), 3))
+    lighter[0] = information[light]
+    one, least = slice(target, target + 1), np.inf
+    for pattern in range(2 ** len(heavy)):
+        start, paid, size = family.start[one].copy(), 0.0, family.size
+        for t in range(len(heavy)):
+            if pattern >> t & 1:
+                start[0] += information[heavy[t]]
+                paid += shares[heavy[t]]
+                size -= 1
+        part = Family(family.code, family.weights[one], family.prior[one], start, lighter, family.lacking[light], size)
+        bound, found = _search_cells(part, shares[light], slopes, best + paid, tolerance, most)
+        least, best = min(least, bound - paid), min(best, found - paid)
+    return least, best
