@@ -49,9 +49,9 @@ LONG, QUARTER = 50_000, 0.25
 ``NEAR``. Measured on a small world of 100 robots: 4 % more take ten times the nodes; half-way up, 65 s went for
 nothing."""
 
-FOR_ONE, AS_LAST = 0.35, 2.0
+FOR_ONE, AS_LAST, LEAST = 0.35, 2.0, 10.0
 """Of the seconds left, for one threshold while the bracket is wider than ``NEAR``; at least so many times as many as
-the last refutation took."""
+the last refutation took, and so many."""
 
 REACH = 0.25
 """Of the bracket, the next step where as many seconds are left as the last refutation took; less with less."""
@@ -115,7 +115,7 @@ class PriceSearch:
         bracket, left = self.task.bracket, self.task.budget.seconds_left
         if bracket.upper - bracket.lower <= NEAR * abs(bracket.upper) or isinf(left):
             return 1.0
-        return min(max(FOR_ONE, AS_LAST * self._took / left), 1.0) if left > 0 else 1.0
+        return min(max(FOR_ONE, max(AS_LAST * self._took, LEAST) / left), 1.0) if left > 0 else 1.0
 
     def _threshold(self, unknown: float | None) -> float | None:
         """The next threshold to decide; ``None`` where those below the unknown one are too close to it."""
