@@ -79,7 +79,13 @@ def test_pairs_bound_all_sets_with_their_prices(name):
 def test_who_pays_is_found_or_ruled_out(name, by_minorants, monkeypatch):
     """By all sets; with minorants before pairs of robots are given more than a node, too."""
     if by_minorants:
-        for constant, value in {"FIRST_TRIED": 1, "SHARPER": np.inf, "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
+        for constant, value in {
+            "FIRST_TRIED": 1,
+            "SHARPER": (np.inf, np.inf),
+            "TRIED": 1,
+            "FEWEST": 1,
+            "MOST": 1,
+        }.items():
             monkeypatch.setattr(paying_tree, constant, value)
     answers = set()
     for seed in range(12):
@@ -119,7 +125,7 @@ def test_a_search_cut_short_says_so():
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])
 def test_sets_left_open_are_worth_what_is_said(name, monkeypatch):
-    for constant, value in {"FIRST_TRIED": 1, "SHARPER": np.inf, "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
+    for constant, value in {"FIRST_TRIED": 1, "SHARPER": (np.inf, np.inf), "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
         monkeypatch.setattr(paying_tree, constant, value)
     bounds = 0
     for seed in range(12):

@@ -41,8 +41,8 @@ ENOUGH = 6
 """Sets found of one size before the prices are asked again; each pays more than those before."""
 FIRST_TRIED, SMALL, SHARPER = 500, 13, (0.15, 0.5)
 """Nodes that pairs have for a question before a minorant of all sets is made, and the share of what pairs lack that it
-may lack at most to be worth its time: for sets of up to so many robots, and for larger ones. At 60 robots, log-det, 60 s,
-(0, 1454), groups of about ten, leaves 1.3 % with the first and 3.0 % with the second, (8, 999) 2.3 and 0.8 %."""
+may lack at most to be worth its time: for sets of up to so many robots, and for larger ones. At 60 robots, log-det,
+60 s, (0, 1454), groups of about ten, leaves 1.3 % with the first and 3.0 % with the second, (8, 999) 2.3 and 0.8 %."""
 TRIED, FEWEST, MOST, MORE, LESS = 30, 8, 3_000, 1.5, 0.7
 """Nodes of pairs before further minorants: at first, at least, at most; their growth where they end a node, and where
 not."""
