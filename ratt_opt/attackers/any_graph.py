@@ -27,8 +27,9 @@ __all__ = ["any_graph", "last_stage"]
 
 TREE_SHARE, TREES_SHORT, BOUND_SHARE, BOUND_NODES = 0.01, (0.05, 0.5), 0.3, 500_000
 """Of what is left of the budget for tree inequalities, which on dense graphs are not asked: there they used up their
-share and proved nothing; of a short search more, up to so many seconds, as the first threshold is half-way up from what
-they prove; then, and at most so many nodes, for the weakest group of the forced size; prices get the rest. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the attack in a minute, prices
+share and proved nothing; of a short search more, up to so many seconds, as the first threshold is half-way up from
+what they prove; then, and at most so many nodes, for the weakest group of the forced size; prices get the rest.
+Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the attack in a minute, prices
 75 % in a second."""
 
 PARTITIONED = 10_000
