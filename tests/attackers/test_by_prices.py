@@ -339,14 +339,16 @@ def paying_search(team, links, threat, forms_at=None, way=Way.SEEING_WITH_FORMS)
 
 
 def unpaid_question(seed):
-    """A team of six robots, its threshold, and prices that no group of theirs pays."""
+    """A connected team of six robots, a threshold, and prices that no group of theirs pays, though some nearly do."""
     rng = np.random.default_rng(seed)
-    problem, plan = team_problem(6 * seed + 1, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    problem, plan = team_problem(6 * seed + 1, 6, graph=nx.connected_watts_strogatz_graph(6, 4, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
     threshold, robot, blinded = 0.7 * problem.objective(plan), rng.uniform(0, 2, 6), rng.uniform(0.5, 2)
     size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
     while least_cost(problem, plan, threshold, (robot, blinded)) < 1e-3:
         robot *= 0.6
+    for _ in range(3):  # as much as they may be, nearly
+        robot += least_cost(problem, plan, threshold, (robot, blinded)) / 6.1
     at = Prices(robot, blinded, np.ones(6), float(size), blinded, np.ones(1), ConvexForms(threat).known)
     return (team, links, threat), at, Question(threshold, threat.n_blinded, -1e-6, np.arange(6), 0, 0)
 
@@ -372,7 +374,7 @@ def test_a_search_asked_again_goes_on_where_it_was(seed, way, monkeypatch):
 
 @pytest.mark.parametrize("way", Way)
 def test_a_search_that_nearly_ends_goes_on_beyond_its_nodes(way, monkeypatch):
-    (team, links, threat), at, question = unpaid_question(1)
+    (team, links, threat), at, question = unpaid_question(0)
     for nearly in (0.0, 1.0):
         monkeypatch.setattr("ratt_opt.attackers.by_prices.paying_groups.NEARLY", nearly)
         search = paying_search(team, links, threat, forms_at=at.robot, way=way)
@@ -384,7 +386,7 @@ def test_a_search_that_nearly_ends_goes_on_beyond_its_nodes(way, monkeypatch):
 def test_a_search_whose_prices_fell_is_not_gone_on_with_at_higher_prices(seed, way):
     rng = np.random.default_rng(seed)
     (team, links, threat), at, question = unpaid_question(seed)
-    problem, plan = team_problem(6 * seed + 1, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
+    problem, plan = team_problem(6 * seed + 1, 6, graph=nx.connected_watts_strogatz_graph(6, 4, 0.5, seed=seed))
     robot = at.robot + rng.uniform(0.0, 1.0, 6)  # some groups may pay now
     first = PriceVector(robot=robot, blinded=at.blinded, links=float(robot.sum() - at.blinded * threat.n_blinded))
     search, nodes, found = paying_search(team, links, threat, forms_at=robot, way=way), 1, None
