@@ -471,7 +471,14 @@ def test_thresholds_are_within_reach_of_the_seconds_left(seed, seconds, monkeypa
 
     values, nothing, budget = PlanValues(problem, plan), ro.Attack(), Budget(time_limit=seconds)
     monkeypatch.setattr(price_search.ThresholdDecision, "decide", decide)
-    monkeypatch.setattr("ratt_opt.budget.monotonic", lambda: budget.started + clock[0])
+    checked, start = Budget.__post_init__, budget.started
+
+    def begin(part):
+        checked(part)
+        part.started = start + clock[0]
+
+    monkeypatch.setattr(Budget, "__post_init__", begin)
+    monkeypatch.setattr("ratt_opt.budget.monotonic", lambda: start + clock[0])
     bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
     task = AttackTask(problem, values, bracket, budget)
     with pytest.raises(OutOfBudget):

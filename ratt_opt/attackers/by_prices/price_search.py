@@ -97,11 +97,12 @@ class PriceSearch:
             before, began, starts, answer = budget.nodes, budget.elapsed, 0, Answer(verdict=Threshold.OPEN)
             with budget.stage(self._patience()) as part:
                 answer = self._decision.decide(threshold, part, part.nodes_left(self._effort))
+                if answer.verdict is Threshold.REFUTED:
+                    bracket.raise_lower(threshold)
             spent = budget.nodes - before
             if answer.verdict is Threshold.REFUTED:
                 self._took = budget.elapsed - began
                 self._share = 0.5 if spent < LONG else QUARTER
-                bracket.raise_lower(threshold)
             elif answer.partition is None or not self._offer(answer.partition):
                 self._unknown, starts = threshold, FURTHER_STARTS
             else:
