@@ -18,7 +18,7 @@ from ratt_opt.compiling import numba
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["DualProgram", "Multipliers"]
+__all__ = ["DualProgram", "Multipliers", "soft_level"]
 
 COLD, WARM = (0.5, 0.3, 0.15, 0.1, 0.05, 0.03, 0.015), (0.05, 0.02)
 """Temperatures, in the room left per target, from a first guess and from a related family's multipliers."""
@@ -255,10 +255,13 @@ def _soft_least(rest: Any, pattern: Any, light: Any, patterns: Any, temperature:
 
 
 @numba.njit(cache=True)
-def _soft_choice(scores: Any, ordered: Any, size: int, temperature: float, fraction: Any) -> float:
-    """Smoothed sum of the ``size`` smallest scores: its dual value at the level where the fractions add up to it."""
-    low, high = ordered[0] - 40 * temperature, ordered[-1] + 40 * temperature
-    for _ in range(BISECTIONS):
+def soft_level(scores: Any, size: int, temperature: float, ends: Any, halvings: int) -> Any:
+    """Two levels between which the fractions ``1 / (1 + exp((score - level) / temperature))`` add up to the size.
+
+    ``ends`` : the least and the largest score
+    """
+    low, high = ends[0] - 40 * temperature, ends[1] + 40 * temperature
+    for _ in range(halvings):
         level = (low + high) / 2
         count = 0.0
         for score in scores:
@@ -267,6 +270,13 @@ def _soft_choice(scores: Any, ordered: Any, size: int, temperature: float, fract
             low = level
         else:
             high = level
+    return low, high
+
+
+@numba.njit(cache=True)
+def _soft_choice(scores: Any, ordered: Any, size: int, temperature: float, fraction: Any) -> float:
+    """Smoothed sum of the ``size`` smallest scores: its dual value at the level where the fractions add up to it."""
+    low, high = soft_level(scores, size, temperature, (ordered[0], ordered[-1]), BISECTIONS)
     level = (low + high) / 2
     total = level * size
     for i, score in enumerate(scores):

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attackers.weakest_set.smoothed_dual import soft_level
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import target_gradient, target_value
 
@@ -128,16 +129,7 @@ def _improve(family: Any, ascent: Any, values: Any, sets: Any) -> None:
 @numba.njit(cache=True)
 def _soften(scores: Any, size: int, temperature: float, fraction: Any) -> None:
     """Fractions (F,) that add up to the size, near 1 where scores are small."""
-    low, high = scores.min() - 40 * temperature, scores.max() + 40 * temperature
-    for _ in range(HALVINGS):
-        level = (low + high) / 2
-        count = 0.0
-        for score in scores:
-            count += 1 / (1 + np.exp((score - level) / temperature))
-        if count < size:
-            low = level
-        else:
-            high = level
+    low, _ = soft_level(scores, size, temperature, (scores.min(), scores.max()), HALVINGS)
     for i in range(len(scores)):
         fraction[i] = 1 / (1 + np.exp((scores[i] - low) / temperature))
 
