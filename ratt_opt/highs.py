@@ -7,6 +7,7 @@ multipliers as suggestions and derive every bound from them anew.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -93,8 +94,8 @@ class LinearProgram:
         import highspy
 
         self._highspy = highspy
-        self._highs: Any = highspy.Highs()  # type: ignore[no-untyped-call]
-        for name, value in {"output_flag": False, "threads": 1, "random_seed": 0, **options}.items():
+        self._highs: Any = _silent_solver()()
+        for name, value in {"threads": 1, "random_seed": 0, **options}.items():
             self._highs.setOptionValue(name, value)
         objective = np.asarray(cost, dtype=np.float64)
         n = len(objective)
@@ -173,6 +174,19 @@ class LinearProgram:
         basis, basic = self._highs.getBasis(), self._highspy.HighsBasisStatus.kBasic
         columns = tuple(j for j, status in enumerate(basis.col_status) if status == basic)
         return columns, tuple(i for i, status in enumerate(basis.row_status) if status != basic)
+
+
+@cache
+def _silent_solver() -> type[Any]:
+    """HiGHS without output: since 1.16 its constructor prints, before an option can be set."""
+    import highspy
+
+    class Silent(highspy.Highs):
+        def enableCallbacks(self) -> None:  # noqa: N802  (called by the constructor)
+            self.setOptionValue("output_flag", False)
+            super().enableCallbacks()  # type: ignore[no-untyped-call]
+
+    return Silent
 
 
 def _bounds(side: ArrayLike, n: int) -> FloatArray:
