@@ -313,6 +313,29 @@ def test_every_choice_of_prices_claims_what_it_says_and_no_known_group_pays_it(s
     assert prices.dearest(1.0, found.links + 1.0) is None
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_prices_for_dear_blinded_robots_hold_while_groups_are_added(seed):
+    """The price of a blinded robot stays while enough can be claimed at it, and is chosen again where it cannot."""
+    problem, _ = team_problem(2 * seed, 6, graph=nx.complete_graph(6))
+    rng, threat = np.random.default_rng(seed), problem.threat
+    prices = GroupPrices(threat)
+    groups = [KnownGroup(robots=np.arange(6) == i, need=0, value=0.0) for i in range(6)]
+    prices.add(groups)
+    links, chosen = 0.25 * prices.solve(1.0).links, list[float]()
+    for mask in rng.permutation(np.arange(1, 64)).tolist():
+        dear = prices.dearest(1.0, links)
+        assert (dear is not None) == (prices.solve(1.0).links >= links)
+        if dear is not None:
+            assert dear.links == pytest.approx(links)
+            paid = [dear.robot[group.robots].sum() - dear.blinded * group.need for group in groups]
+            assert all(p <= prices.half_cut(group.robots) + 1e-6 for p, group in zip(paid, groups, strict=True))
+            chosen.append(dear.blinded)
+        robots = np.array([bool(mask >> i & 1) for i in range(6)])
+        groups.append(KnownGroup(robots=robots, need=int(rng.integers(0, 3)), value=0.0))
+        prices.add(groups[-1:])
+    assert len(set(chosen)) < len(chosen)
+
+
 def least_cost(problem, plan, threshold, prices, *, connected=False):
     """The cheapest reduced cost by the definition: every set of robots, or every connected one, however blinded."""
     n_robots, least = problem.n_robots, np.inf

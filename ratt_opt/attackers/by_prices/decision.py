@@ -4,16 +4,14 @@
    that see or are inside (``paying_groups.py``, ``columns.py``) has found no group that pays them; groups that do are
    added to the program.
 2. Prices that claim ``gap`` links less leave the groups of reduced cost at most ``gap``: they are listed, and the
-   partitions into them tried (``cover.py``). Either one is an attack, or the threshold is refuted.
+   partitions into them tried (``listing.py``). Either one is an attack, or the threshold is refuted.
 
 Source: for the second step, Baldacci, Christofides and Mingozzi, Mathematical Programming 115 (2008).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,17 +20,17 @@ from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, cheap_group
-from ratt_opt.attackers.by_prices.groups.columns import FINISHED, FULL, Prices, Question, Stack, enumerate_groups
-from ratt_opt.attackers.by_prices.groups.cover import FOUND, PAUSED, next_cover
+from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
+from ratt_opt.attackers.by_prices.listing import list_groups, partitions_into
 from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.starts import Partition
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
+    from ratt_opt.attackers.by_prices.listing import ListedGroups
     from ratt_opt.attackers.by_prices.team import Links, PricedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
@@ -76,29 +74,11 @@ MOST_ROUNDS, ROUNDS_SHARE = 50, 0.05
 """Of annealing at the prices that claim most, and of the seconds left for it. At 100 robots of hubs three seconds make
 a threshold at 94 % of the attack one of 800 nodes, where 25,000 do not do at the prices for few groups."""
 
-FIRST_CHUNK, ROOM, NEW_GROUPS = 50, 100_000, 100
-"""Nodes before the first look at the clock; groups listed for covers; groups added to the program at a time."""
-
-MOST_UNDECIDED = 2_000
-"""Groups of unknown need that end a listing: partitions into them prove nothing. At hubs of 30 robots and 99.5 % of the
-attack every third node listed one, for 22 seconds."""
-
-GLANCE, COVERS = 0.05, 100_000
-"""Seconds between two looks at the clock that chunks of nodes are cut for; groups tried in covers between them."""
+ROOM, NEW_GROUPS = 100_000, 100
+"""Groups listed for covers; groups added to the program at a time."""
 
 QUICK, THOROUGH = 200, 3_000
 """Values looked at to decide what a group needs: at every node (some 20 microseconds), and before it is listed."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Listed:
-    """Groups of small reduced cost: robots and blinded ones (C, N), least and found needs (C, 2), costs (C,)."""
-
-    code: int
-    robots: BoolArray
-    blinded: BoolArray
-    need: IntArray
-    cost: FloatArray
 
 
 class ThresholdDecision:
@@ -196,7 +176,7 @@ class ThresholdDecision:
 
     def _answered(self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget) -> Answer | None:
         """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
-        threshold, size, limit = asked
+        threshold = asked[0]
         if self.prices.add(self._cheap(prices, threshold, budget)):
             return Answer(verdict=Threshold.REACHED)
         (at, question), nodes, least = self._asked(prices, asked), self._attempt, self.threat.alpha_c + MARGIN
@@ -210,10 +190,10 @@ class ThresholdDecision:
             return Answer(verdict=Threshold.REFUTED, prices=falling.prices)
         if self._attempt < LISTED_FROM:
             return None
-        listed = self._list(prices, (threshold, size, limit), budget, (self._attempt // DEARER, NEW_GROUPS))
+        listed = self._listed(prices, asked, budget, (self._attempt // DEARER, NEW_GROUPS))
         if len(listed.cost):
             return Answer(verdict=Threshold.REACHED) if self._teach(listed, threshold) else None
-        return Answer(verdict=Threshold.REFUTED, prices=prices) if listed.code == FINISHED else None
+        return Answer(verdict=Threshold.REFUTED, prices=prices) if listed.is_complete else None
 
     def _asked(self, prices: PriceVector, asked: tuple[float, int, float]) -> tuple[Prices, Question]:
         """The compiled searches' arguments for ``asked`` = (threshold, largest weak size, limit)."""
@@ -254,45 +234,28 @@ class ThresholdDecision:
                 groups.append(KnownGroup(robots=robots, need=int((best == BLINDED).sum()), value=value))
         return groups
 
-    def _teach(self, listed: _Listed, threshold: float) -> int:
+    def _teach(self, listed: ListedGroups, threshold: float) -> int:
         """Add listed groups to the program where their need is known: others may not exist, and keep prices low."""
         below, known = np.nextafter(threshold, -np.inf), listed.need[:, 0] == listed.need[:, 1]
         rows = zip(listed.robots[known], listed.need[known, 0].tolist(), strict=True)
         return self.prices.add([KnownGroup(robots=row.copy(), need=need, value=float(below)) for row, need in rows])
 
-    def _list(
+    def _listed(
         self, prices: PriceVector, asked: tuple[float, int, float], budget: Budget, most: tuple[int, int]
-    ) -> _Listed:
+    ) -> ListedGroups:
         """Groups of ``asked`` = (threshold, largest weak size, limit), within ``most`` = (nodes, groups)."""
-        n_robots, (nodes, room) = self._n_robots, most
-        at, question = self._asked(prices, asked)
-        stack = Stack.of(n_robots, len(self.links.robot), (len(SHARES), self._paying.forms.n_forms))
-        shape = (room, n_robots)
-        listed = (np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros((room, 2), np.int64), np.zeros(room))
-        code, chunk = PAUSED, FIRST_CHUNK
-        nodes = budget.nodes_left(nodes)
-        while code == PAUSED and (before := int(stack.position[2])) < nodes:
-            budget.check()
-            began = monotonic()
-            code = enumerate_groups(self.team, self.links, at, question, stack, min(chunk, nodes - before), listed)
-            budget.nodes += int(stack.position[2]) - before
-            chunk = 2 * chunk if monotonic() - began < GLANCE else max(chunk // 2, 1)
-            count = int(stack.position[3])
-            if np.count_nonzero(listed[2][:count, 0] < listed[2][:count, 1]) > MOST_UNDECIDED:
-                break
-        count = int(stack.position[3])
-        robots, blinded, need, cost = listed
-        self._shuffled = code == FULL
-        return _Listed(code, robots[:count], blinded[:count], need[:count], cost[:count])
+        listed = list_groups(self.team, self.links, self._asked(prices, asked), budget, most)
+        self._shuffled = listed.is_full
+        return listed
 
     def _cover(self, prices: PriceVector, threshold: float, size: int, budget: Budget, nodes: int) -> Answer:
         """Try all partitions into groups of small reduced cost."""
         gap = self.threat.alpha_c - prices.links + TOLERANCE
         self._shuffled = False
-        listed = self._list(prices, (threshold, size, gap), budget, (nodes // LISTING, ROOM))
-        if listed.code != FINISHED:
+        listed = self._listed(prices, (threshold, size, gap), budget, (nodes // LISTING, ROOM))
+        if not listed.is_complete:
             return Answer(verdict=Threshold.OPEN)
-        for members in self._partitions(listed, gap, budget):
+        for members in partitions_into(listed, self.threat, self.prices.half_cuts(listed.robots), gap, budget):
             if (listed.need[members, 0] < listed.need[members, 1]).any():
                 return Answer(verdict=Threshold.OPEN)
             group = np.zeros(self._n_robots, dtype=np.int64)
@@ -301,26 +264,3 @@ class ThresholdDecision:
             blind = np.asarray(listed.blinded[members].any(axis=0))
             return Answer(verdict=Threshold.REACHED, partition=Partition(group=group, blind=blind, value=threshold))
         return Answer(verdict=Threshold.REFUTED)
-
-    def _partitions(self, listed: _Listed, gap: float, budget: Budget) -> Iterator[list[int]]:
-        """Groups of each partition within both budgets."""
-        n_robots = self._n_robots
-        busy = np.argsort(-listed.robots.sum(axis=0), kind="stable")
-        robots = np.ascontiguousarray(listed.robots[:, busy])
-        lowest = robots.argmax(axis=1)
-        order = np.argsort(lowest, kind="stable")
-        robots = np.ascontiguousarray(robots[order])
-        links = self.prices.half_cuts(listed.robots[order])
-        costs = np.stack([np.maximum(listed.cost[order], 0.0), listed.need[order, 0], links], axis=1)
-        first = np.searchsorted(lowest[order], np.arange(n_robots + 1))
-        position, depth = np.full(n_robots + 2, -1, dtype=np.int64), np.zeros(1, dtype=np.int64)
-        covered, spent = np.zeros((n_robots + 2, n_robots), dtype=np.bool_), np.zeros((n_robots + 2, 3))
-        state = (position, covered, spent, depth, first)
-        budgets = np.array([gap, self.threat.n_blinded, self.threat.alpha_c], dtype=np.float64)
-        while True:
-            budget.check()
-            code = next_cover(robots, costs, budgets, state, COVERS)
-            if code == FOUND:
-                yield order[position[: int(depth[0]) + 1]].tolist()
-            elif code != PAUSED:
-                return
