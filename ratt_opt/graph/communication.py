@@ -83,8 +83,12 @@ class CommunicationGraph:
 
     def links_between(self, groups: Iterable[Iterable[int]]) -> frozenset[Link]:
         """Links between robots of different groups; every robot is in one group."""
-        home = {i: k for k, group in enumerate(groups) for i in group}
-        return frozenset((i, j) for i, j in self.links if home[i] != home[j])
+        found: list[Link] = []
+        left = (1 << self.n_robots) - 1
+        for group in sorted(map(list, groups), key=len)[:-1]:  # links of the largest group are met from their other end
+            left &= ~sum(1 << i for i in group)
+            found.extend((min(i, j), max(i, j)) for i in group for j in _bits(self._neighbours[i] & left))
+        return frozenset(found)
 
     def links_of(self, robot: int) -> frozenset[Link]:
         """The links of one robot."""

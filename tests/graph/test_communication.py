@@ -24,3 +24,6 @@ def test_groups_and_links_are_those_of_the_graph(robots, degree):
     assert communication.groups_among(some) == tuple(sorted(among, key=min))
     for robot in range(0, robots, 7):
         assert communication.links_of(robot) == {(min(edge), max(edge)) for edge in graph.edges(robot)}
+    home = rng.integers(0, 3, robots)
+    between = {(i, j) for i, j in links if home[i] != home[j]}
+    assert communication.links_between(np.flatnonzero(home == k).tolist() for k in range(4)) == between
