@@ -256,6 +256,6 @@ class BranchAndBound:
                 self.rounds.use(k)
                 leaf = Leaf(cuts=(k,), weights=(1.0,))
                 node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])
-            if len(self.cuts) >= 4 * CUTS_A_ROUND:
+            if len(self.cuts) >= 4 * CUTS_A_ROUND or self.incumbent.budget.is_over:
                 break
         return node

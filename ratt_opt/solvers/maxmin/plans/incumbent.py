@@ -165,7 +165,8 @@ FIRST_SECONDS, SHORT_SHARE = 1.0, 0.95
 """So many seconds at least, if that is no more than this share of those left: a tenth of a second proves little, and
 what a search of one second is asked for is what is proved of RATT's plan."""
 IMPROVED_SHARE = 0.1
-"""Of the time left for the local search from one plan: at 100 robots each attack on the way takes up to two seconds."""
+"""Of the time left for the local search from one plan, as at 100 robots each attack on the way takes up to two seconds,
+and for attacks on one plan that is offered."""
 RIVAL_SHARE = 0.5
 """Of the time left, once, for a second attack on a plan of which more is proved so far than of the best one."""
 RACE_SHARE = 0.2
@@ -210,7 +211,8 @@ class Incumbent:
         self.improve(max(plans, key=self.pool.plan_value))
         for plan in plans:
             self.offer(plan)
-        if not self.is_proved and not np.array_equal(self.candidates.best, plans[0]):
+        is_new = not np.array_equal(self.candidates.best, plans[0])
+        if is_new and not self.is_proved and not self.budget.is_over:
             self.proved.attack(self.candidates.best, self._first_part())
 
     def _first_part(self) -> Budget:
@@ -219,11 +221,15 @@ class Incumbent:
             return self.budget.part(NETWORK_SHARE, at_least=seconds)
         return self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF, at_least=seconds)
 
-    def offer(self, plan: IntArray) -> bool:
-        """Attack a plan that is better on the known outcomes; return whether it became the best."""
-        if not self.candidates.is_better(plan) or not self.candidates.meet(plan):
+    def offer(self, plan: IntArray, part: Budget | None = None) -> bool:
+        """Attack a plan that is better on the known outcomes; return whether it became the best.
+
+        ``part`` : of the budget, for attacking it again and again; by default as for :meth:`improve`
+        """
+        if self.budget.is_over or not self.candidates.is_better(plan) or not self.candidates.meet(plan):
             return False
-        while self.adversary.learn(plan) and self.candidates.is_better(plan) and not self.budget.is_over:
+        part = self.budget.part(IMPROVED_SHARE) if part is None else part
+        while self.adversary.learn(plan) and self.candidates.is_better(plan) and not part.is_over:
             pass  # what was learnt may be weaker than what there is to learn
         if self.candidates.is_better(plan) and self.adversary.is_exact_cheaply:
             self.proved.attack(plan, self.budget.part())
@@ -240,12 +246,12 @@ class Incumbent:
         current, part = plan, self.budget.part(IMPROVED_SHARE)
         for _ in range(LOCAL_SEARCH_ROUNDS):
             if part.is_over:
-                self.offer(current)
+                self.offer(current, part)
                 return
             current = climb(self.problem, self.pool, current, part)
             known = len(self.pool)
             if not self.adversary.learn(current):
-                self.offer(current)
+                self.offer(current, part)
             if len(self.pool) == known:
                 return
 

@@ -1,0 +1,66 @@
+"""Plans that are looked for on the way have shares of the time: with a thousand robots one step takes half a second."""
+
+from __future__ import annotations
+
+import pytest
+
+from ratt_opt import Problem, random_scenario, ratt
+from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin.plans.adversary import QUICK_SHARE
+from ratt_opt.solvers.maxmin.plans.incumbent import IMPROVED_SHARE, Incumbent
+from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+
+SECONDS = 1000.0
+
+
+@pytest.fixture
+def search() -> Incumbent:
+    problem: Problem = random_scenario(20, 6, alpha_s=3, alpha_c=60, seed=0).problem("maxeig")
+    return Incumbent(problem, OutcomePool(problem), ratt(problem).elements, Budget(time_limit=SECONDS))
+
+
+def test_exchanges_next_to_known_outcomes_have_a_share(search: Incumbent, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of one outcome took all of 50 seconds."""
+    limits = []
+
+    def near(_: object, __: object, budget: Budget) -> None:
+        assert budget.time_limit is not None
+        limits.append(budget.time_limit)
+        budget.time_limit = 0.0
+
+    search.adversary.learn(search.candidates.first)
+    for seed in range(5):
+        search.adversary.learn(ratt(random_scenario(20, 6, alpha_s=3, alpha_c=60, seed=seed).problem()).elements)
+    assert len(search.pool) > 1
+    monkeypatch.setattr(GroupExchanges, "near", near)
+    search.adversary.learn(search.candidates.first)
+    assert len(limits) == 1
+    assert limits[0] <= QUICK_SHARE * SECONDS
+
+
+def test_attacks_on_one_offered_plan_have_a_share(search: Incumbent, monkeypatch: pytest.MonkeyPatch) -> None:
+    shares, calls = [], iter(range(1, 100))
+
+    def part(_: Budget, share: float = 1.0) -> Budget:
+        shares.append(share)
+        return Budget(time_limit=0.0)
+
+    def learns(_: object) -> bool:
+        assert next(calls) == 1
+        return True
+
+    monkeypatch.setattr(Budget, "part", part)
+    monkeypatch.setattr(search.adversary, "learn", learns)
+    monkeypatch.setattr(search.candidates, "is_better", lambda _: True)
+    search.offer(search.candidates.first)
+    assert shares == [IMPROVED_SHARE]
+    assert next(calls) == 2
+
+
+def test_no_plan_is_attacked_once_the_time_is_up(search: Incumbent, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of three planners' plans each took a second or two after the end."""
+    search.budget.time_limit = 0.0
+    monkeypatch.setattr(search.adversary, "learn", lambda _: pytest.fail("attacked"))
+    assert not search.offer(search.candidates.first)
+    search.improve(search.candidates.first)
