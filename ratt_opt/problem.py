@@ -35,11 +35,17 @@ class Attack(Shown):
     def __post_init__(self) -> None:
         robots = (i if type(i) is int else check_integer("attack robot", i, low=0) for i in self.sensing)
         object.__setattr__(self, "sensing", check_distinct("attack robot", robots))
+        if type(self.links) is frozenset and all(map(_is_link, self.links)):
+            return  # as nearly always, and there may be hundreds of thousands
         links = (check_link("attack link", link) for link in self.links)
         object.__setattr__(self, "links", check_distinct("attack link", links))
         for link in self.links:
             if not link[0] < link[1]:
                 raise InputError("attack link", "must be (i, j) with i < j", link)
+
+
+def _is_link(link: tuple[int, int]) -> bool:
+    return type(link) is tuple and len(link) == 2 and type(link[0]) is int is type(link[1]) and 0 <= link[0] < link[1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -21,10 +21,10 @@ Link = tuple[int, int]
 
 def neighbour_masks(n_robots: int, links: Iterable[Link]) -> list[int]:
     """Bit mask of the neighbours of each robot by these links."""
-    masks = [0] * n_robots
+    masks, bit = [0] * n_robots, [1 << i for i in range(n_robots)]
     for i, j in links:
-        masks[i] |= 1 << j
-        masks[j] |= 1 << i
+        masks[i] |= bit[j]
+        masks[j] |= bit[i]
     return masks
 
 
@@ -69,10 +69,8 @@ class CommunicationGraph:
 
     def groups(self, cut: Iterable[Link] = ()) -> tuple[frozenset[int], ...]:
         """Connected components left when the links of ``cut`` are gone, by lowest robot."""
-        neighbours = list(self._neighbours)
-        for i, j in cut:
-            neighbours[i] &= ~(1 << j)
-            neighbours[j] &= ~(1 << i)
+        lost = neighbour_masks(self.n_robots, cut)
+        neighbours = [near & ~gone for near, gone in zip(self._neighbours, lost, strict=True)]
         return _components(neighbours, (1 << self.n_robots) - 1)
 
     def groups_among(self, robots: frozenset[int]) -> tuple[frozenset[int], ...]:
@@ -87,7 +85,8 @@ class CommunicationGraph:
         left = (1 << self.n_robots) - 1
         for group in sorted(map(list, groups), key=len)[:-1]:  # links of the largest group are met from their other end
             left &= ~sum(1 << i for i in group)
-            found.extend((min(i, j), max(i, j)) for i in group for j in _bits(self._neighbours[i] & left))
+            for i in group:
+                found.extend((i, j) if i < j else (j, i) for j in _bits(self._neighbours[i] & left))
         return frozenset(found)
 
     def links_of(self, robot: int) -> frozenset[Link]:

@@ -123,7 +123,7 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
     objective = problem.objective
     if isinstance(objective, InformationObjective) and objective.compiled_code is not None and objective.dimension == 2:
         rounds = len(robots) - 1
-        if rounds * len(candidates) / 2 * objective.n_targets > PLAIN_WORK:
+        if not budget.is_over and rounds * len(candidates) / 2 * objective.n_targets > PLAIN_WORK:
             return _lazy_greedy(problem, objective, candidates, elements, budget)
     chosen = np.array([], dtype=np.int64)
     evaluations = 0

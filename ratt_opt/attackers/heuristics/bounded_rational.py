@@ -29,8 +29,8 @@ def _on_complete_graph(problem: Problem, order: list[int], blinded: frozenset[in
         if left < 0:
             break
         alone.append(robot)
-    links = frozenset((min(i, j), max(i, j)) for i in alone for j in range(n_robots) if i != j)
-    return Attack(blinded, links)
+    together = set(range(n_robots)).difference(alone)
+    return Attack(blinded, problem.communication.links_between([*([i] for i in alone), together]))
 
 
 def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResult:

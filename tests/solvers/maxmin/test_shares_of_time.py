@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from ratt_opt import Problem, random_scenario, ratt
+from ratt_opt import Problem, random_scenario, ratt, solve_maxmin
+from ratt_opt.attackers import exact
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans.adversary import QUICK_SHARE
@@ -64,3 +65,17 @@ def test_no_plan_is_attacked_once_the_time_is_up(search: Incumbent, monkeypatch:
     monkeypatch.setattr(search.adversary, "learn", lambda _: pytest.fail("attacked"))
     assert not search.offer(search.candidates.first)
     search.improve(search.candidates.first)
+
+
+@pytest.mark.parametrize("criterion", ["trace", "logdet", "maxeig"])
+def test_what_is_known_at_once_takes_one_attack(criterion: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each planner's plan had one of its own: half a second where a thousand robots lose 300,000 links."""
+    attacked, attack = [], exact.bounded_rational_attack
+    monkeypatch.setattr(
+        exact, "bounded_rational_attack", lambda problem, plan: (attacked.append(plan), attack(problem, plan))[1]
+    )
+    problem = random_scenario(40, 6, alpha_s=2, alpha_c=500, seed=0).problem(criterion)
+    found = solve_maxmin(problem, time_limit=0)
+    assert len(attacked) == 1
+    assert found.worst_case is not None
+    assert 0 < found.lower <= found.worst_case.upper == problem.team_value(found.elements, found.worst_case.attack)

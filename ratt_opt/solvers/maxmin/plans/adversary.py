@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.task import AttackMemory
+from ratt_opt.attackers.task import AttackBracket, AttackMemory
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.outcomes import realise
@@ -39,7 +40,6 @@ class LastingAttacks:
 
     def __init__(self, problem: Problem, budget: Budget) -> None:
         self._problem, self._budget = problem, budget
-        self._team = _at_their_best(problem) if problem.threat.is_symmetric else None
         self._known: dict[tuple[frozenset[int], tuple[int, ...]], Attack] = {}
 
     def of(self, attack: Attack) -> Attack:
@@ -47,7 +47,7 @@ class LastingAttacks:
 
         The attack itself where robots or links differ to the adversary.
         """
-        if self._team is None or self._budget.is_over:
+        if not self._problem.threat.is_symmetric or self._budget.is_over or self._team is None:
             return attack
         groups = sorted(self._problem.groups_left(attack), key=lambda g: (-len(g), min(g, default=0)))
         sizes = tuple(len(group) for group in groups[1:] if group)
@@ -58,6 +58,10 @@ class LastingAttacks:
             outcome = (groups[0], *self._weakest(groups[0], sizes))
             self._known[key] = Attack(*realise(self._problem.threat, tuple(sorted(outcome, key=min))))
         return self._known[key]
+
+    @cached_property
+    def _team(self) -> PlanarTeam | None:
+        return _at_their_best(self._problem)
 
     def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...]) -> list[frozenset[int]]:
         """Disjoint groups of these sizes outside ``largest``, each as weak as exchanges find, the larger ones first."""
@@ -159,8 +163,12 @@ class Adversary:
 
     def _worst_known(self, problem: Problem, plan: IntArray) -> Attack | None:
         """The known outcome that hurts most a plan of a problem with this threat."""
-        values = self.pool.outcome_values(self.pool.group_values(problem.information_objective.information[plan]))
+        values = self._known_values(problem, plan)
         return self.pool.attack(int(values.argmin())) if len(values) else None
+
+    def _known_values(self, problem: Problem, plan: IntArray) -> FloatArray:
+        """(O,) what the known outcomes leave a plan of a problem with this threat."""
+        return self.pool.outcome_values(self.pool.group_values(problem.information_objective.information[plan]))
 
     def _learn_near(self, plan: IntArray) -> bool:
         """Exchange robots of known outcomes for a worse one: few descents where an attack takes hundreds."""
@@ -169,7 +177,7 @@ class Adversary:
             return False
         from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges  # compiles
 
-        teams = self.pool.outcome_values(self.pool.group_values(self.problem.information_objective.information[plan]))
+        teams = self._known_values(self.problem, plan)
         best: GroupExchanges | None = None
         lowest, part = float(teams.min(initial=np.inf)), self.budget.part(QUICK_SHARE)
         for outcome in np.argsort(teams, kind="stable")[:NEAR].tolist():
@@ -212,6 +220,18 @@ class Adversary:
         self._remember(self.problem, plan, result.attack)
         return result
 
+    def glance(self, plan: IntArray, budget: Budget) -> AttackResult:
+        """What is known of a plan at once, with the known attack that hurts it most; teaches nothing.
+
+        An attack of its own takes half a second where a thousand robots lose hundreds of thousands of links.
+        """
+        memory, values, objective = AttackMemory(), self._known_values(self.problem, plan), self.problem.objective
+        if len(values):
+            worst = int(values.argmin())
+            value = max(objective(plan[list(self.pool.groups[group])]) for group in self.pool.of_outcome[worst])
+            memory.bracket = AttackBracket(self.pool.attack(worst), value, objective(()), objective.rounding)
+        return worst_case_attack(self.problem, plan, time_limit=0, budget=budget, memory=memory)
+
     def _memory(self, plan: IntArray) -> AttackMemory:
         """Of earlier exact attacks on the plan, where it is one of the last few attacked."""
         memory = self._memories.pop(plan.tobytes(), None) or AttackMemory()
@@ -229,6 +249,8 @@ class Adversary:
         """Add an attack on a plan to the pool; the lasting one in its place where that hurts this plan as much."""
         lasting = self._lasting.of(attack)
         self.pool.add(lasting)
+        if lasting is attack:
+            return
         value = problem.team_value(plan, attack)
         if problem.team_value(plan, lasting) > value + SAME_VALUE * abs(value):
             self.pool.add(attack)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.stopping import Stop
 
@@ -143,7 +142,7 @@ class ProvedPlan:
 
         Raises ``OutOfBudget`` : the user interrupted it; what was known counts.
         """
-        result = worst_case_attack(self.adversary.problem, plan, time_limit=0, budget=budget)
+        result = self.adversary.glance(plan, budget)
         self._keep(plan, result)
         self.adversary.heed(result)
 
