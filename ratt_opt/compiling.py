@@ -2,7 +2,8 @@
 
 Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
 those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
-fails with an error of its own. So it is raised again as soon as the callback has ended. Where the compiler takes a
+fails with an error of its own; so is one in the callback of a weak reference, of which compiling ends many. So it is
+raised again as soon as the callback has ended. Where the compiler takes a
 module over, an interrupt just after it left two owners, each of which freed it; one at the very end of compiling left
 interrupts handled as while it lasts: there, too, it comes again a little later. What is kept of compiled code:
 ``_kept_code``.
@@ -11,33 +12,40 @@ An interrupt while compiled loops run came when the arrays that they return are 
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
 here, so that nobody is asked and the interrupt comes once the loop has returned.
 
-Numba lists what it knows of types when it first compiles. An interrupt there lost the rest of a list, and later loops
+Of Numba half imported what is left cannot be imported again: an interrupt there, too, comes once all of it is. It
+lists what it knows of types when it first compiles. An interrupt there lost the rest of a list, and later loops
 ended in ``TypingError``, so lists are made here, in less than half a second, and the interrupt comes after them.
 """
 
 from __future__ import annotations
 
+import _weakrefset
 import signal
 import threading
-from contextlib import contextmanager
+import weakref
 from typing import TYPE_CHECKING, Any
 
-import numba
-from llvmlite.binding import executionengine, ffi, linker
-from numba.core import boxing, compiler_lock, event, pythonapi, types
-from numba.core.caching import CompileResultCacheImpl
-from numba.core.registry import cpu_target
+from ratt_opt._interrupts import interrupts_afterwards
 
-from ratt_opt._kept_code import SourcesLocator
+with interrupts_afterwards():
+    import numba
+    from llvmlite.binding import executionengine, ffi, linker
+    from numba.core import boxing, compiler_lock, event, pythonapi, types
+    from numba.core.caching import CompileResultCacheImpl
+    from numba.core.registry import cpu_target
+
+    from ratt_opt._kept_code import SourcesLocator
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from types import FrameType
 
 __all__ = ["numba"]
 
 DROPPED_IN = {"_raw_object_cache_notify", "_raw_object_cache_getbuffer", "__del__"}
 """Functions called by compiled code or the collector, which drop exceptions."""
+CALLED_BACK = {weakref.__file__, _weakrefset.__file__}
+"""Files of the callbacks of weak references, of which Python drops exceptions, too: one interrupt in 14 of searches
+that compiled was lost there."""
 HANDS_OVER = {
     function.__code__
     for function in (
@@ -96,7 +104,8 @@ class _Interrupts(event.Listener):
 def _must_wait(frame: FrameType | None) -> bool:
     """Whether an interrupt in this frame would be dropped, or leave something with two owners."""
     while frame is not None:
-        if frame.f_code.co_name in DROPPED_IN or frame.f_code in HANDS_OVER:
+        code = frame.f_code
+        if code.co_name in DROPPED_IN or code.co_filename in CALLED_BACK or code in HANDS_OVER:
             return True
         frame = frame.f_back
     return False
@@ -112,24 +121,7 @@ def _array_of_constant_class(kind: Any, value: Any, context: Any) -> Any:
         del api.serialize_object, api.unserialize
 
 
-@contextmanager
-def _interrupts_afterwards() -> Iterator[None]:
-    """Interrupts of the main thread come at the end of the block."""
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield
-        return
-    met: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, _frame: met.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-        for number in met[:1]:
-            signal.raise_signal(number)
-
-
-with _interrupts_afterwards():
+with interrupts_afterwards():
     cpu_target.typing_context.refresh()
     cpu_target.target_context.refresh()
 INTERRUPTS = _Interrupts()

@@ -9,6 +9,8 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
+import weakref
 from pathlib import Path
 
 import pytest
@@ -88,6 +90,61 @@ def test_one_as_a_lock_is_taken_or_left_changes_nothing_for_the_next(kind, statu
     assert signal.getsignal(signal.SIGINT) is before
     assert INTERRUPTS._depth == 0
     assert numba.njit(lambda x: 2 * x)(1.0) == 2.0
+
+
+class Interrupting:
+    """A key that is looked up with an interrupt, as when the value of a weak dictionary goes."""
+
+    is_armed = False
+
+    def __hash__(self):
+        if self.is_armed:
+            self.is_armed = False
+            signal.raise_signal(signal.SIGINT)
+        return 0
+
+
+class Value:
+    """Something that a weak reference can be of."""
+
+
+def test_one_in_the_callback_of_a_weak_reference_comes_after_it():
+    """There Python drops it as well, and an attack on a network went on to its limit."""
+    key, value, weak = Interrupting(), Value(), weakref.WeakValueDictionary()
+    weak[key] = value
+    key.is_armed = True
+    with pytest.raises(KeyboardInterrupt):  # noqa: PT012  (it comes some time later)
+        with event.trigger_event("numba:compiler_lock"):
+            del value
+        time.sleep(60)
+    assert not key.is_armed
+    assert not weak
+
+
+IMPORTED_AGAIN = """
+import signal, sys
+from importlib.abc import MetaPathFinder
+
+class Interrupts(MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == sys.argv[1]:
+            sys.meta_path.remove(self)
+            signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupts())
+try:
+    from ratt_opt.compiling import numba
+except KeyboardInterrupt:
+    from ratt_opt.compiling import numba
+    print(numba.njit(lambda x: 2 * x)(1))
+"""
+
+
+@pytest.mark.parametrize("module", ["numba.core.types", "numba.core.typing", "numba.np.ufunc", "llvmlite.binding"])
+def test_one_while_the_compiler_is_imported_leaves_one_that_works(module):
+    """Half imported it could not be imported again: every later search of the process ended in an AttributeError."""
+    done = subprocess.run([sys.executable, "-c", IMPORTED_AGAIN, module], capture_output=True, text=True, check=False)
+    assert done.stdout == "2\n", done.stderr
 
 
 RETURNS_TWO = """
@@ -214,7 +271,7 @@ def package(tmp_path: Path) -> Path:
     """A package of our name with our rules and loops of its own."""
     folder = tmp_path / "ratt_opt"
     folder.mkdir()
-    for name in ("_kept_code.py", "compiling.py"):
+    for name in ("_interrupts.py", "_kept_code.py", "compiling.py"):
         shutil.copy(Path(ratt_opt.__file__).parent / name, folder)
     (folder / "__init__.py").touch()
     (folder / "inner.py").write_text(INNER)
