@@ -54,23 +54,25 @@ def cheap_groups(groups: Groups) -> Iterator[int]:
         while stack and not tied[first] & below:
             tick()
             inside, outside, reach, lost = stack.pop()
-            if (inside & counted).bit_count() - room > groups.most or lost > alpha_c:
+            if (inside & counted).bit_count() - room > groups.most:
                 continue
-            most = (-1, 0, 0, 0)
-            least = lost
-            for i in robots_of(reach & ~inside & ~outside):
+            least, most, pick, left = lost, -1, 0, reach & ~inside & ~outside
+            while left and least <= alpha_c:
+                i = left.bit_length() - 1
+                left ^= 1 << i
                 stays, joins = (near[i] & inside).bit_count(), (near[i] & outside).bit_count()
-                least += min(stays, joins)
-                most = max(most, (stays + joins, i, stays, joins))
-            _, pick, stays, joins = most
+                least += stays if stays < joins else joins
+                if stays + joins > most:
+                    most, pick = stays + joins, i
             if least > alpha_c:
                 continue
-            if not stays:  # no robot is beside it
+            if most < 0:  # no robot is beside it
                 paid = sum(groups.robot[i] for i in robots_of(inside)) + groups.group
                 if groups.half * lost - paid <= groups.limit:
                     yield inside
                 continue
-            if not tied[pick] & inside:
+            stays, joins = (near[pick] & inside).bit_count(), (near[pick] & outside).bit_count()
+            if lost + stays <= alpha_c and not tied[pick] & inside:
                 stack.append((inside, outside | 1 << pick, reach, lost + stays))
-            if not tied[pick] & outside:
+            if lost + joins <= alpha_c and not tied[pick] & outside:
                 stack.append((inside | 1 << pick, outside, reach | near[pick], lost + joins))
