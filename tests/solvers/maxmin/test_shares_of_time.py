@@ -8,7 +8,7 @@ from ratt_opt import Problem, random_scenario, ratt, solve_maxmin
 from ratt_opt.attackers import exact
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin.plans.adversary import QUICK_SHARE
+from ratt_opt.solvers.maxmin.plans.adversary import QUICK_SHARE, LastingAttacks
 from ratt_opt.solvers.maxmin.plans.incumbent import IMPROVED_SHARE, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
@@ -79,3 +79,16 @@ def test_what_is_known_at_once_takes_one_attack(criterion: str, monkeypatch: pyt
     assert len(attacked) == 1
     assert found.worst_case is not None
     assert 0 < found.lower <= found.worst_case.upper == problem.team_value(found.elements, found.worst_case.attack)
+
+
+def test_attacks_that_last_are_left_out_where_they_take_long(
+    search: Incumbent, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The 368 groups of one attack took all of ten seconds."""
+    problem, plan = search.problem, search.candidates.first
+    attack = exact.worst_case_attack(problem, plan).attack
+    lasting = LastingAttacks(problem, search.budget)
+    monkeypatch.setattr(Budget, "part", lambda *_: Budget(time_limit=0.0))
+    assert lasting.of(attack) is attack
+    monkeypatch.undo()
+    assert lasting.of(attack) is not attack

@@ -45,7 +45,7 @@ class LastingAttacks:
     def of(self, attack: Attack) -> Attack:
         """An attack with the same largest group, whose other groups, of the same sizes, are weak at their best.
 
-        The attack itself where robots or links differ to the adversary.
+        The attack itself where robots or links differ to the adversary, or there is no time.
         """
         if not self._problem.threat.is_symmetric or self._budget.is_over or self._team is None:
             return attack
@@ -55,7 +55,10 @@ class LastingAttacks:
             return attack
         key = groups[0], sizes
         if key not in self._known:
-            outcome = (groups[0], *self._weakest(groups[0], sizes))
+            others = self._weakest(groups[0], sizes, self._budget.part(QUICK_SHARE))
+            if others is None:
+                return attack
+            outcome = (groups[0], *others)
             self._known[key] = Attack(*realise(self._problem.threat, tuple(sorted(outcome, key=min))))
         return self._known[key]
 
@@ -63,8 +66,11 @@ class LastingAttacks:
     def _team(self) -> PlanarTeam | None:
         return _at_their_best(self._problem)
 
-    def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...]) -> list[frozenset[int]]:
-        """Disjoint groups of these sizes outside ``largest``, each as weak as exchanges find, the larger ones first."""
+    def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...], part: Budget) -> list[frozenset[int]] | None:
+        """Disjoint groups of these sizes outside ``largest``, each as weak as exchanges find, the larger ones first.
+
+        ``None`` where the part of the budget ends before: of a thousand robots there may be hundreds.
+        """
         from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size  # compiles
 
         team = self._team
@@ -72,10 +78,10 @@ class LastingAttacks:
         left = np.array([i for i in range(len(team.single)) if i not in largest])
         groups = []
         for size in sizes:
+            if part.is_over:
+                return None
             among = replace(team, information=team.information[left], single=team.single[left])
-            chosen = (
-                sorted(weak_sets_of_size(among, size, self._budget)[0]) if size > 1 else [int(among.single.argmin())]
-            )
+            chosen = sorted(weak_sets_of_size(among, size, part)[0]) if size > 1 else [int(among.single.argmin())]
             groups.append(frozenset(left[chosen].tolist()))
             left = np.delete(left, chosen)
         return groups
