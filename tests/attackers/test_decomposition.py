@@ -113,7 +113,7 @@ def holds_below(team, family, minorant, robots, inside):
 def test_sets_of_targets_bound_more_than_slopes_and_heavy_robots(name):
     """And no more than the weakest set that pays; goals are reached where they are below that."""
     gains, closed = [], 0
-    for seed in range(8):
+    for seed in range(24):
         team, rng = team_of(name, seed, "ranges")
         prices, sets = rng.normal(size=N_ROBOTS), list(combinations(range(N_ROBOTS), 4))
         paid = np.array([prices[list(one)].sum() for one in sets])
@@ -126,4 +126,4 @@ def test_sets_of_targets_bound_more_than_slopes_and_heavy_robots(name):
         gains.append((ours.bound(4) - plain.bound(4)) / weakest)
         closed += decomposed(family, 0.9 * weakest, Budget()).bound(4) >= 0.9 * weakest
     assert np.median(gains) > (0.02 if name == "logdet" else 0.0)
-    assert closed >= 4
+    assert closed >= 6

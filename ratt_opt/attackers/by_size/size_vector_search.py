@@ -56,7 +56,7 @@ more than 240,000."""
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LISTED_SHARE, LARGEST_SHARE, ALIKE = 0.4, 0.15, 0.8
+LISTED_SHARE, LARGEST_SHARE, NEARLY, ALIKE = 0.4, (0.05, 0.1), 0.02, 0.8
 """Of the time left, for families whose sets can be listed, where these are not all, and for a first search by the
 largest group, before prices of families; and the value of the second best group of an attack, over the best, from which
 prices are asked: below, it is the largest group that decides."""
@@ -132,7 +132,9 @@ class SizeVectorSearch:
         else:
             self._decide_listed(families)
         if not self.bracket.is_closed and is_about_families:
-            self._decide_in_share(LARGEST_SHARE, self._decide_by_largest)
+            self._decide_in_share(LARGEST_SHARE[0], self._decide_by_largest)
+            if self.bracket.upper - self.bracket.lower <= NEARLY * abs(self.bracket.upper):
+                self._decide_in_share(LARGEST_SHARE[1], self._decide_by_largest)
             FamilySearch(self.task, self.team, families, list(self.bounds)).narrow()
         if not self.bracket.is_closed and has_share:
             self._decide_listed(families)

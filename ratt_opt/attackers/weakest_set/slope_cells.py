@@ -8,8 +8,8 @@ where the gradient at ``L`` is a minimiser. What choices ``S`` of ``size`` robot
 
 where ``h`` is concave, a sum of smallest terms. In a simplex of slopes with corners ``C_v`` the right side is therefore
 at least the least ``phi(X) - <C_v, X> + h(C_v)`` over the corners, for any ``X``. Simplices that may contain a gradient
-are divided, the one of the least bound first. Among the ``X`` that are tried is the one that makes all corners alike:
-where all choose the same set, it is that set's information, and the bound is exact.
+are divided, the one of the least bound first, by the best ``X`` (``cell_bound.py``): where all corners choose the same
+set, it is that set's information, and the bound is exact.
 
 Slopes are measured in coordinates in which the mean information is the unit matrix. Gradients there have eigenvalues
 between ``low`` and ``high``: by the strongest choice of all, and by what is chosen already.
@@ -20,36 +20,27 @@ Imported only where a large team is attacked: compiling takes seconds, once per 
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from ratt_opt.attackers.weakest_set.cell_bound import ROUNDING, Corners, as_gradient, cell_bound, clipped_middle
 from ratt_opt.attackers.weakest_set.target_choices import Family, choose
 from ratt_opt.compiling import numba
-from ratt_opt.setfunctions.criteria.compiled import LOG_DET, matrix_of_gradient, target_gradient, target_value
+from ratt_opt.setfunctions.criteria.compiled import LOG_DET, target_gradient
 
 __all__ = ["least_choice"]
 
 RADIAL = 3.0
 """Quotient of the traces of two corners beyond which a simplex is divided between them."""
-MIXED = (0.0, 0.35, 0.7)
-"""Shares of the matrix of the middle slopes in the matrices tried beside it; the rest makes all corners alike."""
+LEAST = 0.01
+"""What the product of two corners' weights counts more than it is, where the edge between them is measured."""
 MARGIN = 1e-7
 """Relative margin of the eigenvalues that gradients may have."""
-ROUNDING = 1e-12
-"""Margin of a bound, relative to the sizes of its terms."""
 HEAVY, SHARE = 4, 0.5
 """Robots of a target with and without which its choices are searched apart, at most, and their share of the mean."""
 SOUND = 1e-7
 """Quotient of the eigenvalues of what is chosen already, in the coordinates, below which nothing is claimed."""
-
-
-class _Corners(NamedTuple):
-    """``white`` (V, 3) : entries of slopes in the coordinates; ``slopes`` (V, 3) in (a, b, c); ``heights`` (V,)."""
-
-    white: Any
-    slopes: Any
-    heights: Any
 
 
 @numba.njit(cache=True)
@@ -67,14 +58,6 @@ def _whitened(axes: Any, matrix: Any) -> Any:
     p, r, s = axes
     a, b, c = matrix
     return p * p * a, p * (r * a + s * b), r * r * a + 2 * r * s * b + s * s * c
-
-
-@numba.njit(cache=True)
-def _as_gradient(axes: Any, white: Any) -> Any:
-    """The matrix of slopes whose entries in the coordinates are ``white``."""
-    p, r, s = axes
-    a, b, c = white
-    return p * p * a + 2 * p * r * b + r * r * c, s * (p * b + r * c), s * s * c
 
 
 @numba.njit(cache=True)
@@ -102,99 +85,16 @@ def _range(family: Any, target: int, axes: Any, mean: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def _clipped(white: Any, low: float) -> Any:
-    """A triple with eigenvalues raised to ``low``, the smaller one before, and the axis that it belongs to."""
-    a, b, c = white
-    middle, radius = (a + c) / 2, np.sqrt(((a - c) / 2) ** 2 + b * b)
-    one, two = max(middle - radius, low), max(middle + radius, low)
-    x, y = ((a - c) / 2 / radius, b / radius) if radius > 0 else (1.0, 0.0)
-    mean, half = (one + two) / 2, (two - one) / 2
-    angle = np.arctan2(y, x) / 2 + np.pi / 2
-    return (mean + half * x, half * y, mean - half * x), middle - radius, (np.cos(angle), np.sin(angle))
-
-
-@numba.njit(cache=True)
-def _is_outside(corners: Any, cell: Any, axis: Any, low: float) -> bool:
-    """Whether slopes of the cell are too small along an axis to be gradients, or in all."""
-    u, v = axis
-    most, largest = -np.inf, -np.inf
-    for k in cell:
-        a, b, c = corners.white[k]
-        most = max(most, a * u * u + 2 * b * u * v + c * v * v)
-        largest = max(largest, a + c)
-    return most < low or largest < 2 * low
-
-
-@numba.njit(cache=True)
-def _bound_with(family: Any, target: int, corners: Any, cell: Any, matrix: Any) -> float:
-    """The bound of a cell with one matrix."""
-    value = target_value(family.code, family.weights[target], family.prior[target], matrix)
-    if value == -np.inf:
-        return -np.inf
-    bound, size = np.inf, 0.0
-    for k in cell:
-        along = 0.0
-        for t in range(3):
-            along += corners.slopes[k, t] * matrix[t]
-            size += abs(corners.slopes[k, t] * matrix[t])
-        bound = min(bound, value - along + corners.heights[k])
-        size += abs(corners.heights[k])
-    return bound - ROUNDING * (abs(value) + size)
-
-
-@numba.njit(cache=True)
-def _levelling(corners: Any, cell: Any) -> Any:
-    """The matrix that makes all corners of a cell alike (Cramer's rule); zeros where there is none."""
-    rows, right, first = np.empty((3, 3)), np.empty(3), cell[0]
-    for r in range(3):
-        right[r] = corners.heights[cell[r + 1]] - corners.heights[first]
-        for t in range(3):
-            rows[r, t] = corners.slopes[cell[r + 1], t] - corners.slopes[first, t]
-    x, y, z = rows[:, 0], rows[:, 1], rows[:, 2]
-    determinant = _triple_product(x, y, z)
-    if determinant == 0:
-        return 0.0, 0.0, 0.0
-    one, two = _triple_product(right, y, z) / determinant, _triple_product(x, right, z) / determinant
-    return one, two, _triple_product(x, y, right) / determinant
-
-
-@numba.njit(cache=True)
-def _triple_product(x: Any, y: Any, z: Any) -> float:
-    return float(
-        x[0] * (y[1] * z[2] - y[2] * z[1]) - y[0] * (x[1] * z[2] - x[2] * z[1]) + z[0] * (x[1] * y[2] - x[2] * y[1])
-    )
-
-
-@numba.njit(cache=True)
-def _bound(family: Any, target: int, corners: Any, cell: Any, setting: Any, enough: float) -> Any:  # noqa: PLR0917
-    """What the choices of gradients in a cell are worth at least, infinite for none; and the middle (3,), clipped."""
-    axes, low = setting
-    a, b, c = 0.0, 0.0, 0.0
-    for k in cell:
-        a, b, c = a + corners.white[k, 0] / 4, b + corners.white[k, 1] / 4, c + corners.white[k, 2] / 4
-    middle, smaller, axis = _clipped((a, b, c), low)
-    if smaller < low and _is_outside(corners, cell, axis, low):
-        return np.inf, middle
-    one = matrix_of_gradient(family.code, family.weights[target], _as_gradient(axes, middle))
-    best = _bound_with(family, target, corners, cell, one)
-    if best < enough:
-        two = _levelling(corners, cell)
-        for share in MIXED:
-            x = two[0] + share * (one[0] - two[0])
-            y = two[1] + share * (one[1] - two[1])
-            z = two[2] + share * (one[2] - two[2])
-            best = max(best, _bound_with(family, target, corners, cell, (x, y, z)))
-    return best, middle
-
-
-@numba.njit(cache=True)
 def _difference(points: Any, one: int, two: int) -> Any:
     return points[one, 0] - points[two, 0], points[one, 1] - points[two, 1], points[one, 2] - points[two, 2]
 
 
 @numba.njit(cache=True)
-def _longest_edge(corners: Any, cell: Any, middle: Any) -> Any:
-    """The two corners of a cell between which it is divided: far apart in size, or from the middle's point of view."""
+def _longest_edge(corners: Any, cell: Any, middle: Any, weights: Any) -> Any:
+    """The two corners of a cell between which it is divided: far apart in size, or from the middle's point of view.
+
+    What a bound misses between two corners grows with the product of their weights (4,).
+    """
     a, b, c = middle
     determinant = a * c - b * b
     p, q, r = c / determinant, -b / determinant, a / determinant
@@ -209,7 +109,7 @@ def _longest_edge(corners: Any, cell: Any, middle: Any) -> Any:
         for y in range(x):
             d, e, f = _difference(corners.white, cell[x], cell[y])
             first, second, third, fourth = p * d + q * e, p * e + q * f, q * d + r * e, q * e + r * f
-            length = first * first + 2 * second * third + fourth * fourth
+            length = (first * first + 2 * second * third + fourth * fourth) * (weights[x] * weights[y] + LEAST)
             if length > longest:
                 longest, ends = length, (x, y)
     return (x0, x1) if large > RADIAL * small else ends
@@ -223,7 +123,7 @@ def _add_corner(  # noqa: PLR0917
 
     ``slopes`` : becomes the gradient at that set where it is worth less than ``best``
     """
-    a, b, c = _as_gradient(axes, (corners.white[k, 0], corners.white[k, 1], corners.white[k, 2]))
+    a, b, c = as_gradient(axes, (corners.white[k, 0], corners.white[k, 1], corners.white[k, 2]))
     corners.slopes[k, 0], corners.slopes[k, 1], corners.slopes[k, 2] = a, 2 * b, c
     corners.heights[k], value = choose(family, 0, shares, corners.slopes[k], work)
     # Sums of F terms: the height is rounded.
@@ -246,7 +146,7 @@ def _search_cells(family: Any, shares: Any, slopes: Any, known: float, tolerance
     low, high = _range(family, 0, axes, mean)
     if low < 0:
         return -np.inf, best
-    corners = _Corners(np.empty((most + 4, 3)), np.empty((most + 4, 3)), np.empty(most + 4))
+    corners = Corners(np.empty((most + 4, 3)), np.empty((most + 4, 3)), np.empty(most + 4))
     # Matrices of trace t without negative eigenvalues are a disk, and in the triangle around it.
     corners.white[0] = 0.0
     for k in range(1, 4):
@@ -254,15 +154,15 @@ def _search_cells(family: Any, shares: Any, slopes: Any, known: float, tolerance
         corners.white[k, 0], corners.white[k, 1], corners.white[k, 2] = high * (1 + x), high * y, high * (1 - x)
     for k in range(4):
         best = min(best, _add_corner(family, shares, corners, k, axes, work, best, slopes))
-    cells = np.empty((2 * most + 2, 4), dtype=np.int64)
+    cells, weights = np.empty((2 * most + 2, 4), dtype=np.int64), np.empty((2 * most + 2, 4))
     cells[0] = np.arange(4)
-    bound, _ = _bound(family, 0, corners, cells[0], (axes, low), np.inf)
+    bound = cell_bound(family, corners, cells[0], (axes, low), weights[0], np.inf)
     waiting, n_corners, n_cells = [(bound, 0)], 4, 1
     while n_corners < most + 4 and len(waiting) > 0 and waiting[0][0] < best - tolerance:
         bound, one = heappop(waiting)
         cell = cells[one]
-        _, middle = _bound(family, 0, corners, cell, (axes, low), -np.inf)
-        x, y = _longest_edge(corners, cell, middle)
+        middle, _, _ = clipped_middle(corners, cell, low)
+        x, y = _longest_edge(corners, cell, middle, weights[one])
         corners.white[n_corners] = (corners.white[cell[x]] + corners.white[cell[y]]) / 2
         best = min(best, _add_corner(family, shares, corners, n_corners, axes, work, best, slopes))
         cells[n_cells] = cell
@@ -270,7 +170,7 @@ def _search_cells(family: Any, shares: Any, slopes: Any, known: float, tolerance
         cells[one, y] = n_corners
         n_corners += 1
         for child in (one, n_cells):
-            mine, _ = _bound(family, 0, corners, cells[child], (axes, low), best - tolerance)
+            mine = cell_bound(family, corners, cells[child], (axes, low), weights[child], best - tolerance)
             if mine < np.inf:
                 heappush(waiting, (max(bound, mine), child))
         n_cells += 1

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attackers.weakest_set.selection import move_least_first
 from ratt_opt.attackers.weakest_set.smoothed_dual import soft_level
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import target_gradient, target_value
@@ -69,7 +70,7 @@ class Ascent(NamedTuple):
 @numba.njit(cache=True)
 def pick(scores: Any, size: int, chosen: Any) -> float:
     """Choose the ``size`` smallest scores, the first of equals; their sum."""
-    last = np.partition(scores, size - 1)[size - 1] if size > 0 else -np.inf
+    last = move_least_first(scores.copy(), size) if size > 0 else -np.inf
     count, total = 0, 0.0
     for i in range(len(scores)):
         chosen[i] = scores[i] < last

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attackers.weakest_set.selection import move_least_first
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
@@ -99,6 +100,8 @@ def mean_of_least(pairs: Any, prices: Any, n_robots: int, size: int, least: Any)
             if y != x:
                 row[count] = pairs[x, y] - 0.5 * size * prices[y]
                 count += 1
-        others = np.partition(row, size - 2)[: size - 1].sum() / (size - 1)
-        least[x] = others - 0.5 * size * prices[x]
-    return float(np.partition(least[:n_robots], size - 1)[:size].sum() / size)
+        move_least_first(row, size - 1)
+        least[x] = row[: size - 1].sum() / (size - 1) - 0.5 * size * prices[x]
+    outer = least[:n_robots].copy()
+    move_least_first(outer, size)
+    return float(outer[:size].sum() / size)

@@ -30,6 +30,7 @@ from ratt_opt.attackers.by_size.family_prices.axis_nodes import (
     halve_arc,
     join,
 )
+from ratt_opt.attackers.weakest_set.selection import move_least_first
 from ratt_opt.compiling import numba
 
 __all__ = ["search_axes"]
@@ -102,12 +103,14 @@ def _slack(question: Any, nodes: Any, work: Any, count: int, multiplier: float) 
     for c in range(3):
         for x in range(count):
             work.row[x] = work.heights[c, x] - multiplier * question.prices[work.robots[x]]
-        chosen = np.partition(work.row[:count], left - 1)[:left]
+        chosen = work.row[:count].copy()
+        last = move_least_first(chosen, left)
+        chosen = chosen[:left]
         margin = ROUNDING * (np.abs(chosen).sum() + abs(work.inside[c]) + multiplier * abs(asked) + nodes.cap)
         work.bounds[c] = chosen.sum() + work.inside[c] + multiplier * asked - nodes.cap - margin
         if work.bounds[c] < least:
             least = work.bounds[c]
-            slope = asked - _price_of_least(question, work, count, left, chosen[left - 1])
+            slope = asked - _price_of_least(question, work, count, left, last)
     return least, slope
 
 

@@ -71,31 +71,31 @@ class PayingSets:
             return [bound] * len(self._views)
         return [weakest_bound(view, size) for view in self._views]
 
-    def of_size(self, question: Question, size: int, budget: Budget, nodes: int) -> Sets:
+    def of_size(self, question: Question, size: int, budget: Budget, nodes: int, *, goes_on: bool = False) -> Sets:
         """Search the sets of a size of :meth:`sizes` for at most so many nodes of the budget.
+
+        ``goes_on`` : where the last search of this size ended, of the same question; not along axes
 
         Raises
         ------
         OutOfBudget : the time is up, or no node is left.
         """
         found: list[BoolArray] = []
-        search = self._search_axes if self.is_by_axis else self._search_tree
+        if not self.is_by_axis:
+            (view,) = self._views
+            tree = self._trees.setdefault(size, PayingTree(self._team, view, size))
+            if not goes_on:
+                tree.ask(question)
+            return Sets(found, tree.search(budget, nodes, found))
         for view, floor in zip(self._views, self._floors[size], strict=True):
             if floor >= question.threshold:
                 continue
             before = budget.nodes
-            lower = search(view, question, size, budget, nodes, found)
+            lower = self._search_axes(view, question, size, budget, nodes, found)
             if lower < np.inf or len(found) >= ENOUGH:
                 return Sets(found, lower if len(self._views) == 1 else -np.inf)
             nodes -= budget.nodes - before
         return Sets(found, np.inf)
-
-    def _search_tree(  # noqa: PLR0917
-        self, view: View, question: Question, size: int, budget: Budget, nodes: int, found: list[BoolArray]
-    ) -> float:
-        """Search all targets at once."""
-        tree = self._trees.setdefault(size, PayingTree(self._team, view, size))
-        return tree.search(question, budget, nodes, found)
 
     def _search_axes(  # noqa: PLR0917
         self, view: View, question: Question, size: int, budget: Budget, nodes: int, found: list[BoolArray]

@@ -43,6 +43,8 @@ FIRST_TRIED, SMALL, SHARPER = 500, 13, (0.15, 0.5)
 """Nodes that pairs have for a question before a minorant of all sets is made, and the share of what pairs lack that it
 may lack at most to be worth its time: for sets of up to so many robots, and for larger ones. At 60 robots, log-det,
 60 s, (0, 1454), groups of about ten, leaves 1.3 % with the first and 3.0 % with the second, (8, 999) 2.3 and 0.8 %."""
+FAR = 0.08
+"""Share of the threshold that pairs may lack to be asked before minorants."""
 TRIED, FEWEST, MOST, MORE, LESS = 30, 8, 3_000, 1.5, 0.7
 """Nodes of pairs before further minorants: at first, at least, at most; their growth where they end a node, and where
 not."""
@@ -60,38 +62,67 @@ class PayingTree:
         self._root: Decomposition | None = None
         self._has_sharper_minorants = False
         self._tried, self._serial = TRIED, 0
+        self._question: Question | None = None
+        self._pairs: PairNodes | None = None
+        self._waiting: list[SetNode[Decomposition]] | None = None
+        """Nodes left, the one of the least bound first; ``None`` before there is a minorant of all sets."""
 
-    def search(self, question: Question, budget: Budget, nodes: int, found: list[BoolArray]) -> float:
-        """Search until all is decided, enough is found, or the nodes, and a minorant's more, are spent.
+    def ask(self, question: Question) -> None:
+        """Ask another question; what is left of the last one is forgotten."""
+        self._question, self._pairs, self._waiting = question, None, None
 
-        Returns, with nothing found, what no set that is left undecided is worth less than: infinite where none is.
+    def search(self, budget: Budget, nodes: int, found: list[BoolArray]) -> float:
+        """Go on until all is decided, enough is found, or the nodes, and a minorant's more, are spent.
+
+        Returns what no set is worth less than that is left undecided: infinite where none is. Not to be gone on with
+        where sets were found: others like them were left out.
 
         Raises
         ------
-        OutOfBudget : the time is up, or no node is left.
+        OutOfBudget : the time is up, or no node is left; the question is to be asked anew.
         """
-        run = _Run(question, budget, budget.nodes + max(nodes, 1), found)
+        assert self._question is not None
+        run = _Run(self._question, budget, budget.nodes + max(nodes, 1), found)
         root: SetNode[Decomposition] = SetNode(-np.inf, 0, frozenset(), frozenset(), self._root)
-        pairs = self._pairs(root, run)
-        if not self._has_sharper_minorants:
-            if self._is_ended_by_pairs(pairs, run, FIRST_TRIED):
+        if self._pairs is None:
+            self._pairs = self._pairs_of(root, run.question)
+            if self._is_ended_soon(run):
+                self._waiting = []
                 return np.inf
             if run.is_over:
                 return -np.inf
-        waiting = self._divided(root, run)
-        if waiting and self._size > 2:
-            lacking = slack_of_pairs(self._view, question, self._pairs(root, run))
-            self._has_sharper_minorants = waiting[0].bound - question.threshold >= SHARPER[self._size > SMALL] * lacking
-            if not self._has_sharper_minorants:
-                return np.inf if self._is_ended_by_pairs(pairs, run, nodes) else waiting[0].bound
+        if self._waiting is None:
+            self._waiting = self._divided(root, run)
+            if self._waiting and self._size > 2:
+                slack, lacking = self._waiting[0].bound - run.question.threshold, self._lacking(run.question)
+                self._has_sharper_minorants = slack >= SHARPER[self._size > SMALL] * lacking
+        if self._has_sharper_minorants or self._size <= 2:
+            self._search_nodes(self._waiting, run)
+        elif self._waiting and self._is_ended_by_pairs(self._pairs, run, nodes):
+            self._waiting = []
+        return self._waiting[0].bound if self._waiting else np.inf
+
+    def _is_ended_soon(self, run: _Run) -> bool:
+        """Whether pairs decide the question, which are not asked where they lack far too much."""
+        if self._has_sharper_minorants or (
+            self._size > 2 and self._lacking(run.question) < -run.question.threshold * FAR
+        ):
+            return False
+        assert self._pairs is not None
+        return self._is_ended_by_pairs(self._pairs, run, FIRST_TRIED)
+
+    def _lacking(self, question: Question) -> float:
+        """By how much pairs of all robots exceed the threshold, if they do."""
+        root: SetNode[Decomposition] = SetNode(-np.inf, 0, frozenset(), frozenset(), self._root)
+        return float(slack_of_pairs(self._view, question, self._pairs_of(root, question)))
+
+    def _search_nodes(self, waiting: list[SetNode[Decomposition]], run: _Run) -> None:
+        """Decide or divide one node after the other."""
         while waiting and not run.is_over:
             node = heapq.heappop(waiting)
             if not self._is_ended(node, run):
-                if run.is_over:
-                    return node.bound
-                for child in self._divided(node, run):
+                for child in [node] if run.is_over else self._divided(node, run):
                     heapq.heappush(waiting, child)
-        return waiting[0].bound if waiting else np.inf
 
     def _is_ended(self, node: SetNode[Decomposition], run: _Run) -> bool:
         """Leave a node to the pairs for a while."""
@@ -101,18 +132,16 @@ class PayingTree:
         if self._size + len(node.outside) == len(self._view.information):
             self._keep(frozenset(range(len(self._view.information))) - node.outside, run)
             return True
-        is_ended = self._is_ended_by_pairs(self._pairs(node, run), run, self._tried)
+        is_ended = self._is_ended_by_pairs(self._pairs_of(node, run.question), run, self._tried)
         self._tried = int(np.clip(self._tried * (MORE if is_ended else LESS), FEWEST, MOST))
         return is_ended
 
-    def _pairs(self, node: SetNode[Decomposition], run: _Run) -> PairNodes:
+    def _pairs_of(self, node: SetNode[Decomposition], question: Question) -> PairNodes:
         """Where pairs begin with a node."""
         inside, outside = (np.array(sorted(robots), dtype=np.int64) for robots in (node.inside, node.outside))
         left = self._size - len(inside)
         known = 0.0 if node.minorant is None else node.minorant.multiplier
-        return PairNodes.of(
-            self._view, run.question, left, (inside, outside), known or run.question.threshold / left**2
-        )
+        return PairNodes.of(self._view, question, left, (inside, outside), known or question.threshold / left**2)
 
     def _is_ended_by_pairs(self, pairs: PairNodes, run: _Run, nodes: int) -> bool:
         """Whether pairs come to an end within so many nodes."""

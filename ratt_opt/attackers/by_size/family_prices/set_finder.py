@@ -22,6 +22,8 @@ __all__ = ["SetFinder"]
 
 OF_SIZE = 3
 """How many times as many moves a set of one size has as one around a robot."""
+TURN = 800
+"""Nodes of a size before that of which least is proved has its turn: pairs of few robots, or some four minorants."""
 SEED = 0
 
 
@@ -35,7 +37,8 @@ class SetFinder:
         self._team, self._n_seeing, self._sets = team, n_seeing, PayingSets(team)
         self.is_quick = self._sets.is_by_axis
         self._likely: set[int] = set()
-        self._hard: set[int] = set()
+        self.proved = -np.inf
+        """No set that pays is worth less, of the last question that was to be decided."""
         self._views, self._rng = views(team), np.random.default_rng(SEED)
         self._weak: dict[int, tuple[BoolArray, float]] = {}
 
@@ -71,13 +74,10 @@ class SetFinder:
             self._weak[size] = np.isin(np.arange(len(self._team.single)), robots), self._team.value(robots)
         return self._weak[size]
 
-    def searched(
-        self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget, *, is_brief: bool = False
-    ) -> Sets:
+    def searched(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
         """Sets that pay, or what those are worth at least that may be left; each size has so many nodes.
 
-        ``is_brief`` : sizes of which the last search found some come first, those that it left open last, and where
-        some are found the others are not searched; else the first size left open ends the search
+        The first size left open ends the search.
 
         Raises
         ------
@@ -85,21 +85,54 @@ class SetFinder:
         """
         found: list[BoolArray] = []
         lower = np.inf
-        possible = [size for size in self._sets.sizes(threshold, self._n_seeing) if np.isfinite(prices.limits[size])]
-        if is_brief:
-            possible.sort(key=lambda size: (size not in self._likely, size in self._hard, size))
-        likely, self._likely, self._hard = self._likely, set(), self._hard if is_brief else set()
-        for size in possible:
-            if is_brief and found and size not in likely:
-                return Sets(found, -np.inf)
-            question = Question(threshold, prices.robots, float(prices.limits[size]))
-            sets = self._sets.of_size(question, size, budget, nodes)
+        for size in self._possible(threshold, prices):
+            sets = self._sets.of_size(_question(threshold, prices, size), size, budget, nodes)
             found.extend(sets.found)
             lower = min(lower, sets.lower)
-            if sets.found:
-                self._likely.add(size)
-            elif is_brief:
-                (self._hard.discard if sets.is_complete else self._hard.add)(size)
-            elif not sets.is_complete:
+            if not (sets.found or sets.is_complete):
                 break
         return Sets(found, lower)
+
+    def decided(self, threshold: float, prices: FamilyPrices, nodes: int, budget: Budget) -> Sets:
+        """The same where searches take long, the size first, each time, of which least is proved.
+
+        Sizes of which the last search found some come first, and where some are found the others are not searched.
+        :attr:`proved` stays valid however this ends.
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or no node is left.
+        """
+        self.proved = -np.inf
+        found: list[BoolArray] = []
+        possible = self._possible(threshold, prices)
+        possible.sort(key=lambda size: (size not in self._likely, size))
+        likely, self._likely = self._likely, set()
+        lower: dict[int, float] = {}
+        for size in possible:
+            if found and size not in likely:
+                return Sets(found, -np.inf)
+            sets = self._sets.of_size(_question(threshold, prices, size), size, budget, TURN)
+            lower[size] = sets.lower
+            if sets.found:
+                self._likely.add(size)
+                found.extend(sets.found)
+        spent = dict.fromkeys(lower, TURN)
+        while lower and not found:
+            self.proved = min(lower.values())
+            size = min(lower, key=lower.__getitem__)
+            if lower[size] == np.inf or spent[size] >= nodes:
+                break
+            sets = self._sets.of_size(_question(threshold, prices, size), size, budget, TURN, goes_on=True)
+            lower[size], spent[size], found = sets.lower, spent[size] + TURN, sets.found
+            if found:
+                self._likely.add(size)
+        return Sets(found, min(lower.values(), default=np.inf))
+
+    def _possible(self, threshold: float, prices: FamilyPrices) -> list[int]:
+        """Sizes that a group may have of which sets may be worth less than the threshold."""
+        return [size for size in self._sets.sizes(threshold, self._n_seeing) if np.isfinite(prices.limits[size])]
+
+
+def _question(threshold: float, prices: FamilyPrices, size: int) -> Question:
+    return Question(threshold, prices.robots, float(prices.limits[size]))

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices
+    from ratt_opt.attackers.by_size.family_prices.paying_sets import Sets
     from ratt_opt.attackers.task import AttackBracket
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
@@ -34,11 +35,14 @@ LARGEST = 200
 """Robots up to which a bound on pairs of all of them takes some milliseconds."""
 NEAR = 2e-4
 """Relative width between what is refuted and what is out of reach, or the attack, not worth another threshold."""
-FIRST_EFFORT, QUICK_EFFORT, HARDER = 8_000, 300_000, 4
+FIRST_EFFORT, QUICK_EFFORT, HARDER = 40_000, 300_000, 4
 """Nodes of a size before a threshold is left open, some milliseconds each or (quick ones) microseconds, and their
 growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
+STEP, QUICK_STEP = 4.0, 2.0
+"""What is left to the lowest threshold not refuted is divided by it for the next one. Where searches take long they are
+of the sizes of which least is proved first, so that one that does not end has proved most of what it could."""
 EASY = 0.95
 """Share of the time that a threshold refuted soon leaves of what it had."""
 FIRST_MOVES, LONGER, MOST_MOVES = 3_000, 2, 24_000
@@ -78,6 +82,7 @@ class ThresholdBound:
         sizes = None if vectors is None else SizeVectors(self._n_robots, vectors)
         self._finder, self._program = SetFinder(team, self._n_robots - threat.n_blinded), FamilyProgram(threat, sizes)
         self._moves, self._effort = FIRST_MOVES, QUICK_EFFORT if self._finder.is_quick else FIRST_EFFORT
+        self._step = QUICK_STEP if self._finder.is_quick else STEP
         self._beyond, self._unknown = np.inf, np.inf
         """The lowest thresholds out of reach, and left open with this effort."""
         self.has_left_open = False
@@ -126,7 +131,7 @@ class ThresholdBound:
         if room <= near:
             return bracket.goal
         high = min(top, self._unknown)
-        return float(high - (high - bracket.lower) / 2 ** (1 + self._easy))
+        return float(high - (high - bracket.lower) / (self._step * 2**self._easy))
 
     def _decide(self, threshold: float, aim: float, bracket: AttackBracket, budget: Budget) -> _Verdict:
         """Add sets that pay the prices of ``aim`` until there is none below the threshold, or they claim nothing.
@@ -150,16 +155,25 @@ class ThresholdBound:
                 if found:
                     continue
             began = budget.elapsed
-            asked, is_brief = prices.lowered(CLAIM / 2), not self._finder.is_quick
-            sets = self._finder.searched(threshold, asked, self._effort, budget, is_brief=is_brief)
+            sets = self._search(threshold, prices.lowered(CLAIM / 2), bracket, budget)
             if sets.is_complete:
                 return _Verdict.REFUTED
             if not (found := self._learn_all(sets.found)):
-                if not sets.found:
-                    bracket.raise_lower(min(sets.lower, threshold))
                 return _Verdict.OPEN
             rate, is_annealing = found / max(budget.elapsed - began, 1e-9), True
             self._moves = min(LONGER * self._moves, MOST_MOVES)
+
+    def _search(self, threshold: float, prices: FamilyPrices, bracket: AttackBracket, budget: Budget) -> Sets:
+        """Sets that pay; however that ends, the bracket has what all are worth at least that may."""
+        if self._finder.is_quick:
+            sets = self._finder.searched(threshold, prices, self._effort, budget)
+            if not sets.found:
+                bracket.raise_lower(min(sets.lower, threshold))
+            return sets
+        try:
+            return self._finder.decided(threshold, prices, self._effort, budget)
+        finally:
+            bracket.raise_lower(min(self._finder.proved, threshold))
 
     def _anneal(self, threshold: float, prices: FamilyPrices, budget: Budget) -> int:
         """Sets that pay, with each robot: how many are new."""
