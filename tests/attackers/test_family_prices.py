@@ -242,6 +242,26 @@ def test_prices_of_sizes_know_that_no_vector_is_a_mixture():
     assert claims[1] > 0.1
 
 
+def test_a_program_is_divided_where_a_relaxed_attack_mixes_vectors():
+    """Both parts know the same sets, and claim at least as much; together they have all vectors."""
+    divided = 0
+    for problem in problems("logdet", 16):
+        vectors, team = vectors_of(problem), PlanarTeam.of(problem.objective, EVERYONE)
+        program = FamilyProgram(problem.threat, SizeVectors(N_ROBOTS, vectors))
+        for size in range(1, N_ROBOTS + 1):
+            for one in combinations(range(N_ROBOTS), size):
+                program.add(np.isin(EVERYONE, one), team.value(one))
+        worst = worst_case_attack(problem, EVERYONE).upper
+        for share in (0.95, 0.97, 0.99, 1.01):
+            whole = program.solve(share * worst)
+            parts = program.divided()
+            claims = [part.solve(share * worst).claim for part in parts]
+            divided += len(parts) == 2
+            assert min(claims, default=whole.claim) >= whole.claim - 1e-6
+            assert share < 1 or min(claims, default=whole.claim) <= 1e-6
+    assert divided > 0
+
+
 def test_vectors_of_sizes_cost_what_their_groups_do():
     vectors = [(4, 2, 1), (3, 3, 1), (5, 1, 1)]
     sizes, rng = SizeVectors(7, vectors), np.random.default_rng(0)
@@ -251,6 +271,8 @@ def test_vectors_of_sizes_cost_what_their_groups_do():
         assert costs[k] == pytest.approx(largest[first] + other[others].sum())
         assert sizes.vector(k)[0] == first
         assert np.repeat(np.arange(8), sizes.vector(k)[1].astype(int)).tolist() == sorted(others)
+    first, others = sizes.divided(1)
+    assert [*first.costs(largest, other), *others.costs(largest, other)] == pytest.approx(costs)
     roles = {size: sizes.roles(size) for size in range(8)}
     assert roles == {0: (), 1: (False,), 2: (False,), 3: (False, True), 4: (True,), 5: (True,), 6: (), 7: ()}
 
@@ -283,6 +305,23 @@ def test_refuted_thresholds_are_below_the_worst_case(name):
     assert min(near[False]) > 0.5
     assert np.mean(near[True]) >= np.mean(near[False])
     assert max(near[True]) > 1 - 2 * threshold_bound.NEAR
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_thresholds_refuted_in_parts_are_below_the_worst_case(name, monkeypatch):
+    """What claims less than twenty links counts as out of reach, and is divided."""
+    monkeypatch.setattr(threshold_bound, "CLAIM", 20.0)
+    parts, plain = [], FamilyProgram.divided
+
+    def divided(self, seconds):
+        parts.append(plain(self, seconds))
+        return parts[-1]
+
+    monkeypatch.setattr(FamilyProgram, "divided", divided)
+    for problem in problems(name, 20):
+        worst = worst_case_attack(problem, EVERYONE).upper
+        assert bounded(problem, Budget(max_nodes=20_000), vectors_of(problem)) <= worst + 1e-9 * abs(worst)
+    assert any(parts)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)

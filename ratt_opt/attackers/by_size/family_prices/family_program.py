@@ -42,6 +42,8 @@ WIDTH = 50.0
 those of links. With 5 links prices claim less as soon; without a bound those of unknown sizes are beyond all sense."""
 ROUNDS, ADDED = 100, 20
 """Times that vectors of sizes are added before prices are taken as they are, and how many each time."""
+MIXED = 1e-3
+"""Share of a relaxed attack that a vector has to have to count."""
 SLACK = 1e-7
 """Links by which a vector may cost less than the program says before it is added."""
 
@@ -123,6 +125,28 @@ class FamilyProgram:
         for members, value in self._sets.values():
             after.add(members, value)
         return after
+
+    def divided(self, seconds: float = np.inf) -> tuple[FamilyProgram, ...]:
+        """The program for some vectors, and for the others, where the last relaxed attack mixes both about equally.
+
+        Empty where it mixes none: then it is of whole groups' shares.
+        """
+        if self._vectors is None or self._program is None:
+            return ()
+        duals, weights = np.abs(self._program.solve(seconds).duals[self._n_robots :]), dict[int, float]()
+        of_vectors = [dual for dual, choice in zip(duals, self._rows, strict=False) if choice is None]
+        for which, weight in zip(self._vector_rows, of_vectors, strict=False):
+            weights[which] = float(weight)
+        mixed = sorted(which for which, weight in weights.items() if weight > MIXED * sum(weights.values()))
+        if len(mixed) < 2:
+            return ()
+        rising = np.cumsum([weights[which] for which in mixed])
+        cut = min(int(np.searchsorted(rising, rising[-1] / 2)), len(mixed) - 2)
+        parts = [FamilyProgram(self._threat, vectors) for vectors in self._vectors.divided(mixed[cut] + 1)]
+        for part in parts:
+            for members, value in self._sets.values():
+                part.add(members, value)
+        return tuple(parts)
 
     def add(self, members: BoolArray, value: float) -> bool:
         """Add a set (N,) of that value; whether it is new, and may be a group beside those chosen."""

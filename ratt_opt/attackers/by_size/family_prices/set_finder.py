@@ -22,8 +22,8 @@ __all__ = ["SetFinder"]
 
 OF_SIZE = 3
 """How many times as many moves a set of one size has as one around a robot."""
-TURN = 800
-"""Nodes of a size before that of which least is proved has its turn: pairs of few robots, or some four minorants."""
+TURN = 3_000
+"""Nodes of a size before that of which least is proved has its turn: pairs of few robots, or fifteen minorants."""
 SEED = 0
 
 

@@ -26,7 +26,7 @@ class SizeVectors:
     """
 
     def __init__(self, n_robots: int, vectors: Sequence[Sizes]) -> None:
-        self._n_robots = n_robots
+        self._n_robots, self._vectors = n_robots, vectors
         self._first: IntArray = np.array([sizes[0] for sizes in vectors], dtype=np.int64)
         # A group of nobody, of which there is none, so that no vector is without other groups.
         others = [{0: 0, **Counter(sizes[1:])} for sizes in vectors]
@@ -42,6 +42,10 @@ class SizeVectors:
         own, others = slice(*self._starts[which : which + 2]), np.zeros(self._n_robots + 1)
         others[self._sizes[own]] = self._counts[own]
         return int(self._first[which]), others
+
+    def divided(self, first: int) -> tuple[SizeVectors, SizeVectors]:
+        """The ``first`` vectors, and the others: at least one each."""
+        return SizeVectors(self._n_robots, self._vectors[:first]), SizeVectors(self._n_robots, self._vectors[first:])
 
     def roles(self, size: int) -> tuple[bool, ...]:
         """Whether a group of that size may be the largest (true), and another one (false)."""
