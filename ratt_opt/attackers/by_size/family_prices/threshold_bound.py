@@ -40,9 +40,11 @@ FIRST_EFFORT, QUICK_EFFORT, HARDER = 40_000, 300_000, 4
 growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
-STEP, QUICK_STEP = 4.0, 2.0
-"""What is left to the lowest threshold not refuted is divided by it for the next one. Where searches take long they are
-of the sizes of which least is proved first, so that one that does not end has proved most of what it could."""
+STEP, LONG_STEP, WIDE = 2.0, 4.0, 0.02
+"""What is left to the lowest threshold not refuted is divided by it for the next one: the second one where that is more
+than such a share of the attack and searches take long. Those are of the sizes of which least is proved first, so that one
+that does not end has proved most of what it could; at (8, 999), trace, 60 robots, where 1 % is left, long steps left
+0.93 instead of 0.81 % after 60 s."""
 EASY = 0.95
 """Share of the time that a threshold refuted soon leaves of what it had."""
 FIRST_MOVES, LONGER, MOST_MOVES = 3_000, 2, 24_000
@@ -87,7 +89,6 @@ class ThresholdBound:
         self._programs = [FamilyProgram(threat, sizes)]
         """Each for a part of the vectors; a threshold is refuted if it is for each."""
         self._moves, self._effort = FIRST_MOVES, QUICK_EFFORT if self._finder.is_quick else FIRST_EFFORT
-        self._step = QUICK_STEP if self._finder.is_quick else STEP
         self._beyond, self._unknown = np.inf, np.inf
         """The lowest thresholds out of reach, and left open with this effort."""
         self.has_left_open = False
@@ -136,7 +137,8 @@ class ThresholdBound:
         if room <= near:
             return bracket.goal
         high = min(top, self._unknown)
-        return float(high - (high - bracket.lower) / (self._step * 2**self._easy))
+        is_long = not self._finder.is_quick and high - bracket.lower > WIDE * abs(bracket.upper)
+        return float(high - (high - bracket.lower) / ((LONG_STEP if is_long else STEP) * 2**self._easy))
 
     def _decide(self, threshold: float, aim: float, bracket: AttackBracket, budget: Budget) -> _Verdict:
         """Refute a threshold for all vectors, in parts if one relaxed attack mixes them."""
