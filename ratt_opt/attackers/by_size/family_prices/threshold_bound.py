@@ -41,10 +41,10 @@ growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
 STEP, LONG_STEP, WIDE = 2.0, 4.0, 0.02
-"""What is left to the lowest threshold not refuted is divided by it for the next one: the second one where that is more
-than such a share of the attack and searches take long. Those are of the sizes of which least is proved first, so that one
-that does not end has proved most of what it could; at (8, 999), trace, 60 robots, where 1 % is left, long steps left
-0.93 instead of 0.81 % after 60 s."""
+"""What is left to the lowest threshold not refuted is divided by it for the next one: the second one where that is
+more than such a share of the attack and searches take long. Those are of the sizes of which least is proved first, so
+that one that does not end has proved most of what it could; at 60 robots, (8, 999), trace,
+where 1 % is left, long steps left 0.93 instead of 0.81 % after 60 s."""
 EASY = 0.95
 """Share of the time that a threshold refuted soon leaves of what it had."""
 FIRST_MOVES, LONGER, MOST_MOVES = 3_000, 2, 24_000
