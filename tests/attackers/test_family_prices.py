@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from ratt_opt.attackers.by_size import annealed_families, size_vector_search, weak_families
-from ratt_opt.attackers.by_size.family_prices import family_search, paying_tree, threshold_bound
+from ratt_opt.attackers.by_size.family_prices import family_search, paying_tree, set_finder, threshold_bound
 from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_of_size, annealed_sets
-from ratt_opt.attackers.by_size.family_prices.family_program import FamilyProgram
+from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices, FamilyProgram
 from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
+from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.size_vectors import SizeVectors
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound
 from ratt_opt.attackers.exact import worst_case_attack
@@ -150,6 +151,40 @@ def test_sets_left_open_are_worth_what_is_said(name, monkeypatch):
             gone_on += len(turns) > 2
     assert bounds > 3
     assert gone_on > 0
+
+
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_what_is_proved_of_all_sizes_holds_however_a_search_ends(name, monkeypatch):
+    """Of sets that pay prices of robots and sizes, cut short by nodes of a size and by nodes of the budget."""
+    for constant, value in {"FAR": 0.0, "SHARPER": (-np.inf, -np.inf), "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
+        monkeypatch.setattr(paying_tree, constant, value)
+    monkeypatch.setattr(set_finder, "TURN", 60)
+    proved, ends = 0, set()
+    for seed in range(24):
+        team, rng = make_team(name, seed), np.random.default_rng([seed, 3])
+        threshold, robots = float(rng.uniform(0.5, 0.95)) * team.value(EVERYONE), rng.normal(size=N_ROBOTS)
+        sets = [one for size in range(1, N_ROBOTS + 1) for one in combinations(range(N_ROBOTS), size)]
+        paid, values = np.array([robots[list(one)].sum() for one in sets]), np.array([team.value(one) for one in sets])
+        sizes = np.array([len(one) for one in sets])
+        of_size = [paid[(sizes == size) & (values < 0.8 * threshold)] for size in range(N_ROBOTS + 1)]
+        limits = np.array([pays.max(initial=0.0) + 1e-6 for pays in of_size])
+        weakest = values[paid > limits[sizes]].min(initial=np.inf)
+        prices = FamilyPrices(robots=robots, limits=limits, claim=1.0, n_seeing=N_ROBOTS)
+        for most, nodes in ((10**6, 10**6), (10**6, 120), (2_000, 10**6)):
+            finder = SetFinder(team, N_ROBOTS)
+            with suppress(OutOfBudget):
+                found = finder.decided(threshold, prices, nodes, Budget(max_nodes=most))
+                assert all(values[k] < threshold * (1 + 1e-12) for k in places(found.found, sets))
+                assert not (found.is_complete and weakest < threshold * (1 - 1e-12))
+                ends.add(found.is_complete)
+            assert min(finder.proved, threshold) <= weakest + 1e-9
+            proved += np.isfinite(finder.proved) and finder.proved > 0
+    assert proved > 3
+    assert ends == {False, True}
+
+
+def places(found, sets):
+    return [sets.index(tuple(np.flatnonzero(members).tolist())) for members in found]
 
 
 def test_a_goal_out_of_reach_is_asked_once(monkeypatch):

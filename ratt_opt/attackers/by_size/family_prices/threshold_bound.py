@@ -3,7 +3,8 @@
 Thresholds between both ends are asked. For each, sets are added to the program of the prices, most of them annealed,
 until a search finds no more; the threshold is refuted if the prices still claim something (a cutting-plane method for
 a Lagrangian dual: Geoffrion, Mathematical Programming Study 2 (1974)). What claims nothing for the sets known is beyond
-the reach of such prices, whatever else is found.
+the reach of such prices, whatever else is found; where the relaxed attack then mixes vectors of sizes, some of them and
+the others have prices of their own.
 """
 
 from __future__ import annotations
