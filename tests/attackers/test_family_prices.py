@@ -346,6 +346,7 @@ def test_refuted_thresholds_are_below_the_worst_case(name):
 def test_thresholds_refuted_in_parts_are_below_the_worst_case(name, monkeypatch):
     """What claims less than twenty links counts as out of reach, and is divided."""
     monkeypatch.setattr(threshold_bound, "CLAIM", 20.0)
+    monkeypatch.setattr(threshold_bound, "NARROW", np.inf)
     parts, plain = [], FamilyProgram.divided
 
     def divided(self, seconds):
