@@ -12,6 +12,7 @@ from ratt_opt.attackers.weakest_set.minorant import _program, affine_minorant
 from ratt_opt.attackers.weakest_set.outer_polytopes import outer_polytopes
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.attackers.weakest_set.smoothed_dual import Multipliers
+from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES, range_bearing
 
 
@@ -115,6 +116,35 @@ def test_the_ascent_comes_near_the_linear_program(name, seed):
     assert fraction.sum() == pytest.approx(program.size)
     again, _ = program.ascend(reached, best, cold=False)
     assert program.bound(again, program.rest(again)) >= bound
+
+
+class LooksLeft(Budget):
+    """Over once it has been asked so many times."""
+
+    __slots__ = ("looks",)
+
+    @property
+    def is_over(self) -> bool:
+        self.looks -= 1
+        return self.looks < 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_ascent_ends_with_its_budget_and_keeps_what_it_has(seed):
+    """On a thousand robots it took two seconds in which no limit was looked at."""
+    _, family = sensor_family("logdet", seed)
+    program = dual_program(family, 2)
+    start = Multipliers(np.zeros((len(program.heavy), 3)), np.zeros(program.heavy.shape))
+    best, bounds = optimum(program), []
+    for looks in (0, 2, 5, 1_000):
+        budget = LooksLeft()
+        budget.looks = looks
+        reached, _ = program.ascend(start, best, cold=True, budget=budget)
+        assert looks == 1_000 or -2 <= budget.looks < 0  # one more look between two temperatures
+        bounds.append(program.bound(reached, program.rest(reached)))
+    assert bounds[0] == program.bound(start, program.rest(start))
+    assert bounds == sorted(bounds)
+    assert bounds[0] < bounds[1] < bounds[3]
 
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])

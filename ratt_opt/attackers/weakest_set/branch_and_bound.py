@@ -123,10 +123,11 @@ class FamilyBound:
     minorant: Minorant | None = None
 
 
-def bound_family(family: SetFamily, goal: float, parent: Minorant | None) -> FamilyBound:
+def bound_family(family: SetFamily, goal: float, parent: Minorant | None, budget: Budget) -> FamilyBound:
     """Bound a family by its worst axis where that decides, and else by an affine minorant.
 
-    ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family
+    ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family; ``budget`` : once it is over, the
+    minorant is taken as it is
     """
     if family.team.objective.states("planar_levels"):
         axis = weakest_axis(family)
@@ -134,7 +135,7 @@ def bound_family(family: SetFamily, goal: float, parent: Minorant | None) -> Fam
     n_free = len(family.information)
     if not 0 < family.size < n_free:
         return FamilyBound(-np.inf)
-    minorant = affine_minorant(family, heavy_robots(n_free), goal, parent)
+    minorant = affine_minorant(family, heavy_robots(n_free), goal, parent, budget)
     weakest = np.lexsort((minorant.scores, -minorant.fraction))[: family.size]
     return FamilyBound(minorant.bound(family.size), weakest, minorant)
 
@@ -206,7 +207,7 @@ class WeakestSetSearch:
         robots, size = node.undecided(self.team), self.size - len(node.inside)
         if not 0 <= size <= len(robots):
             return
-        found = bound_family(self.team.family(robots, size, node.inside), self.threshold, node.minorant)
+        found = bound_family(self.team.family(robots, size, node.inside), self.threshold, node.minorant, budget)
         bound = self._in_hand = max(node.bound, found.bound)
         if found.suggested is not None:
             yield from self._try(node, robots[found.suggested], budget)

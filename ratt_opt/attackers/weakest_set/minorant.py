@@ -23,6 +23,7 @@ from ratt_opt.compiling import numba
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attackers.weakest_set.planar_team import SetFamily
+    from ratt_opt.budget import Budget
 
 __all__ = ["Minorant", "affine_minorant"]
 
@@ -70,11 +71,13 @@ class Minorant:
         )
 
 
-def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None) -> Minorant:
+def affine_minorant(
+    family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None, budget: Budget | None = None
+) -> Minorant:
     """Best found affine minorant; valid whatever the solver answers.
 
     ``family`` : 0 < size < F; ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family, whose
-    slopes and half-spaces are a good start
+    slopes and half-spaces are a good start; ``budget`` : what is found when it is over is taken
     """
     points = outer_polytopes(family, n_heavy, None if parent is None else parent.normals)
     program = _program(family, points)
@@ -83,7 +86,7 @@ def affine_minorant(family: SetFamily, n_heavy: int, goal: float, parent: Minora
     # No bound is better than a relaxation's value at any fractions.
     goal = min(goal, float(target_values(family, _mean(family, fraction)).sum()))
     unsound = float(target_values(family, family.start)[~points.sound].sum())
-    better, fraction = program.ascend(start, goal - unsound, cold=parent is None)
+    better, fraction = program.ascend(start, goal - unsound, cold=parent is None, budget=budget)
     return _recompute(family, points, program, better, fraction)
 
 

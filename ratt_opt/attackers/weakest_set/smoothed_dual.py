@@ -17,6 +17,7 @@ from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
 
 __all__ = ["DualProgram", "Multipliers", "soft_level"]
 
@@ -78,10 +79,12 @@ class DualProgram:
         bound, value = _smoothed(program, multipliers.slopes, multipliers.own, temperature, (gradient, fraction))
         return float(bound), float(value)
 
-    def ascend(self, start: Multipliers, goal: float, *, cold: bool) -> tuple[Multipliers, FloatArray]:
+    def ascend(
+        self, start: Multipliers, goal: float, *, cold: bool, budget: Budget | None = None
+    ) -> tuple[Multipliers, FloatArray]:
         """Better multipliers, and the fractions (F,) in which the smoothed weakest set holds the robots.
 
-        Ends early where the bound reaches ``goal``.
+        Ends early where the bound reaches ``goal``, or the ``budget`` is over: of a thousand robots it takes seconds.
         """
         n_targets, n_robots = len(self.heavy), len(self.information)
         best, fraction = start, np.full(n_robots, self.size / n_robots)
@@ -90,12 +93,12 @@ class DualProgram:
         room = goal - bound
         factor = np.asarray(np.linalg.inv(self._spread()).transpose(0, 2, 1), dtype=np.float64)
         for share in COLD if cold else WARM:
-            if bound >= goal:
+            if bound >= goal or (budget is not None and budget.is_over):
                 break
             temperature = max(share * room / n_targets, 1e-12)
             screened = self._screened(rest, SCREENED * temperature)
             ascent = _Ascent(screened, factor, start, temperature, goal)
-            start, reached = ascent.run()
+            start, reached = ascent.run(budget)
             rest = self.rest(start)
             if (true := self.bound(start, rest)) >= bound:
                 best, bound, fraction = start, true, reached
@@ -155,17 +158,17 @@ class _Ascent:
         self._bound = -np.inf
         self._fraction = np.zeros(len(program.information))
 
-    def run(self) -> tuple[Multipliers, FloatArray]:
+    def run(self, budget: Budget | None) -> tuple[Multipliers, FloatArray]:
         """The multipliers of the best bound met, and the fractions there."""
         from scipy.optimize import minimize
 
-        options: Any = {"maxiter": STEPS, "maxcor": MEMORY}
-        minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=self._stop_at_goal, options=options)
-        return self._multipliers(self._best), self._fraction
+        def stop(xk: FloatArray) -> None:  # noqa: ARG001  (the name SciPy looks for)
+            if self._bound >= self._goal or (budget is not None and budget.is_over):
+                raise StopIteration
 
-    def _stop_at_goal(self, xk: FloatArray) -> None:  # noqa: ARG002  (the name SciPy looks for)
-        if self._bound >= self._goal:
-            raise StopIteration
+        options: Any = {"maxiter": STEPS, "maxcor": MEMORY}
+        minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=stop, options=options)
+        return self._multipliers(self._best), self._fraction
 
     def _negated(self, point: Any) -> tuple[float, Any]:
         """Minus the smoothed bound, and its gradient; the best point is kept by the bound itself."""
