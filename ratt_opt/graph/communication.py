@@ -83,7 +83,8 @@ class CommunicationGraph:
         """Links between robots of different groups; every robot is in one group."""
         found: list[Link] = []
         left = (1 << self.n_robots) - 1
-        for group in sorted(map(list, groups), key=len)[:-1]:  # links of the largest group are met from their other end
+        parts = sorted(([int(i) for i in group] for group in groups), key=len)  # NumPy's integers have 64 bits
+        for group in parts[:-1]:  # links of the largest one are met from their other end
             left &= ~sum(1 << i for i in group)
             for i in group:
                 found.extend((i, j) if i < j else (j, i) for j in _bits(self._neighbours[i] & left))

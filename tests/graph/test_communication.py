@@ -26,4 +26,10 @@ def test_groups_and_links_are_those_of_the_graph(robots, degree):
         assert communication.links_of(robot) == {(min(edge), max(edge)) for edge in graph.edges(robot)}
     home = rng.integers(0, 3, robots)
     between = {(i, j) for i, j in links if home[i] != home[j]}
-    assert communication.links_between(np.flatnonzero(home == k).tolist() for k in range(4)) == between
+    for groups in (
+        [np.flatnonzero(home == k).tolist() for k in range(4)],
+        [np.flatnonzero(home == k) for k in range(4)],
+    ):
+        found = communication.links_between(groups)
+        assert found == between
+        assert {type(robot) for link in found for robot in link} <= {int}

@@ -39,7 +39,7 @@ hubs of 30 robots: the search over seeing robots ends after 40,800, 30,800 and 2
 not in 100,000 with 0."""
 
 
-HELD = 0.5
+HELD = 0.8
 """Of what prices for dear blinded robots could claim beyond the links asked for when the price of a blinded robot was
 chosen: with so much left it stays, as groups are added, and one program is solved instead of four. On disk-12 of 50
 robots four programs took 33 of 120 s."""
