@@ -145,7 +145,7 @@ class GroupPrices:
 
     def lowered(self, threshold: float, prices: PriceVector, seconds: float = np.inf) -> PriceVector | None:
         """Best prices that known groups do not pay, for robots at most these; ``None`` if none are found."""
-        return self._with_blinded_at(threshold, prices.blinded, prices.robot, seconds)
+        return self._with_blinded_at(threshold, prices.blinded, seconds, prices.robot)
 
     def dearest(
         self, threshold: float, links: float, seconds: float = np.inf, reserve: float = 0.0
@@ -161,7 +161,7 @@ class GroupPrices:
             if found.links < links or most is None:
                 return None
             blinded = max(found.blinded + DEARNESS * (most - found.blinded), 0.0)
-            dear = self._with_blinded_at(threshold, blinded, self._unbounded(), seconds)
+            dear = self._with_blinded_at(threshold, blinded, seconds)
             if dear is None or dear.links < links:
                 return None
             self._dear = _Dear(threshold=threshold, links=links, blinded=blinded, beyond=dear.links - links)
@@ -172,18 +172,19 @@ class GroupPrices:
         last = self._dear
         if last is None or (last.threshold, last.links) != (threshold, links):
             return None
-        dear = self._with_blinded_at(threshold, last.blinded, self._unbounded(), seconds)
+        dear = self._with_blinded_at(threshold, last.blinded, seconds)
         return dear if dear is not None and dear.links - links > HELD * last.beyond else None
 
     def _with_blinded_at(
-        self, threshold: float, blinded: float, robot: FloatArray, seconds: float
+        self, threshold: float, blinded: float, seconds: float, robot: FloatArray | None = None
     ) -> PriceVector | None:
-        """Best prices with this one of a blinded robot and at most ``robot`` (N,) of the others."""
+        """Best prices with this one of a blinded robot and at most ``robot`` (N,) of the others, if given."""
         if self._program is None or threshold != self._threshold:
             self._start(threshold)
         assert self._program is not None
         n_robots, most = len(self._adjacent), self._most()
-        for i, price in enumerate([*robot.tolist(), blinded]):
+        highest = [most] * n_robots if robot is None else robot.tolist()
+        for i, price in enumerate([*highest, blinded]):
             self._program.bound_column(i, blinded if i == n_robots else -most, price)
         x = self._program.solve(seconds).x
         for i in range(n_robots + 1):
@@ -217,9 +218,6 @@ class GroupPrices:
         program = LinearProgram(cost, low, high, rows=claim, maximise=True)
         program.add_rows(self._rows(self._weak(), slack=True))
         return program
-
-    def _unbounded(self) -> FloatArray:
-        return np.full(len(self._adjacent), self._most())
 
     def _most(self) -> float:
         return 2.0 * len(self._threat.graph.links) + 2.0

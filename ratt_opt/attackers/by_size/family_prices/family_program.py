@@ -121,10 +121,7 @@ class FamilyProgram:
 
     def with_choice(self, choice: Choice) -> FamilyProgram:
         """The program for an attack with one more group; it knows the same sets."""
-        after = FamilyProgram(self._threat, None, (*self.chosen, choice), is_scaled=self._is_scaled)
-        for members, value in self._sets.values():
-            after.add(members, value)
-        return after
+        return self._taught(FamilyProgram(self._threat, None, (*self.chosen, choice), is_scaled=self._is_scaled))
 
     def divided(self, seconds: float = np.inf) -> tuple[FamilyProgram, ...]:
         """The program for some vectors, and for the others, where the last relaxed attack mixes both about equally.
@@ -133,20 +130,23 @@ class FamilyProgram:
         """
         if self._vectors is None or self._program is None:
             return ()
-        duals, weights = np.abs(self._program.solve(seconds).duals[self._n_robots :]), dict[int, float]()
+        duals = np.abs(self._program.solve(seconds).duals[self._n_robots :]).tolist()
         of_vectors = [dual for dual, choice in zip(duals, self._rows, strict=False) if choice is None]
-        for which, weight in zip(self._vector_rows, of_vectors, strict=False):
-            weights[which] = float(weight)
-        mixed = sorted(which for which, weight in weights.items() if weight > MIXED * sum(weights.values()))
+        weights = dict(zip(self._vector_rows, of_vectors, strict=False))
+        least = MIXED * sum(weights.values())
+        mixed = sorted(which for which, weight in weights.items() if weight > least)
         if len(mixed) < 2:
             return ()
         rising = np.cumsum([weights[which] for which in mixed])
         cut = min(int(np.searchsorted(rising, rising[-1] / 2)), len(mixed) - 2)
-        parts = [FamilyProgram(self._threat, vectors) for vectors in self._vectors.divided(mixed[cut] + 1)]
-        for part in parts:
-            for members, value in self._sets.values():
-                part.add(members, value)
-        return tuple(parts)
+        parts = self._vectors.divided(mixed[cut] + 1)
+        return tuple(self._taught(FamilyProgram(self._threat, vectors)) for vectors in parts)
+
+    def _taught(self, other: FamilyProgram) -> FamilyProgram:
+        """Another program, once it knows the same sets."""
+        for members, value in self._sets.values():
+            other.add(members, value)
+        return other
 
     def add(self, members: BoolArray, value: float) -> bool:
         """Add a set (N,) of that value; whether it is new, and may be a group beside those chosen."""
