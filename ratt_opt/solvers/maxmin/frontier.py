@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
+    from ratt_opt.solvers.maxmin.plans.candidates import Candidates
     from ratt_opt.solvers.maxmin.proof import TreeNode
 
 __all__ = ["ClosingRule", "Frontier"]

@@ -9,7 +9,7 @@ import pytest
 from ratt_opt import Problem, exhaustive_optimum, solve_maxmin
 from ratt_opt.solvers.maxmin.groups.winners import Winners
 from ratt_opt.solvers.maxmin.plans import outcome_pool
-from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
+from ratt_opt.solvers.maxmin.plans.candidates import Candidates
 from ratt_opt.solvers.maxmin.turns import Turns
 from tests.solvers.maxmin.test_solve import proved_upper
 from tests.strategies import OBJECTIVES, information_data

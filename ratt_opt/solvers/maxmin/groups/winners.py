@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.frontier import Frontier
     from ratt_opt.solvers.maxmin.groups.closed_group import ClosedGroup, GroupProofs
-    from ratt_opt.solvers.maxmin.plans.incumbent import Candidates
+    from ratt_opt.solvers.maxmin.plans.candidates import Candidates
 
 __all__ = ["WinnerDivision", "Winners"]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.plans.incumbent import climb
+from ratt_opt.solvers.maxmin.plans.candidates import climb
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
