@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers.by_size import (
     group_exchanges,
+    largest_first,
     low_lists,
     packing,
     size_vector_search,
@@ -70,8 +72,8 @@ def pack_again(monkeypatch):
     """The same, and no list for the other groups either: what is packed around a largest one is given up at first."""
     only_branch(monkeypatch)
     monkeypatch.setattr(packing, "LONGEST_PACKING", -1)
-    monkeypatch.setattr(size_vector_search, "FIRST_EFFORT", 3)
-    monkeypatch.setattr(size_vector_search, "MORE_EFFORT", 4)
+    monkeypatch.setattr(largest_first, "FIRST_EFFORT", 3)
+    monkeypatch.setattr(largest_first, "MORE_EFFORT", 4)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -99,6 +101,27 @@ def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
     assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
     assert stop is ro.Stop.CLOSED
     assert problem.team_value(elements, bracket.attack) == bracket.upper
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("seed", range(40))
+def test_shares_that_end_anywhere_lose_no_set(name, seed, monkeypatch):
+    """Where a share ended while the groups around sets were packed, the next one closed the bracket without them."""
+    pack_again(monkeypatch)
+    problem, elements = team_problem(seed, 6 + seed % 4, name, protect=seed % 3 == 0)
+    expected, values = ro.worst_case_attack(problem, elements).upper, PlanValues(problem, elements)
+    start = bounded_rational_attack(problem, elements)
+    bracket, team = AttackBracket(start.attack, start.upper, 0.0), PlanarTeam.of(problem.objective, values.plan)
+    search = SizeVectorSearch(AttackTask(problem, values, bracket, Budget()), team)
+    search.bounds = dict.fromkeys(search.vectors, -np.inf)
+    stop, nodes = None, 1
+    while stop is not ro.Stop.CLOSED and nodes < 1e5:
+        with suppress(OutOfBudget):
+            search.task = replace(search.task, budget=Budget(max_nodes=int(nodes)))
+            stop = search._decide_by_largest()
+        assert bracket.lower <= expected + 1e-12
+        nodes *= 1.3
+    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)

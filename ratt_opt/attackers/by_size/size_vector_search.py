@@ -4,10 +4,8 @@ Outcomes are told apart by their group sizes (``graph/survivor_sizes.py``). Exch
 each vector of sizes; then vector by vector, most promising first, all families are decided (``vector_search.py``)
 where the sets of a size can be listed.
 
-Elsewhere, for each size of the largest group, smallest first, the sets of that size are searched; a larger group
-contains smaller ones, so by monotonicity what bounds the smaller size bounds the larger. Whenever a set below the
-incumbent is found, the other groups of the outcome are packed; that makes a new incumbent or proves the set useless.
-Where several groups are about alike, or there are too many vectors, ``family_prices`` bounds all families at once.
+Elsewhere the sets of each size of the largest group are searched (``largest_first.py``). Where several groups are about
+alike, or there are too many vectors, ``family_prices`` bounds all families at once.
 """
 
 from __future__ import annotations
@@ -17,18 +15,17 @@ from dataclasses import replace
 from functools import partial
 from itertools import islice
 from math import comb
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST
+from ratt_opt.attackers.by_size.largest_first import LargestFirst
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
-from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
-from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
 from ratt_opt.problem import Attack
@@ -69,10 +66,6 @@ MAYBE_SHORT = 2 * 10**8
 Measured on RATT's plans at the paper's budgets: 2 ms instead of 6.5 at 20 robots, 13 instead of 34 at 30; at other
 budgets of 30 robots 44 instead of 56."""
 
-FIRST_EFFORT, MORE_EFFORT, LAST_EFFORT = 10**5, 10, 10**7
-"""Partial sets looked at to pack the other groups around a largest one (a tenth of a second or less), how many times as
-many the next time, and the last time where there is no limit of time or nodes."""
-
 LISTED_WHOLE = 34
 """Up to so many robots, sets of any size are listed."""
 
@@ -98,17 +91,9 @@ class SizeVectorSearch:
         """Those beyond, where there are too many."""
         self.weak = WeakFamilies(task, team)
         self.lists = LowLists(team, np.argsort(-team.single, kind="stable"))
-        self.packer = Packer(team, self.threat.protected_robots, task.budget)
         self.bounds: dict[Sizes, float] = {}
         """What the families of each vector that is open are worth at least."""
-        self._searches: dict[int, WeakestSetSearch] = {}
-        """By the size of the largest group."""
-        self.left_open: list[tuple[float, frozenset[int]]] = []
-        """Sets whose packing question was given up, with their values."""
-        self.least_open = np.inf
-        """The least of these values; the proof cannot rise above it."""
-        self.weakest = np.inf
-        """Least value of any set found below the goal of its time."""
+        self._by_largest = LargestFirst(task, team, self._accept)
 
     def run(self) -> Stop:
         """Search every vector; the bracket is valid whenever this stops."""
@@ -257,67 +242,17 @@ class SizeVectorSearch:
     def _raise_lower(self) -> None:
         self.bracket.raise_lower(min([self.bracket.goal, *self.bounds.values()]))
 
-    # -- the others, by their largest group --------------------------------------------------------------------
-
     def _decide_by_largest(self) -> Stop:
-        """Search the sets of every size of the largest group, smallest first."""
-        bracket, floor = self.bracket, self.bracket.lower
+        """The vectors that are open, by their largest group."""
         self.vectors = list(self.bounds)
-        for size in sorted({vector[0] for vector in self.vectors}):
-            self._search(size, floor)
-            # Larger groups contain sets of this size, all decided: none is worth less than this.
-            floor = min(self.weakest, bracket.goal)
-            if floor >= bracket.goal:
-                break
-        bracket.raise_lower(min(bracket.goal, self.least_open))
-        return self._pack_again()
+        return self._by_largest.run(self.vectors, self.task.budget)
 
     def _decide_in_share(self, share: float, decide: Callable[[], object]) -> None:
         """Either of both within a share of the time; what is still open then begins anew."""
-        task, packer = self.task, self.packer
+        task = self.task
         with task.budget.stage(share) as part:
-            self.task, self.packer = replace(task, budget=part), replace(packer, budget=part)
+            self.task = replace(task, budget=part)
             try:
                 decide()
             finally:
-                self.task, self.packer = task, packer
-
-    def _search(self, size: int, floor: float) -> None:
-        """Offer every set of this size below the goal as a largest group, from where an earlier search ended."""
-        search = self._searches.setdefault(size, WeakestSetSearch(self.team, size, self.bracket.goal, floor))
-        search.threshold = self.bracket.goal
-        for found in search.run(self.task.budget):
-            if found is not None:
-                self._offer(found)
-                search.threshold = self.bracket.goal
-            self.bracket.raise_lower(min(search.lower, self.bracket.goal, self.least_open, self.weakest))
-
-    def _pack_again(self) -> Stop:
-        """Decide what was given up, the weakest first, with more and more effort."""
-        bracket, budget = self.bracket, self.task.budget
-        effort, has_limit = FIRST_EFFORT, budget.max_nodes is not None or np.isfinite(budget.seconds_left)
-        while not bracket.is_closed and self.left_open and (has_limit or effort <= LAST_EFFORT):
-            again, self.left_open, self.least_open = sorted(self.left_open, key=itemgetter(0)), [], np.inf
-            for k, (_, largest) in enumerate(again):
-                self._offer(largest, effort)
-                following = again[k + 1][0] if k + 1 < len(again) else np.inf
-                bracket.raise_lower(min(bracket.goal, self.least_open, following))
-            effort *= MORE_EFFORT
-        return Stop.CLOSED if bracket.is_closed else Stop.HEURISTIC
-
-    def _offer(self, largest: frozenset[int], effort: int = 0) -> None:
-        """Make attacks of a largest group, or learn that it has none below the goal."""
-        value = self.team.value(largest)
-        self.weakest = min(self.weakest, value)
-        others, is_open = frozenset(range(len(self.team.single))) - largest, False
-        for vector in self.vectors:
-            while vector[0] == len(largest) and value < self.bracket.goal:
-                packing = self.packer.pack(others, vector[1:], self.bracket.goal, effort)
-                if packing.groups is None:
-                    is_open = is_open or not packing.decided
-                    break
-                if not self._accept((largest, *packing.groups)):
-                    break
-        if is_open:
-            self.left_open.append((value, largest))
-            self.least_open = min(self.least_open, value)
+                self.task = task
