@@ -118,6 +118,6 @@ class Descent:
 
     def _next_floor(self) -> float:
         upper, level = self._best.upper, self._known.incumbent.candidates.level
-        if self._is_within(NARROW) or not np.isfinite(upper) or self._floors <= 0:
+        if self._is_within(NARROW) or not np.isfinite(upper - level) or self._floors <= 0:
             return -np.inf
         return level + SHARE * (upper - level)

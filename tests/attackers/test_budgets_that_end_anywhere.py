@@ -1,0 +1,116 @@
+"""Attacks and best plans whose budgets end at random looks, for a moment, and go on: no bracket says too much.
+
+A share of a budget can end within any stage, and the next stage, or the next call with the same memory, begins with
+what is left of it. So whatever a search had in hand when it ended must still count as open.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers import any_graph, exact
+from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
+from ratt_opt.attackers.task import AttackMemory
+from ratt_opt.attackers.weakest_set import branch_and_bound
+from ratt_opt.budget import Budget
+from ratt_opt.stopping import Stop
+from tests.attackers.test_by_prices import team_problem
+from tests.strategies import random_problem
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SECONDS = 1000.0
+"""Of every limit: it is chance that ends them."""
+CALLS = 12
+
+WAYS = {
+    "partitions": {},
+    "covers": {(any_graph, "PARTITIONED"): 0},
+    "prices": {(exact, "MANY_GROUPS"): 0},
+    "dense": {(any_graph, "DENSE"): 0.0},
+    "dense prices": {(any_graph, "DENSE"): 0.0, (exact, "MANY_GROUPS"): 0},
+    "no lists": {
+        (size_vector_search, "MAYBE_SHORT"): -1,
+        (size_vector_search, "LISTED_WHOLE"): 0,
+        (size_vector_search, "LONGEST_LIST"): -1,
+        (branch_and_bound, "AT_ONCE"): 0,
+        (branch_and_bound, "SHORTEST_ENUMERATION"): 1,
+        (branch_and_bound, "LONGEST_ENUMERATION"): 1,
+        (packing, "LONGEST_PACKING"): -1,
+        (largest_first, "FIRST_EFFORT"): 3,
+        (size_vector_search, "ALIKE"): 0.0,
+    },
+}
+"""What makes small teams go each way of large ones."""
+LARGE = {(exact, "LARGEST_PLAIN"): 0, (exact, "LARGEST_COMPILED"): 0, (exact, "THRESHOLDS_FASTER"): 0}
+
+
+@pytest.fixture
+def end_with(monkeypatch: pytest.MonkeyPatch) -> Callable[[float, int], None]:
+    """Let every look at a limited budget find it over with so much probability."""
+    looked = Budget.stop
+
+    def begin(probability: float, seed: int) -> None:
+        chance = random.Random(seed)
+
+        def stop(budget: Budget) -> Stop | None:
+            is_over = budget.time_limit is not None and chance.random() < probability
+            return Stop.TIME if is_over else looked(budget)
+
+        monkeypatch.setattr(Budget, "stop", stop)
+
+    return begin
+
+
+def go(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for (module, name), value in (LARGE | WAYS[way]).items():
+        monkeypatch.setattr(module, name, value)
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("seed", range(8))
+def test_attacks(seed: int, way: str, end_with: Callable[[float, int], None], monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng([seed, *way.encode()])
+    n_robots = int(rng.integers(4, 10))
+    alike = way == "no lists" or rng.random() < 0.2
+    problem, plan = team_problem(
+        int(rng.integers(10**6)), n_robots, graph=nx.complete_graph(n_robots) if alike else None
+    )
+    truth, memory = ro.worst_case_attack(problem, plan).upper, AttackMemory()
+    rounding = 1e-9 * abs(truth) + 1e-10
+    go(way, monkeypatch)
+    for call in range(CALLS):
+        end_with(10 ** rng.uniform(-2.5, -1) * 0.8**call, seed)
+        found = ro.worst_case_attack(problem, plan, time_limit=SECONDS, memory=memory)
+        assert found.lower <= truth + rounding
+        assert found.upper >= truth - rounding
+        if found.stop is ro.Stop.CLOSED:
+            assert found.lower >= truth - 10 * rounding
+            break
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("seed", range(4))
+def test_best_plans(
+    seed: int, way: str, end_with: Callable[[float, int], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng([seed, *way.encode()])
+    problem = random_problem(rng, int(rng.integers(3, 6)), kind=["trace", "logdet", "maxeig"][seed % 3])
+    truth, start = ro.exhaustive_optimum(problem).upper, None
+    rounding = 1e-8 * abs(truth) + 1e-9
+    go(way, monkeypatch)
+    for call in range(CALLS):
+        end_with(10 ** rng.uniform(-2.5, -1) * 0.7**call, seed)
+        best = ro.solve_maxmin(problem, gap=1e-9, time_limit=SECONDS, start=start)
+        assert best.lower <= truth + rounding
+        assert best.upper >= truth - rounding
+        start = best if rng.random() < 0.5 else None
+        if best.stop in {ro.Stop.GAP, ro.Stop.CLOSED, ro.Stop.EXHAUSTED}:
+            break
