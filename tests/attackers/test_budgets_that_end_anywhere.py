@@ -1,4 +1,4 @@
-"""Attacks and best plans whose budgets end at random looks, for a moment, and go on: no bracket says too much.
+"""Attacks and best plans whose budgets, and parts of them, end at random looks: no bracket says too much.
 
 A share of a budget can end within any stage, and the next stage, or the next call with the same memory, begins with
 what is left of it. So whatever a search had in hand when it ended must still count as open.
@@ -19,12 +19,13 @@ from ratt_opt.attackers.by_size import largest_first, packing, size_vector_searc
 from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.budget import Budget
-from ratt_opt.stopping import Stop
 from tests.attackers.test_by_prices import team_problem
 from tests.strategies import random_problem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from ratt_opt.stopping import Stop
 
 SECONDS = 1000.0
 """Of every limit: it is chance that ends them."""
@@ -54,15 +55,16 @@ LARGE = {(exact, "LARGEST_PLAIN"): 0, (exact, "LARGEST_COMPILED"): 0, (exact, "T
 
 @pytest.fixture
 def end_with(monkeypatch: pytest.MonkeyPatch) -> Callable[[float, int], None]:
-    """Let every look at a limited budget find it over with so much probability."""
+    """Let every look at a limited budget end it with so much probability."""
     looked = Budget.stop
 
     def begin(probability: float, seed: int) -> None:
         chance = random.Random(seed)
 
         def stop(budget: Budget) -> Stop | None:
-            is_over = budget.time_limit is not None and chance.random() < probability
-            return Stop.TIME if is_over else looked(budget)
+            if budget.time_limit is not None and chance.random() < probability:
+                budget.time_limit = 0.0
+            return looked(budget)
 
         monkeypatch.setattr(Budget, "stop", stop)
 
