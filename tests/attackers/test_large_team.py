@@ -288,6 +288,28 @@ def test_a_search_of_weak_sets_goes_on_where_it_ended(name, monkeypatch):
     assert found == {one for one, value in values.items() if value < threshold}
 
 
+@pytest.mark.parametrize("whole", [0, 500, 20_000, 10**9])
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_a_small_team_is_enumerated_whole_only_before_it_is_divided(name, whole, monkeypatch):
+    """Enumerated again after that, from one of its parts, sets of the others were lost; after the end it raised."""
+    for limit, value in {"WHOLE_ENUMERATION": whole, "SHORTEST_ENUMERATION": 1, "LONGEST_ENUMERATION": 1}.items():
+        monkeypatch.setattr(branch_and_bound, limit, value)
+    objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), 12, 4, 1))
+    team = PlanarTeam.of(objective, np.arange(12))
+    values = {frozenset(one): team.value(one) for one in combinations(range(12), 5)}
+    threshold = float(np.mean(sorted(values.values())[20:22]))
+    search, found, nodes = WeakestSetSearch(team, 5, threshold), set(), 1.0
+    while search.lower < np.inf:
+        nodes *= 1.2
+        with suppress(OutOfBudget):
+            for one in search.run(Budget(max_nodes=int(nodes))):
+                found |= {one} if one is not None else set()
+        left = [value for one, value in values.items() if value < threshold and one not in found]
+        assert search.lower <= min(left, default=np.inf) + 1e-9
+    assert found == {one for one, value in values.items() if value < threshold}
+    assert not list(search.run(Budget()))
+
+
 @pytest.mark.parametrize("protected", [frozenset(), frozenset({0, 5, 9})])
 def test_relabelling_a_large_team_changes_nothing(protected):
     rng = np.random.default_rng(8)

@@ -186,7 +186,8 @@ class WeakestSetSearch:
 
         :attr:`lower` stays valid when the budget runs out or the user interrupts, and another run goes on from there.
         """
-        if len(self._among) <= AT_ONCE:
+        is_whole = bool(self._open) and self._serial == 1  # neither decided nor divided
+        if is_whole and len(self._among) <= AT_ONCE:
             yield from self._enumerate_all(budget)
         while self._open and self._open[0].bound < self.threshold:
             node = heapq.heappop(self._open)
