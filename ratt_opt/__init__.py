@@ -12,10 +12,15 @@ def __getattr__(name: str) -> object:
     import lazy_loader
 
     from ratt_opt._cache import provide_cache
+    from ratt_opt._interrupts import interrupts_between_packages
     from ratt_opt._topics import names_of, read_topics
 
     provide_cache()
-    load, names, _ = lazy_loader.attach_stub(__name__, __file__)
+    attached, names, _ = lazy_loader.attach_stub(__name__, __file__)
+
+    def load(name: str) -> object:
+        return interrupts_between_packages(attached, name)
+
     topics = read_topics(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
     globals().update(__getattr__=load, __dir__=names, TOPICS=topics, __all__=names_of(topics))
     return globals()[name] if name in ("TOPICS", "__all__") else load(name)

@@ -8,9 +8,19 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+    from types import FrameType
 
-__all__ = ["interrupts_afterwards"]
+__all__ = ["AGAIN_AFTER", "again_later", "interrupts_afterwards", "interrupts_between_packages"]
+
+PACKAGE = __name__.partition(".")[0]
+AGAIN_AFTER = 0.01
+"""Seconds until an interrupt that cannot be met where it came comes again."""
+
+
+def again_later(number: int = signal.SIGINT) -> None:
+    """Interrupt the main thread once more in a moment."""
+    threading.Timer(AGAIN_AFTER, signal.raise_signal, [number]).start()
 
 
 @contextmanager
@@ -28,3 +38,41 @@ def interrupts_afterwards() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
         for number in met[:1]:
             signal.raise_signal(number)
+
+
+def interrupts_between_packages(load: Callable[[str], object], name: str) -> object:
+    """``load(name)``; an interrupt while a package of others is imported in it comes once all of that one is.
+
+    Of NumPy, networkx or FLINT half imported what is left cannot be imported again, and every later search of the
+    process failed. Of this package it can, so interrupts need not wait for all of it, which takes seconds.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        return load(name)
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if _must_wait(frame):
+            again_later(number)
+        else:
+            before(number, frame)
+
+    try:
+        signal.signal(signal.SIGINT, interrupt)
+        return load(name)
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _must_wait(frame: FrameType | None) -> bool:
+    """Whether a package of others is being imported there, or who handles interrupts is being changed."""
+    outermost = interrupts_between_packages.__code__
+    if frame is not None and frame.f_code is outermost:
+        return True
+    while frame is not None and frame.f_code is not outermost:
+        code = frame.f_code
+        # Python runs this from before a module is looked for until it stands in `sys.modules` for good.
+        importing = code.co_name == "_find_and_load" and code.co_filename == "<frozen importlib._bootstrap>"
+        if importing and frame.f_locals["name"].partition(".")[0] != PACKAGE:
+            return True
+        frame = frame.f_back
+    return False

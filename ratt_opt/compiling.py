@@ -12,6 +12,9 @@ An interrupt while compiled loops run came when the arrays that they return are 
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
 here, so that nobody is asked and the interrupt comes once the loop has returned.
 
+What it frees later it frees in destructors, too, when the collector comes to it, long after compiling. An interrupt
+there is dropped as well, so it is raised again.
+
 Of Numba half imported what is left cannot be imported again: an interrupt there, too, comes once all of it is. It
 lists what it knows of types when it first compiles. An interrupt there lost the rest of a list, and later loops
 ended in ``TypingError``, so lists are made here, in less than half a second, and the interrupt comes after them.
@@ -21,11 +24,12 @@ from __future__ import annotations
 
 import _weakrefset
 import signal
+import sys
 import threading
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt._interrupts import interrupts_afterwards
+from ratt_opt._interrupts import again_later, interrupts_afterwards
 
 with interrupts_afterwards():
     import numba
@@ -37,6 +41,7 @@ with interrupts_afterwards():
     from ratt_opt._kept_code import SourcesLocator
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import FrameType
 
 __all__ = ["numba"]
@@ -63,8 +68,8 @@ HANDS_OVER = {
 }
 """Code of the functions that note who owns a thing, a lock or the handling of interrupts only after they have handed it
 over, or freed it."""
-AGAIN_AFTER = 0.01
-"""Seconds until an interrupt that cannot be met where it came comes again."""
+FREED_BY = ("llvmlite.", "numba.", weakref.__name__, _weakrefset.__name__)
+"""Modules of the destructors and callbacks in which the collector frees what was compiled."""
 
 
 class _Interrupts(event.Listener):
@@ -96,7 +101,7 @@ class _Interrupts(event.Listener):
 
     def _interrupt(self, number: int, frame: FrameType | None) -> None:
         if _must_wait(frame):
-            threading.Timer(AGAIN_AFTER, signal.raise_signal, [number]).start()
+            again_later(number)
         else:
             self._before(number, frame)
 
@@ -109,6 +114,19 @@ def _must_wait(frame: FrameType | None) -> bool:
             return True
         frame = frame.f_back
     return False
+
+
+def _raised_again(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[[sys.UnraisableHookArgs], None]:
+    """``hook`` of what Python drops, but for an interrupt dropped where compiled code is freed: that comes again."""
+
+    def dropped(what: sys.UnraisableHookArgs) -> None:
+        module = getattr(what.object, "__module__", None) or ""
+        if issubclass(what.exc_type, KeyboardInterrupt) and module.startswith(FREED_BY):
+            again_later()
+        else:
+            hook(what)
+
+    return dropped
 
 
 def _array_of_constant_class(kind: Any, value: Any, context: Any) -> Any:
@@ -127,5 +145,6 @@ with interrupts_afterwards():
 INTERRUPTS = _Interrupts()
 for kind in ("numba:compiler_lock", "numba:llvm_lock"):  # all of compiling; what is freed later
     event.register(kind, INTERRUPTS)  # type: ignore[no-untyped-call]
+sys.unraisablehook = _raised_again(sys.unraisablehook)
 pythonapi._boxers.functions[types.Array] = _array_of_constant_class
 CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

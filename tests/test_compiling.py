@@ -121,6 +121,44 @@ def test_one_in_the_callback_of_a_weak_reference_comes_after_it():
     assert not weak
 
 
+FREED_LATER = """
+import signal, sys, time, weakref
+from llvmlite.binding.ffi import ObjectRef
+from ratt_opt.compiling import numba
+
+class Compiled(ObjectRef):
+    def close(self):
+        signal.raise_signal(signal.SIGINT)
+
+class Interrupting:
+    is_armed = False
+    def __hash__(self):
+        if self.is_armed:
+            self.is_armed = False
+            signal.raise_signal(signal.SIGINT)
+        return 0
+
+key, weak = Interrupting(), weakref.WeakValueDictionary()
+freed = Compiled(object())
+if sys.argv[1] == "a callback":
+    freed.close = None
+    weak[key] = freed
+    key.is_armed = True
+try:
+    del freed
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("answered")
+"""
+
+
+@pytest.mark.parametrize("where", ["a destructor", "a callback"])
+def test_one_where_the_collector_frees_what_was_compiled_comes_after_it(where):
+    """Long after compiling, when nobody handles interrupts: one of 20 of a certificate was lost in a destructor."""
+    done = subprocess.run([sys.executable, "-c", FREED_LATER, where], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("answered\n", "")
+
+
 IMPORTED_AGAIN = """
 import signal, sys
 from importlib.abc import MetaPathFinder
