@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-__all__ = ["AGAIN_AFTER", "again_later", "interrupts_afterwards", "interrupts_between_packages"]
+__all__ = ["AGAIN_AFTER", "again_later", "imported_whole", "interrupts_afterwards", "interrupts_between_packages"]
 
 PACKAGE = __name__.partition(".")[0]
 AGAIN_AFTER = 0.01
@@ -61,6 +63,20 @@ def interrupts_between_packages(load: Callable[[str], object], name: str) -> obj
         return load(name)
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def imported_whole(module: str) -> Any:
+    """A module of others whose import takes too long for interrupts to wait, imported anew where one ended it.
+
+    What was imported of its package by then would stay, and hold on to a package that is none.
+    """
+    try:
+        return import_module(module)
+    except BaseException:
+        package = module.partition(".")[0]
+        for name in [name for name in sys.modules if name == package or name.startswith(f"{package}.")]:
+            del sys.modules[name]
+        raise
 
 
 def _must_wait(frame: FrameType | None) -> bool:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt._interrupts import interrupts_afterwards
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -91,7 +93,8 @@ class LinearProgram:
         integer: Sequence[bool] | None = None,
         **options: bool | float | str,
     ) -> None:
-        import highspy
+        with interrupts_afterwards():  # half imported it cannot be imported again
+            import highspy
 
         self._highspy = highspy
         self._highs: Any = _silent_solver()()

@@ -29,40 +29,6 @@ def test_import_loads_nothing_heavy() -> None:
     assert done.stdout.strip() == "[]"
 
 
-INTERRUPTED_IMPORT = """
-import signal, sys, time
-from importlib.abc import MetaPathFinder
-
-class Interrupts(MetaPathFinder):
-    def find_spec(self, name, path, target=None):
-        if name == sys.argv[1]:
-            sys.meta_path.remove(self)
-            signal.raise_signal(signal.SIGINT)
-
-import ratt_opt as ro
-sys.meta_path.insert(0, Interrupts())
-try:
-    ro.certify, ro.verify_certificate
-    time.sleep(60)
-except KeyboardInterrupt:
-    print("answered")
-assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-problem = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0).problem()
-print(ro.solve_maxmin(problem).stop.value, ro.total_curvature(problem.objective).lower >= 0)
-"""
-
-
-@pytest.mark.parametrize(
-    "module",
-    ["numpy.dtypes", "numpy.linalg", "networkx", "networkx.utils.configs", "flint.types.arb", "ratt_opt.problem"],
-)
-def test_an_interrupt_while_names_are_loaded_leaves_nothing_half_imported(module: str) -> None:
-    """NumPy could be loaded only once per process, networkx knew half of itself: every later search failed."""
-    command = [sys.executable, "-c", INTERRUPTED_IMPORT, module]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.stdout == "answered\nclosed True\n", done.stderr
-
-
 def test_every_public_callable_is_documented() -> None:
     missing = [n for n in ratt_opt.__all__ if callable(v := getattr(ratt_opt, n)) and not v.__doc__]
     assert missing == []

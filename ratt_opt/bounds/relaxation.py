@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
-from importlib import import_module
 from itertools import islice
 from math import isinf
 from typing import TYPE_CHECKING, Any
@@ -12,6 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
+from ratt_opt._interrupts import imported_whole
 from ratt_opt._values import ByValue
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, mixed_information, tangent_cut, uniform_selection
 from ratt_opt.budget import Budget
@@ -119,19 +118,6 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) 
             selection[choice] /= selection[choice].sum()
     claimed = float("nan") if program.value is None else float(program.value)
     return claimed, selection, str(program.status)
-
-
-def imported_whole(package: str) -> Any:
-    """A package, imported anew next time where an interrupt ends its import.
-
-    What was imported of it by then would stay, and hold on to a package that is none.
-    """
-    try:
-        return import_module(package)
-    except BaseException:
-        for name in [name for name in sys.modules if name == package or name.startswith(f"{package}.")]:
-            del sys.modules[name]
-        raise
 
 
 def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:

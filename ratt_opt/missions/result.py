@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.special import gammaincinv
 
 from ratt_opt._validation import FloatArray, IntArray, check_number, readonly
 from ratt_opt._values import ByValue
@@ -126,21 +127,17 @@ class Mission(ByValue):
 
     def nees_band(self, level: float = 0.95) -> tuple[float, float]:
         """What :attr:`nees` of a step lies in with probability ``level`` for a consistent filter (chi-square)."""
-        from scipy.stats import chi2
-
         _check_level(level)
         freedom = self.dimension * self.scenario.n_targets
-        low, high = (float(chi2.ppf(end, freedom)) for end in ((1 - level) / 2, (1 + level) / 2))
+        low, high = (float(_chi_square(end, freedom)) for end in ((1 - level) / 2, (1 + level) / 2))
         return low / self.scenario.n_targets, high / self.scenario.n_targets
 
     def nis_band(self, level: float = 0.95) -> FloatArray:
         """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN where none."""
-        from scipy.stats import chi2
-
         _check_level(level)
         counts = np.array([step.team.innovation.count or np.nan for step in self.steps])
         ends = [(1 - level) / 2, (1 + level) / 2]
-        return readonly(np.stack([chi2.ppf(end, counts) / counts for end in ends], axis=-1))
+        return readonly(np.stack([_chi_square(end, counts) / counts for end in ends], axis=-1))
 
     def to_dict(self) -> dict[str, Any]:
         """What ``mission.json`` holds: settings, and the figures of every step."""
@@ -179,6 +176,11 @@ class Mission(ByValue):
         from ratt_opt.report.mission.write import write_animation
 
         return write_animation(self, path)
+
+
+def _chi_square(probability: float, freedom: FloatArray | int) -> FloatArray:
+    """What a chi-square variable stays below with this probability; (...) like the degrees of freedom."""
+    return np.asarray(2 * gammaincinv(np.asarray(freedom) / 2, probability), dtype=np.float64)
 
 
 def _check_level(level: float) -> None:

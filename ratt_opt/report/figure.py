@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._files import write_atomically
+from ratt_opt._interrupts import imported_whole
 from ratt_opt._rounding import down
 from ratt_opt.report.bars import draw_bars
 from ratt_opt.report.map import draw_map, name_things
@@ -23,11 +24,9 @@ __all__ = ["plan_figure", "save_figure"]
 
 def plan_figure(report: BoundReport, picture: Picture) -> Figure:
     """Return the figure: the map beside the bars."""
-    from matplotlib.figure import Figure
-
     plan = report.recommended
     attack = plan.worst_case.attack
-    figure = Figure(figsize=(14, 8), layout="constrained")
+    figure: Figure = imported_whole("matplotlib.figure").Figure(figsize=(14, 8), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.35, 1))
     draw_map(left, picture)
     draw_bars(right, report)

@@ -108,17 +108,3 @@ def test_a_spent_budget_ends_the_rounds():
     assert next(rounds).upper >= ro.exhaustive_optimum(problem).lower
     budget.interrupt()
     assert list(rounds) == []
-
-
-def test_a_package_whose_import_was_interrupted_is_imported_whole_next_time(tmp_path, monkeypatch):
-    """Its modules would otherwise know the one that was given up, which lacks what came later."""
-    package = tmp_path / "half_imported"
-    package.mkdir()
-    (package / "part.py").write_text("import half_imported\nowner = lambda: half_imported.late\n")
-    interrupting = "if not __import__('os').path.exists(__file__ + '.again'):\n    raise KeyboardInterrupt\n"
-    (package / "__init__.py").write_text(f"from half_imported.part import owner\n{interrupting}late = 1\n")
-    monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(KeyboardInterrupt):
-        relaxation.imported_whole("half_imported")
-    (package / "__init__.py.again").touch()
-    assert relaxation.imported_whole("half_imported").owner() == 1

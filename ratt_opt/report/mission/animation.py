@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt._interrupts import imported_whole
 from ratt_opt.report.mission.frames import frames_of, limits
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 
@@ -28,15 +29,14 @@ ROLES = {"best group": (SURVIVING, "o"), "cut off": (LOST, "s"), "blinded": (BLI
 
 def save_gif(mission: Mission, path: Path) -> None:
     """Write the animation."""
-    from matplotlib.figure import Figure
     from PIL import Image
 
     frames = frames_of(mission)
     view = limits(frames)
     height = min(max(WIDTH * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 2 * WIDTH) + 1.2
-    pictures = []
+    pictures, kind = [], imported_whole("matplotlib.figure").Figure
     for frame, rmse in zip(frames, mission.rmse, strict=True):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        figure = kind(figsize=(WIDTH, height), layout="constrained")
         axes = figure.subplots()
         _draw(axes, frame)
         axes.set_xlim(view[0], view[1])

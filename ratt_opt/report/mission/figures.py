@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.special import stdtrit
 
+from ratt_opt._interrupts import imported_whole
 from ratt_opt.report.palette import INK, LOST, SURVIVING
 
 if TYPE_CHECKING:
@@ -22,10 +24,8 @@ __all__ = ["mission_figure"]
 
 def mission_figure(missions: Sequence[Mission]) -> Figure:
     """RMSE above NEES, step by step; of several seeds the mean with its 95 % interval (Student's t)."""
-    from matplotlib.figure import Figure
-
     first = missions[0]
-    figure = Figure(figsize=(8, 6.5), layout="constrained")
+    figure: Figure = imported_whole("matplotlib.figure").Figure(figsize=(8, 6.5), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     steps = np.arange(1, len(first.steps) + 1)
     _curve(above, steps, np.array([m.rmse for m in missions]), "error (RMSE)")
@@ -50,11 +50,9 @@ def mission_figure(missions: Sequence[Mission]) -> Figure:
 
 
 def _curve(axes: Axes, steps: Any, values: FloatArray, label: str) -> None:
-    from scipy.stats import t
-
     mean, n = values.mean(axis=0), len(values)
     if n > 1:
-        half = float(t.ppf(0.975, n - 1)) * values.std(axis=0, ddof=1) / n**0.5
+        half = float(stdtrit(n - 1, 0.975)) * values.std(axis=0, ddof=1) / n**0.5
         axes.fill_between(steps, mean - half, mean + half, color=SURVIVING, alpha=0.2)
         label = f"{label}, mean of {n} seeds with 95 % interval"
     axes.plot(steps, mean, color=SURVIVING, marker=".", markersize=4, label=label)
