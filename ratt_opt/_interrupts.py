@@ -26,16 +26,16 @@ def again_later(number: int = signal.SIGINT) -> None:
 
 
 @contextmanager
-def interrupts_afterwards() -> Iterator[None]:
-    """Interrupts of the main thread come at the end of the block, which must be short."""
+def interrupts_afterwards() -> Iterator[list[int]]:
+    """Interrupts of the main thread come at the end of the block, which must be short or look at those it is given."""
+    met: list[int] = []
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield
+        yield met
         return
-    met: list[int] = []
     signal.signal(signal.SIGINT, lambda number, _frame: met.append(number))
     try:
-        yield
+        yield met
     finally:
         signal.signal(signal.SIGINT, before)
         for number in met[:1]:

@@ -157,12 +157,18 @@ class LinearProgram:
         """Forget the last basis."""
         self._highs.clearSolver()
 
-    def solve(self, seconds: float = inf) -> ClaimedSolution:
-        """Run HiGHS for at most so many seconds and return what it claims."""
+    def solve(self, seconds: float = inf, *, is_long: bool = False) -> ClaimedSolution:
+        """Run HiGHS for at most so many seconds and return what it claims.
+
+        ``is_long`` : end it where the user interrupts, which otherwise is answered once it has run
+        """
         if seconds < inf:
             # HiGHS counts the time of all its runs.
             self._highs.setOptionValue("time_limit", self._highs.getRunTime() + max(seconds, 0.0))
-        self._highs.run()
+        if is_long:
+            self._run_unless_interrupted()
+        else:
+            self._highs.run()
         solution, info = self._highs.getSolution(), self._highs.getInfo()
         return ClaimedSolution(
             is_optimal=self._highs.getModelStatus() == self._highspy.HighsModelStatus.kOptimal,
@@ -171,6 +177,23 @@ class LinearProgram:
             bound=float(info.mip_dual_bound),
             nodes=int(info.mip_node_count),
         )
+
+    def _run_unless_interrupted(self) -> None:
+        """HiGHS asks between its steps whether to end; what is raised where it asks could not pass through it."""
+        highs = self._highs
+        asked = (highs.cbMipInterrupt, highs.cbSimplexInterrupt, highs.cbIpmInterrupt)
+        with interrupts_afterwards() as met:
+
+            def answer(event: Any) -> None:
+                event.interrupt(bool(met))
+
+            for question in asked:
+                question.subscribe(answer)
+            try:
+                highs.run()
+            finally:
+                for question in asked:
+                    question.unsubscribe(answer)
 
     def basis(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Columns that are basic and rows that are not (tight), after a solve."""

@@ -128,7 +128,7 @@ def _relax(model: _Model, budget: Budget) -> float:
     best = 1.0
     program = model.program(integer=False)
     while True:
-        claim = program.solve(budget.seconds_left)
+        claim = program.solve(budget.seconds_left, is_long=True)
         if len(claim.duals) != len(model.rows) or len(claim.x) != model.n_pairs + 1:
             return best
         best = max(best, model.proved(claim.duals))
@@ -146,7 +146,7 @@ def _solve(model: _Model, best: frozenset[Link], bound: int, budget: Budget) -> 
         program.option("mip_abs_gap", 0.999)  # sizes are integers
         if budget.max_nodes is not None:
             program.option("mip_max_nodes", budget.max_nodes - budget.nodes)
-        claim = program.solve(budget.seconds_left)
+        claim = program.solve(budget.seconds_left, is_long=True)
         budget.nodes += claim.nodes
         if np.isfinite(claim.bound):
             claimed = max(claimed, ceil(claim.bound - 1e-6))
