@@ -247,6 +247,18 @@ def test_sizes_of_groups_of_large_teams_are_not_all_gone_through(share, own, mon
     assert next(steps) > 0
 
 
+def test_sizes_of_groups_are_listed_once_for_all_plans(monkeypatch):
+    """Of a thousand robots they were half a second late for each plan that was attacked."""
+    robots, lists = 61, []
+    listed = survivor_sizes.iterate_non_dominated_sizes
+    monkeypatch.setattr(survivor_sizes, "iterate_non_dominated_sizes", lambda *of: lists.append(of) or listed(*of))
+    f = ro.TraceObjective(*information_data(np.random.default_rng(0), 2 * robots, 1, 2))
+    problem = ro.Problem(f, np.repeat(np.arange(robots), 2), None, 3, 1200)
+    ro.solve_maxmin(problem, time_limit=0.2)
+    ro.worst_case_attack(problem, 2 * np.arange(robots), time_limit=0)
+    assert lists == [(robots, 3, 1200)]
+
+
 class Interrupt:
     """A ``KeyboardInterrupt`` after some seconds, as Ctrl-C gives it."""
 

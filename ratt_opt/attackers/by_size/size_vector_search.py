@@ -27,7 +27,13 @@ from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
 from ratt_opt.graph.outcomes import realise
-from ratt_opt.graph.survivor_sizes import forced_group_size, iterate_non_dominated_sizes, sizes_of_largest
+from ratt_opt.graph.survivor_sizes import (
+    FIRST,
+    first_non_dominated_sizes,
+    forced_group_size,
+    iterate_non_dominated_sizes,
+    sizes_of_largest,
+)
 from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
@@ -41,7 +47,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SizeVectorSearch"]
 
-MOST_VECTORS = 5_000
+MOST_VECTORS = FIRST - 1
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
 Where there are more, some make attacks, and the bound is that of the forced size and of prices."""
 
@@ -83,12 +89,10 @@ class SizeVectorSearch:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
         n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
-        self._is_relaxed = vectors is not None
-        allowed = iterate_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else iter(vectors)
-        self.vectors = list(islice(allowed, MOST_VECTORS + 1))
+        self._given = vectors
+        allowed = first_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else vectors
+        self.vectors = list(allowed[: MOST_VECTORS + 1])
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
-        self._further = allowed
-        """Those beyond, where there are too many."""
         self.weak = WeakFamilies(task, team)
         self.lists = LowLists(team, np.argsort(-team.single, kind="stable"))
         self.bounds: dict[Sizes, float] = {}
@@ -128,7 +132,7 @@ class SizeVectorSearch:
     def _is_about_families(self, families: list[GroupExchanges]) -> bool:
         """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
         budget = self.task.budget
-        if self._is_relaxed or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
+        if self._given is not None or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
             return False
         second, best = sorted([0.0, *map(self.team.value, weakest_of(families))])[-2:]
         return second >= ALIKE * best
@@ -136,7 +140,8 @@ class SizeVectorSearch:
     def _priced_vectors(self) -> list[Sizes] | None:
         """All vectors, or ``None`` where they are too many for prices to know them."""
         n_robots, part, vectors = len(self.team.single), self.task.budget.part(PRICED_SHARE), list(self.vectors)
-        for sizes in self._further if n_robots <= LARGEST else ():
+        every = self._given or iterate_non_dominated_sizes(n_robots, self.threat.n_blinded, self.threat.alpha_c)
+        for sizes in islice(every, len(vectors), None) if n_robots <= LARGEST else ():
             if len(vectors) >= PRICED_SIZES // n_robots or part.is_over:
                 return None
             vectors.append(sizes)

@@ -13,13 +13,12 @@ enter the pool, and what they prove is derived as for any other.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-from ratt_opt.graph.survivor_sizes import iterate_non_dominated_sizes
+from ratt_opt.graph.survivor_sizes import first_non_dominated_sizes
 from ratt_opt.setfunctions.criteria.two_by_two import triples
 
 if TYPE_CHECKING:
@@ -46,8 +45,8 @@ class NodeAttacks:
 
     def __init__(self, problem: Problem, pool: OutcomePool, team: PlanarTeam, budget: Budget) -> None:
         threat = problem.threat
-        sizes = iterate_non_dominated_sizes(problem.n_robots, threat.n_blinded, threat.alpha_c)
-        self._vectors = [one for one in islice(sizes, MOST_VECTORS) if len(one) > 1]
+        sizes = first_non_dominated_sizes(problem.n_robots, threat.n_blinded, threat.alpha_c)
+        self._vectors = [one for one in sizes[:MOST_VECTORS] if len(one) > 1]
         self._pool, self._team, self._budget = pool, team, budget
         information = problem.information_objective.information
         self._information, self._traces = triples(information), np.trace(information, axis1=-2, axis2=-1)
