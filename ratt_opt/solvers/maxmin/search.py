@@ -75,7 +75,7 @@ class Known:
             pairs=pairs,
             rule=rule,
             cuts=cuts,
-            proofs=GroupProofs(cuts, rule),
+            proofs=GroupProofs(cuts, rule, incumbent.budget),
             tables=SmallTables(task, pool),
             node_attacks=NodeAttacks.of(task.problem, pool, incumbent.budget),
             kicks=Kicks(incumbent),

@@ -18,6 +18,7 @@ from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.frontier import ClosingRule
     from ratt_opt.solvers.maxmin.proof import TreeNode
     from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
@@ -42,12 +43,17 @@ class ClosedGroup:
 
 
 class _RefutedError(Exception):
-    """The group exceeds the level with some elements, or the proof became too large."""
+    """The group exceeds the level with some elements, the proof became too large, or the time is up."""
 
 
-def close_group(task: Task, members: tuple[int, ...], choices: Choices, rule: ClosingRule) -> ClosedGroup | None:
-    """Prove that ``rule`` closes the group's value under every plan within ``choices``, or return ``None``."""
-    search = _Search(task, members, rule)
+def close_group(
+    task: Task, members: tuple[int, ...], choices: Choices, rule: ClosingRule, budget: Budget
+) -> ClosedGroup | None:
+    """Prove that ``rule`` closes the group's value under every plan within ``choices``, or return ``None``.
+
+    Of hundreds of robots and targets a proof takes seconds, so the budget is asked at each of its nodes.
+    """
+    search = _Search(task, members, rule, budget)
     try:
         return search.close(choices)
     except _RefutedError:
@@ -55,14 +61,16 @@ def close_group(task: Task, members: tuple[int, ...], choices: Choices, rule: Cl
 
 
 class _Search:
-    def __init__(self, task: Task, members: tuple[int, ...], rule: ClosingRule) -> None:
+    def __init__(self, task: Task, members: tuple[int, ...], rule: ClosingRule, budget: Budget) -> None:
         self.problem, self.objective = task.problem, task.objective
-        self.members, self.rule = members, rule
+        self.members, self.rule, self.budget = members, rule, budget
         self.inside = np.isin(np.arange(task.problem.n_robots), members)
         self.cuts = 0
 
     def close(self, choices: Choices) -> ClosedGroup:
         """Close one node of the proof, by a cut or by dividing it."""
+        if self.budget.is_over:
+            raise _RefutedError
         own = tuple(choices[i] for i in self.members)
         plan = np.array([choice[0] for choice in own], dtype=np.int64)
         selection = np.zeros(self.objective.n)
@@ -103,8 +111,8 @@ class _Search:
 class GroupProofs:
     """Closes groups of the pool; attempts are remembered until a better plan is known."""
 
-    def __init__(self, cuts: CutStore, rule: ClosingRule) -> None:
-        self.task, self.pool, self.cuts, self.rule = cuts.task, cuts.pool, cuts, rule
+    def __init__(self, cuts: CutStore, rule: ClosingRule, budget: Budget) -> None:
+        self.task, self.pool, self.cuts, self.rule, self.budget = cuts.task, cuts.pool, cuts, rule, budget
         self._attempts: dict[tuple[int, bytes], tuple[float, ClosedGroup | None]] = {}
         self._written: dict[tuple[int, ClosedGroup], int] = {}
         """Outcome and proof -> the cut in the store: the same proof is written below many nodes."""
@@ -117,7 +125,7 @@ class GroupProofs:
         if proof is not None and not self.rule.closes(proof.bound):
             level, proof = -np.inf, None  # of a time when the best plan seemed better
         if proof is None and level < self.rule.level:
-            proof = close_group(self.task, members, choices, self.rule)
+            proof = close_group(self.task, members, choices, self.rule, self.budget)
             self._attempts[key] = (self.rule.level, proof)
         return proof
 
