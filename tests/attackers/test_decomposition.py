@@ -11,7 +11,7 @@ import pytest
 from ratt_opt.attackers.weakest_set.decomposition import _compiled, decomposed
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-from ratt_opt.attackers.weakest_set.slope_cells import least_choice
+from ratt_opt.attackers.weakest_set.slope_cells import Meshes, least_choice
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES
 
@@ -60,11 +60,40 @@ def test_what_a_target_chooses_is_worth_what_is_proved(name, shape):
             true = min(value - shares[list(one)].sum() for value, one in zip(alone, sets, strict=True))
             tolerance = 0.05 * max(spread, float(np.abs(shares).max()))
             slopes = rng.normal(size=3) ** 2 * [1.0, 0.0, 1.0]
-            bound, met = least_choice(compiled, target, shares, slopes, tolerance, 3_000)
+            bound, met = least_choice(compiled, target, shares, slopes, (tolerance, 3_000), Meshes.of(3))
             rounding = 1e-9 * (max(map(abs, alone)) + float(np.abs(shares).sum())) + 1e-12 * (1 + abs(team.baseline))
             assert bound <= true + rounding
             assert true <= met + rounding
             assert bound >= true - tolerance - rounding or shape not in {"useless", "alike"}
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_cells_of_other_families_prove_no_more_than_is_true(name, shape):
+    """Of other robots, sizes, shares and robots chosen already, many or none, one after the other; nor less."""
+    used = 0
+    for seed in range(3):
+        team, rng = team_of(name, seed, shape)
+        meshes = Meshes.of(3)
+        for chosen in (4, 0, 1, 3, 0, 2):
+            order = rng.permutation(N_ROBOTS)
+            inside, free = order[:chosen].tolist(), np.sort(order[chosen : chosen + int(rng.integers(4, 6))])
+            family = team.family(free, int(rng.integers(1, len(free))), inside)
+            sets = list(combinations(range(len(free)), family.size))
+            for target in range(3):
+                alone = [worth(team, target, [*inside, *free[list(one)]]) for one in sets]
+                spread = max(alone) - min(alone) or 1e-300
+                shares = rng.normal(size=len(free)) * spread * 10.0 ** rng.uniform(-2, 1)
+                true = min(value - shares[list(one)].sum() for value, one in zip(alone, sets, strict=True))
+                tolerance = 0.05 * max(spread, float(np.abs(shares).max()))
+                effort, slopes = (tolerance, 3_000), np.array([1.0, 0.0, 1.0])
+                bound, met = least_choice(_compiled(family), target, shares, slopes, effort, meshes)
+                rounding = 1e-9 * (max(map(abs, alone)) + np.abs(shares).sum()) + 1e-12 * (1 + abs(team.baseline))
+                assert bound <= true + rounding
+                assert true <= met + rounding
+                assert bound >= true - tolerance - rounding or shape not in {"useless", "alike"}
+            used += meshes.n_corners.any()
+    assert used > 3 or shape in {"alike", "thin prior"}  # tolerances of none take too many corners to be kept
 
 
 def worth(team, target, robots):

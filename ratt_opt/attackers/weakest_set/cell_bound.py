@@ -18,7 +18,7 @@ import numpy as np
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import matrix_of_gradient, target_value
 
-__all__ = ["ROUNDING", "Corners", "as_gradient", "cell_bound", "clipped_middle"]
+__all__ = ["ROUNDING", "Corners", "as_gradient", "bound_again", "cell_bound", "clipped_middle"]
 
 ROUNDING = 1e-12
 """Margin of a bound, relative to the sizes of its terms."""
@@ -174,12 +174,19 @@ def _shift(family: Any, corners: Any, pair: Any, point: Any, most: float) -> flo
 
 
 @numba.njit(cache=True)
-def _best_bound(family: Any, corners: Any, cell: Any, weights: Any, enough: float) -> float:
-    """The bound with the best weights found, from those given, which are changed in place."""
-    best, point = -np.inf, (0.0, 0.0, 0.0)
+def _mean(corners: Any, cell: Any, weights: Any) -> Any:
+    """The mean of the slopes of a cell's corners."""
+    x, y, z = 0.0, 0.0, 0.0
     for k in range(4):
         one = corners.slopes[cell[k]]
-        point = point[0] + weights[k] * one[0], point[1] + weights[k] * one[1], point[2] + weights[k] * one[2]
+        x, y, z = x + weights[k] * one[0], y + weights[k] * one[1], z + weights[k] * one[2]
+    return x, y, z
+
+
+@numba.njit(cache=True)
+def _best_bound(family: Any, corners: Any, cell: Any, weights: Any, enough: float) -> float:
+    """The bound with the best weights found, from those given, which are changed in place."""
+    best, point = -np.inf, _mean(corners, cell, weights)
     for _ in range(SHIFTS):
         matrix = _matrix_at(family, point)
         if matrix[0] == 0:
@@ -222,13 +229,14 @@ def cell_bound(family: Any, corners: Any, cell: Any, setting: Any, weights: Any,
     """What choices of the only target of a family are worth at least whose gradients are in a cell; infinite for none.
 
     ``cell`` (4,) : of corners; ``setting`` : axes of the coordinates, and the least eigenvalue of a gradient there;
-    ``weights`` (4,) : become those of the corners; ``enough`` : no better bound is needed
+    ``weights`` (4,) : become those of the corners, or 0; ``enough`` : no better bound is needed
     """
     axes, low = setting
     middle, smaller, axis = clipped_middle(corners, cell, low)
-    weights[:] = 0.25
+    weights[:] = 0.0
     if smaller < low and _is_outside(corners, cell, axis, low):
         return np.inf
+    weights[:] = 0.25
     gradient = as_gradient(axes, middle)
     bound = _bound_with(family, corners, cell, matrix_of_gradient(family.code, family.weights[0], gradient))
     if bound < enough:
@@ -238,3 +246,19 @@ def cell_bound(family: Any, corners: Any, cell: Any, setting: Any, weights: Any,
             _start(corners, cell, weights)
         bound = max(bound, _best_bound(family, corners, cell, weights, enough))
     return bound
+
+
+@numba.njit(cache=True)
+def bound_again(family: Any, corners: Any, cell: Any, setting: Any, weights: Any, enough: float) -> float:  # noqa: PLR0917
+    """The same, where ``weights`` are those of a family much like this one: most cells take one matrix or two."""
+    low = setting[1]
+    if weights.sum() > 0:
+        bound = _bound_with(family, corners, cell, _matrix_at(family, _mean(corners, cell, weights)))
+        if bound < enough:
+            bound = max(bound, _bound_with(family, corners, cell, _levelling(corners, cell)))
+        if bound >= enough:
+            return bound
+        _, smaller, axis = clipped_middle(corners, cell, low)
+        if not (smaller < low and _is_outside(corners, cell, axis, low)):
+            return max(bound, _best_bound(family, corners, cell, weights, enough))
+    return cell_bound(family, corners, cell, setting, weights, enough)

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attackers.weakest_set.outer_polytopes import target_values
-from ratt_opt.attackers.weakest_set.slope_cells import least_choice
-from ratt_opt.attackers.weakest_set.target_choices import Ascent, Family, ascend, choose
+from ratt_opt.attackers.weakest_set.slope_cells import Meshes, least_choice
+from ratt_opt.attackers.weakest_set.target_choices import Ascent, Family, ascend, choose, room
 from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
@@ -80,7 +80,13 @@ class Decomposition:
         )
 
 
-def decomposed(family: SetFamily, goal: float, budget: Budget, parent: Decomposition | None = None) -> Decomposition:
+def decomposed(
+    family: SetFamily,
+    goal: float,
+    budget: Budget,
+    parent: Decomposition | None = None,
+    meshes: Meshes | None = None,
+) -> Decomposition:
     """Best found minorant; ``family`` : 0 < size < F; ``goal`` : no better bound is needed, finite.
 
     ``parent`` : a minorant of a larger family, or of this one where other things were lacking
@@ -90,6 +96,7 @@ def decomposed(family: SetFamily, goal: float, budget: Budget, parent: Decomposi
     OutOfBudget : the time is up.
     """
     compiled, ascent = _compiled(family), _start(family, parent)
+    meshes = Meshes.of(len(family.start)) if meshes is None else meshes
     steps, rounds, missed = (FIRST_STEPS, FIRST_ROUNDS, MISSED * abs(goal)) if parent is None else (STEPS, ROUNDS, 0.0)
     best, lost, fine = None, 0.0, TOLERANCE * abs(goal)
     for _ in range(rounds):
@@ -98,7 +105,7 @@ def decomposed(family: SetFamily, goal: float, budget: Budget, parent: Decomposi
         reached = ascend(compiled, ascent, steps, goal + max(lost, fine) + fine, aim)
         budget.check()
         tolerance = max(LOST * (reached - goal), LOST * missed, fine)
-        found, met = _proved(family, compiled, ascent, tolerance / len(family.start))
+        found, met = _proved(family, compiled, ascent, tolerance / len(family.start), meshes)
         missed, bound = reached - met, found.bound(family.size)
         lost, before = reached - bound, -np.inf if best is None else best.bound(family.size)
         best = found if bound > before else best
@@ -116,7 +123,7 @@ def _compiled(family: SetFamily) -> Family:
         team.weights,
         team.prior,
         np.ascontiguousarray(family.start),
-        np.ascontiguousarray(family.information.transpose(1, 0, 2)),
+        np.ascontiguousarray(family.information.transpose(1, 2, 0)),
         np.zeros(n_robots) if family.lacking is None else np.ascontiguousarray(family.lacking),
         family.size,
     )
@@ -149,14 +156,16 @@ def _reached(compiled: Family, ascent: Ascent) -> float:
     return float(ascend(compiled, ascent, 1, -np.inf, 1.0))
 
 
-def _proved(family: SetFamily, compiled: Family, ascent: Ascent, tolerance: float) -> tuple[Decomposition, float]:
+def _proved(
+    family: SetFamily, compiled: Family, ascent: Ascent, tolerance: float, meshes: Meshes
+) -> tuple[Decomposition, float]:
     """The minorant of these shares, and what it would be by the best choices met.
 
     A target of which nothing is proved has no shares, and is worth what is chosen.
     """
     constants, shares = np.empty(len(family.start)), ascent.shares.copy()
     search: Any = _prove_all
-    met = search(compiled, ascent, tolerance, CORNERS, constants)
+    met = search(compiled, ascent, (tolerance, CORNERS), meshes, constants)
     without = target_values(family, family.start)
     unsound = ~np.isfinite(constants)
     constants[unsound], shares[unsound] = without[unsound], 0.0
@@ -179,19 +188,19 @@ def _proved(family: SetFamily, compiled: Family, ascent: Ascent, tolerance: floa
 
 
 @numba.njit(cache=True)
-def _prove_all(family: Any, ascent: Any, tolerance: float, most: int, constants: Any) -> float:
+def _prove_all(family: Any, ascent: Any, effort: Any, meshes: Any, constants: Any) -> float:
     """What each target's choices are worth at least, and the sum of the least ones met.
 
     Those found here replace the worst slopes that are known.
     """
     total = 0.0
-    work = np.empty(len(family.lacking)), np.zeros(len(family.lacking), dtype=np.bool_), np.empty(3)
+    work = room(len(family.lacking))
     for j in range(len(constants)):
         values = np.empty(ascent.slopes.shape[1])
         for k in range(len(values)):
             _, values[k] = choose(family, j, ascent.shares[j], ascent.slopes[j, k], work)
         slopes = ascent.slopes[j, values.argmin()].copy()
-        constants[j], best = least_choice(family, j, ascent.shares[j], slopes, tolerance, most)
+        constants[j], best = least_choice(family, j, ascent.shares[j], slopes, effort, meshes)
         total += best
         if best < values.min():
             ascent.slopes[j, _superfluous(values)] = slopes

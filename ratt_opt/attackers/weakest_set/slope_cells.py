@@ -19,17 +19,24 @@ Imported only where a large team is attacked: compiling takes seconds, once per 
 
 from __future__ import annotations
 
-from heapq import heappop, heappush
-from typing import Any
+from heapq import heapify, heappop, heappush
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.cell_bound import ROUNDING, Corners, as_gradient, cell_bound, clipped_middle
-from ratt_opt.attackers.weakest_set.target_choices import Family, choose
+from ratt_opt.attackers.weakest_set.cell_bound import (
+    ROUNDING,
+    Corners,
+    as_gradient,
+    bound_again,
+    cell_bound,
+    clipped_middle,
+)
+from ratt_opt.attackers.weakest_set.target_choices import IN_ANY_ORDER, Family, choose, room
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, target_gradient
 
-__all__ = ["least_choice"]
+__all__ = ["Meshes", "least_choice"]
 
 RADIAL = 3.0
 """Quotient of the traces of two corners beyond which a simplex is divided between them."""
@@ -41,6 +48,38 @@ HEAVY, SHARE = 4, 0.5
 """Robots of a target with and without which its choices are searched apart, at most, and their share of the mean."""
 SOUND = 1e-7
 """Quotient of the eigenvalues of what is chosen already, in the coordinates, below which nothing is claimed."""
+
+MESH = 1_000
+"""Corners of the cells that are kept, at most."""
+
+
+class Meshes(NamedTuple):
+    """Cells of the last searches, of each target and pattern of heavy robots, for searches of other families.
+
+    ``n_corners`` (K,) of each slot, 0 for no cells, which are three fewer; ``white`` (K, V, 3), ``cells`` (K, V, 4) and
+    ``weights`` (K, V, 4) as in ``cell_bound.py``; ``mean`` (K, 3) is the unit matrix of the coordinates; the cells
+    contain all gradients with eigenvalues up to ``high`` (K,) there
+    """
+
+    n_corners: Any
+    white: Any
+    cells: Any
+    weights: Any
+    mean: Any
+    high: Any
+
+    @classmethod
+    def of(cls, n_targets: int) -> Meshes:
+        """None yet."""
+        slots = n_targets * 2**HEAVY
+        return cls(
+            n_corners=np.zeros(slots, dtype=np.int64),
+            white=np.empty((slots, MESH, 3)),
+            cells=np.empty((slots, MESH, 4), dtype=np.int16),
+            weights=np.empty((slots, MESH, 4)),
+            mean=np.empty((slots, 3)),
+            high=np.empty(slots),
+        )
 
 
 @numba.njit(cache=True)
@@ -64,10 +103,10 @@ def _whitened(axes: Any, matrix: Any) -> Any:
 def _range(family: Any, target: int, axes: Any, mean: Any) -> Any:
     """Eigenvalues of gradients in the coordinates, at least and at most; -1 where rounding forbids to say."""
     information, start = family.information[target], family.start[target]
-    traces = np.empty(len(information))
+    traces = np.empty(information.shape[1])
     a, b, c = _whitened(axes, (start[0], start[1], start[2]))
-    for i in range(len(information)):
-        x, _, z = _whitened(axes, (information[i, 0], information[i, 1], information[i, 2]))
+    for i in range(len(traces)):
+        x, _, z = _whitened(axes, (information[0, i], information[1, i], information[2, i]))
         traces[i] = x + z
     strongest = a + c + np.sort(traces)[len(traces) - family.size :].sum()
     larger = (a + c) / 2 + np.sqrt(((a - c) / 2) ** 2 + b * b)
@@ -115,7 +154,7 @@ def _longest_edge(corners: Any, cell: Any, middle: Any, weights: Any) -> Any:
     return (x0, x1) if large > RADIAL * small else ends
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, fastmath=IN_ANY_ORDER)
 def _add_corner(  # noqa: PLR0917
     family: Any, shares: Any, corners: Any, k: int, axes: Any, work: Any, best: float, slopes: Any
 ) -> float:
@@ -126,54 +165,115 @@ def _add_corner(  # noqa: PLR0917
     a, b, c = as_gradient(axes, (corners.white[k, 0], corners.white[k, 1], corners.white[k, 2]))
     corners.slopes[k, 0], corners.slopes[k, 1], corners.slopes[k, 2] = a, 2 * b, c
     corners.heights[k], value = choose(family, 0, shares, corners.slopes[k], work)
+    size = 0.0
+    for score in work[0]:
+        size += abs(score)
     # Sums of F terms: the height is rounded.
-    corners.heights[k] -= ROUNDING * np.abs(work[0]).sum()
+    corners.heights[k] -= ROUNDING * size
     if value < best:
-        matrix = work[2][0], work[2][1], work[2][2]
+        matrix = work[3][0], work[3][1], work[3][2]
         slopes[0], slopes[1], slopes[2] = target_gradient(family.code, family.weights[0], matrix)
     return float(value)
 
 
 @numba.njit(cache=True)
-def _search_cells(family: Any, shares: Any, slopes: Any, known: float, tolerance: float, most: int) -> Any:  # noqa: PLR0917
-    """:func:`least_choice` of the only target of a family, where it is at most ``known``."""
-    n_robots, best = len(shares), known
-    work = np.empty(n_robots), np.zeros(n_robots, dtype=np.bool_), np.empty(3)
-    mean = family.start[0].copy()
-    for i in range(n_robots):
-        mean += family.information[0, i] * (family.size / n_robots)
-    axes = _axes(mean)
-    low, high = _range(family, 0, axes, mean)
-    if low < 0:
-        return -np.inf, best
-    corners = Corners(np.empty((most + 4, 3)), np.empty((most + 4, 3)), np.empty(most + 4))
+def _begin(high: float, corners: Any, cells: Any) -> int:
+    """Slopes with eigenvalues of at most ``high``, of none at least, in one cell; returns its corners."""
     # Matrices of trace t without negative eigenvalues are a disk, and in the triangle around it.
     corners.white[0] = 0.0
     for k in range(1, 4):
         x, y = 2 * np.cos(2 * np.pi * k / 3), 2 * np.sin(2 * np.pi * k / 3)
         corners.white[k, 0], corners.white[k, 1], corners.white[k, 2] = high * (1 + x), high * y, high * (1 - x)
-    for k in range(4):
-        best = min(best, _add_corner(family, shares, corners, k, axes, work, best, slopes))
-    cells, weights = np.empty((2 * most + 2, 4), dtype=np.int64), np.empty((2 * most + 2, 4))
     cells[0] = np.arange(4)
-    bound = cell_bound(family, corners, cells[0], (axes, low), weights[0], np.inf)
-    waiting, n_corners, n_cells = [(bound, 0)], 4, 1
+    return 4
+
+
+@numba.njit(cache=True)
+def _resume(meshes: Any, slot: int, corners: Any, cells: Any, weights: Any) -> int:
+    """The cells that a slot has; returns their corners."""
+    n_corners = meshes.n_corners[slot]
+    corners.white[:n_corners] = meshes.white[slot, :n_corners]
+    cells[: n_corners - 3] = meshes.cells[slot, : n_corners - 3]
+    weights[: n_corners - 3] = meshes.weights[slot, : n_corners - 3]
+    return int(n_corners)
+
+
+@numba.njit(cache=True)
+def _keep(meshes: Any, slot: int, n_corners: int, corners: Any, cells: Any, weights: Any) -> None:  # noqa: PLR0917
+    """Let the slot have these cells, or none where they are too many."""
+    if n_corners > meshes.white.shape[1]:
+        meshes.n_corners[slot] = 0
+        return
+    meshes.n_corners[slot] = n_corners
+    meshes.white[slot, :n_corners] = corners.white[:n_corners]
+    meshes.cells[slot, : n_corners - 3] = cells[: n_corners - 3]
+    meshes.weights[slot, : n_corners - 3] = weights[: n_corners - 3]
+
+
+@numba.njit(cache=True)
+def _setting(family: Any, meshes: Any, slot: int) -> Any:
+    """Axes of the coordinates, the eigenvalues of gradients there, and whether the slot's cells contain them all."""
+    for is_known in (True, False):
+        if is_known and meshes.n_corners[slot] == 0:
+            continue
+        if not is_known:
+            mean = meshes.mean[slot]
+            mean[:] = family.start[0]
+            for i in range(family.information.shape[2]):
+                mean += family.information[0, :, i] * (family.size / family.information.shape[2])
+        axes = _axes(meshes.mean[slot])
+        low, high = _range(family, 0, axes, meshes.mean[slot])
+        if is_known and high <= meshes.high[slot]:
+            return axes, low, high, True
+    meshes.high[slot] = high
+    return axes, low, high, False
+
+
+@numba.njit(cache=True)
+def _search_cells(  # noqa: PLR0917
+    family: Any, shares: Any, slopes: Any, known: float, effort: Any, meshes: Any, slot: int
+) -> Any:
+    """:func:`least_choice` of the only target of a family, where it is at most ``known``; with the cells of a slot."""
+    (tolerance, most), best = effort, known
+    work = room(len(shares))
+    if meshes.n_corners[slot] > most:
+        meshes.n_corners[slot] = 0
+    axes, low, high, is_known = _setting(family, meshes, slot)
+    if low < 0:
+        meshes.n_corners[slot] = 0
+        return -np.inf, best
+    corners = Corners(np.empty((most + 4, 3)), np.empty((most + 4, 3)), np.empty(most + 4))
+    cells, weights = np.empty((most + 4, 4), dtype=np.int64), np.empty((most + 4, 4))
+    n_corners = _resume(meshes, slot, corners, cells, weights) if is_known else _begin(high, corners, cells)
+    for k in range(n_corners):
+        best = min(best, _add_corner(family, shares, corners, k, axes, work, best, slopes))
+    waiting = [(-np.inf, 0)]
+    waiting.pop()
+    for k in range(n_corners - 3):
+        enough = best - tolerance
+        if is_known:
+            bound = bound_again(family, corners, cells[k], (axes, low), weights[k], enough)
+        else:
+            bound = cell_bound(family, corners, cells[k], (axes, low), weights[k], enough)
+        if bound < np.inf:
+            waiting.append((bound, k))
+    heapify(waiting)
     while n_corners < most + 4 and len(waiting) > 0 and waiting[0][0] < best - tolerance:
         bound, one = heappop(waiting)
-        cell = cells[one]
+        cell, other = cells[one], n_corners - 3
         middle, _, _ = clipped_middle(corners, cell, low)
         x, y = _longest_edge(corners, cell, middle, weights[one])
         corners.white[n_corners] = (corners.white[cell[x]] + corners.white[cell[y]]) / 2
         best = min(best, _add_corner(family, shares, corners, n_corners, axes, work, best, slopes))
-        cells[n_cells] = cell
-        cells[n_cells, x] = n_corners
+        cells[other] = cell
+        cells[other, x] = n_corners
         cells[one, y] = n_corners
         n_corners += 1
-        for child in (one, n_cells):
+        for child in (one, other):
             mine = cell_bound(family, corners, cells[child], (axes, low), weights[child], best - tolerance)
             if mine < np.inf:
                 heappush(waiting, (max(bound, mine), child))
-        n_cells += 1
+    _keep(meshes, slot, n_corners, corners, cells, weights)
     least = waiting[0][0] if len(waiting) > 0 else best
     return min(least, best), best
 
@@ -182,16 +282,16 @@ def _search_cells(family: Any, shares: Any, slopes: Any, known: float, tolerance
 def _heavy(family: Any, target: int) -> Any:
     """Robots without which the mean information of the others is much smaller, (h,), and all others (F - h,)."""
     information = family.information[target]
-    n_robots, is_light = len(information), np.ones(len(information), dtype=np.bool_)
+    n_robots, is_light = information.shape[1], np.ones(information.shape[1], dtype=np.bool_)
     for _ in range(min(HEAVY, family.size, n_robots - family.size)):
         part = family.size / is_light.sum()
         mean = family.start[target].copy()
         for i in range(n_robots):
             if is_light[i]:
-                mean += information[i] * part
+                mean += information[:, i] * part
         axes, heaviest, most = _axes(mean), -1, -np.inf
         for i in range(n_robots):
-            x, _, z = _whitened(axes, (information[i, 0], information[i, 1], information[i, 2]))
+            x, _, z = _whitened(axes, (information[0, i], information[1, i], information[2, i]))
             if is_light[i] and x + z > most:
                 heaviest, most = i, x + z
         if most * part < SHARE:
@@ -201,27 +301,29 @@ def _heavy(family: Any, target: int) -> Any:
 
 
 @numba.njit(cache=True)
-def least_choice(family: Any, target: int, shares: Any, slopes: Any, tolerance: float, most: int) -> Any:  # noqa: PLR0917
+def least_choice(family: Any, target: int, shares: Any, slopes: Any, effort: Any, meshes: Any) -> Any:  # noqa: PLR0917
     """What choices (``target_choices.py``) of a target are worth at least, less their shares (F,); the least one met.
 
     Minus infinity where rounding forbids to say. ``slopes`` (3,) : those of a good choice, replaced by a better one's;
-    ``tolerance`` : between the bound and the least, from which no cell is divided; ``most`` : corners of each search
+    ``effort`` : the tolerance between the bound and the least, from which no cell is divided, and the most corners of
+    each search; ``meshes`` : cells to begin with, and those of the end
     """
     n_robots = len(shares)
-    work = np.empty(n_robots), np.zeros(n_robots, dtype=np.bool_), np.empty(3)
+    work = room(n_robots)
     _, best = choose(family, target, shares, slopes, work)
     heavy, light = _heavy(family, target)
-    information, lighter = family.information[target], np.empty((1, len(light), 3))
-    lighter[0] = information[light]
+    information, lighter = family.information[target], np.empty((1, 3, len(light)))
+    lighter[0] = information[:, light]
     one, least = slice(target, target + 1), np.inf
     for pattern in range(2 ** len(heavy)):
         start, paid, size = family.start[one].copy(), 0.0, family.size
         for t in range(len(heavy)):
             if pattern >> t & 1:
-                start[0] += information[heavy[t]]
+                start[0] += information[:, heavy[t]]
                 paid += shares[heavy[t]]
                 size -= 1
         part = Family(family.code, family.weights[one], family.prior[one], start, lighter, family.lacking[light], size)
-        bound, found = _search_cells(part, shares[light], slopes, best + paid, tolerance, most)
+        slot = target * 2**HEAVY + pattern
+        bound, found = _search_cells(part, shares[light], slopes, best + paid, effort, meshes, slot)
         least, best = min(least, bound - paid), min(best, found - paid)
     return least, best

@@ -24,7 +24,7 @@ from ratt_opt.attackers.weakest_set.smoothed_dual import soft_level
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import target_gradient, target_value
 
-__all__ = ["Ascent", "Family", "ascend", "choose", "pick"]
+__all__ = ["Ascent", "Family", "ascend", "choose", "pick", "room"]
 
 IMPROVED = 6
 """Steps from slopes to slopes, at most, each time that shares have changed."""
@@ -39,11 +39,13 @@ PROGRESS = 0.02
 FURTHEST = 40.0
 """How much longer than the last direction itself says a step may be that a mean of directions makes."""
 HALVINGS = 45
+IN_ANY_ORDER = {"reassoc", "nsz", "contract"}
+"""Sums of robots' terms may be made in any order, some at once; margins for their rounding hold for each."""
 
 
 class Family(NamedTuple):
     """Sets of ``size`` of F robots, beside some chosen ones: ``code``, ``weights`` (M,) of the criterion, ``prior``
-    (M, 3); ``start`` (M, 3) information with the chosen ones; ``information`` (M, F, 3); ``lacking`` (F,), all 0 where
+    (M, 3); ``start`` (M, 3) information with the chosen ones; ``information`` (M, 3, F); ``lacking`` (F,), all 0 where
     nothing is lacking.
     """
 
@@ -85,35 +87,49 @@ def pick(scores: Any, size: int, chosen: Any) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, fastmath=IN_ANY_ORDER)
 def choose(family: Any, target: int, shares: Any, slopes: Any, work: Any) -> Any:
-    """The set that slopes choose: what it costs at these slopes, and its value less its shares; ``work``: scores (F,),
-    the set (F,), its information (3,).
+    """The set that slopes choose: what it costs at these slopes, and its value less its shares; ``work`` of ``room``:
+    scores (F,), some of them in another order (F,), the set (F,), its information (3,).
     """
-    scores, chosen, matrix = work
-    information, start = family.information[target], family.start[target]
-    for i in range(len(scores)):
-        scores[i] = -shares[i]
-        for t in range(3):
-            scores[i] += slopes[t] * information[i, t]
-    cost, paid = pick(scores, family.size, chosen), 0.0
-    for t in range(3):
-        cost += slopes[t] * start[t]
-        matrix[t] = start[t]
-    for i in range(len(scores)):
-        if chosen[i]:
-            paid += shares[i]
-            for t in range(3):
-                matrix[t] += information[i, t]
-    triple = matrix[0], matrix[1], matrix[2]
-    return cost, target_value(family.code, family.weights[target], family.prior[target], triple) - paid
+    scores, ordered, chosen, matrix = work
+    information, start, n_robots = family.information[target], family.start[target], len(scores)
+    x, y, z = slopes[0], slopes[1], slopes[2]
+    for i in range(n_robots):
+        scores[i] = x * information[0, i] + y * information[1, i] + z * information[2, i] - shares[i]
+        ordered[i] = scores[i]
+    last, count = move_least_first(ordered, family.size) if family.size > 0 else -np.inf, 0
+    a, b, c, paid, cost = start[0], start[1], start[2], 0.0, 0.0
+    for i in range(n_robots):
+        is_in = scores[i] < last
+        chosen[i] = is_in
+        count += 1 if is_in else 0
+        a += information[0, i] if is_in else 0.0
+        b += information[1, i] if is_in else 0.0
+        c += information[2, i] if is_in else 0.0
+        paid += shares[i] if is_in else 0.0
+        cost += scores[i] if is_in else 0.0
+    for i in range(n_robots):
+        if count < family.size and scores[i] == last:  # of equals the first
+            chosen[i], count = True, count + 1
+            a, b, c = a + information[0, i], b + information[1, i], c + information[2, i]
+            paid, cost = paid + shares[i], cost + last
+    matrix[0], matrix[1], matrix[2] = a, b, c
+    cost += x * start[0] + y * start[1] + z * start[2]
+    return cost, target_value(family.code, family.weights[target], family.prior[target], (a, b, c)) - paid
+
+
+@numba.njit(cache=True)
+def room(n_robots: int) -> Any:
+    """Arrays for :func:`choose` to work with."""
+    return np.empty(n_robots), np.empty(n_robots), np.zeros(n_robots, dtype=np.bool_), np.empty(3)
 
 
 @numba.njit(cache=True)
 def _improve(family: Any, ascent: Any, values: Any, sets: Any) -> None:
     """Improve every choice from its slopes: values less shares (M, K), and the sets (M, K, F)."""
     n_targets, n_choices, n_robots = sets.shape
-    work = np.empty(n_robots), np.zeros(n_robots, dtype=np.bool_), np.empty(3)
+    work = room(n_robots)
     for j in range(n_targets):
         for k in range(n_choices):
             slopes, values[j, k] = ascent.slopes[j, k], np.inf
@@ -122,8 +138,8 @@ def _improve(family: Any, ascent: Any, values: Any, sets: Any) -> None:
                 if not value < values[j, k]:
                     break
                 values[j, k] = value
-                sets[j, k] = work[1]
-                matrix = work[2][0], work[2][1], work[2][2]
+                sets[j, k] = work[2]
+                matrix = work[3][0], work[3][1], work[3][2]
                 slopes[0], slopes[1], slopes[2] = target_gradient(family.code, family.weights[j], matrix)
 
 

@@ -24,6 +24,7 @@ from ratt_opt.attackers.by_size.family_prices.paying_pairs import (
 )
 from ratt_opt.attackers.weakest_set.branch_and_bound import SetNode
 from ratt_opt.attackers.weakest_set.decomposition import decomposed
+from ratt_opt.attackers.weakest_set.slope_cells import Meshes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -60,6 +61,7 @@ class PayingTree:
     def __init__(self, team: PlanarTeam, view: View, size: int) -> None:
         self._team, self._view, self._size = team, view, size
         self._root: Decomposition | None = None
+        self._meshes = Meshes.of(len(team.weights))
         self._has_sharper_minorants = False
         self._tried, self._serial = TRIED, 0
         self._question: Question | None = None
@@ -175,7 +177,7 @@ class PayingTree:
             return [node]
         limit = question.limit - float(question.prices[list(node.inside)].sum())
         family = replace(self._team.family(robots, left, node.inside), lacking=limit / left - question.prices[robots])
-        minorant = decomposed(family, question.threshold, budget, node.minorant)
+        minorant = decomposed(family, question.threshold, budget, node.minorant, self._meshes)
         if not (node.inside or node.outside):
             self._root = minorant
         bound = max(node.bound, minorant.bound(left))
