@@ -158,9 +158,10 @@ def test_what_is_proved_of_all_sizes_holds_however_a_search_ends(name, monkeypat
     """Of sets that pay prices of robots and sizes, cut short by nodes of a size and by nodes of the budget."""
     for constant, value in {"FAR": 0.0, "SHARPER": (-np.inf, -np.inf), "TRIED": 1, "FEWEST": 1, "MOST": 1}.items():
         monkeypatch.setattr(paying_tree, constant, value)
+    monkeypatch.setattr(set_finder, "FIRST_TURN", 60)
     monkeypatch.setattr(set_finder, "TURN", 60)
     proved, ends = 0, set()
-    for seed in range(24):
+    for seed in range(48):
         team, rng = make_team(name, seed), np.random.default_rng([seed, 3])
         threshold, robots = float(rng.uniform(0.5, 0.95)) * team.value(EVERYONE), rng.normal(size=N_ROBOTS)
         sets = [one for size in range(1, N_ROBOTS + 1) for one in combinations(range(N_ROBOTS), size)]

@@ -22,8 +22,9 @@ __all__ = ["SetFinder"]
 
 OF_SIZE = 3
 """How many times as many moves a set of one size has as one around a robot."""
-TURN = 3_000
-"""Nodes of a size before that of which least is proved has its turn: pairs of few robots, or fifteen minorants."""
+FIRST_TURN, TURN = 700, 3_000
+"""Nodes of a size before that of which least is proved has its turn: pairs and a minorant of all sets, so that
+something is proved of every size soon; then pairs of few robots, or fifteen minorants."""
 SEED = 0
 
 
@@ -112,12 +113,12 @@ class SetFinder:
         for size in possible:
             if found and size not in likely:
                 return Sets(found, -np.inf)
-            sets = self._sets.of_size(_question(threshold, prices, size), size, budget, TURN)
+            sets = self._sets.of_size(_question(threshold, prices, size), size, budget, FIRST_TURN)
             lower[size] = sets.lower
             if sets.found:
                 self._likely.add(size)
                 found.extend(sets.found)
-        spent = dict.fromkeys(lower, TURN)
+        spent = dict.fromkeys(lower, FIRST_TURN)
         while lower and not found:
             self.proved = min(lower.values())
             size = min(lower, key=lower.__getitem__)
