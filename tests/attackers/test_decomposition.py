@@ -11,7 +11,8 @@ import pytest
 from ratt_opt.attackers.weakest_set.decomposition import _compiled, decomposed
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-from ratt_opt.attackers.weakest_set.slope_cells import Meshes, least_choice
+from ratt_opt.attackers.weakest_set.slope_cells import least_choice
+from ratt_opt.attackers.weakest_set.slope_meshes import Meshes
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES
 

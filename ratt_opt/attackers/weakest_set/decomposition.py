@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attackers.weakest_set.outer_polytopes import target_values
-from ratt_opt.attackers.weakest_set.slope_cells import Meshes, least_choice
+from ratt_opt.attackers.weakest_set.slope_cells import least_choice
+from ratt_opt.attackers.weakest_set.slope_meshes import Meshes
 from ratt_opt.attackers.weakest_set.target_choices import Ascent, Family, ascend, choose, room
 from ratt_opt.compiling import numba
 

@@ -20,7 +20,7 @@ Imported only where a large team is attacked: compiling takes seconds, once per 
 from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -32,11 +32,12 @@ from ratt_opt.attackers.weakest_set.cell_bound import (
     cell_bound,
     clipped_middle,
 )
+from ratt_opt.attackers.weakest_set.slope_meshes import HEAVY, begin, keep, resume
 from ratt_opt.attackers.weakest_set.target_choices import IN_ANY_ORDER, Family, choose, room
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, target_gradient
 
-__all__ = ["Meshes", "least_choice"]
+__all__ = ["least_choice"]
 
 RADIAL = 3.0
 """Quotient of the traces of two corners beyond which a simplex is divided between them."""
@@ -44,42 +45,10 @@ LEAST = 0.01
 """What the product of two corners' weights counts more than it is, where the edge between them is measured."""
 MARGIN = 1e-7
 """Relative margin of the eigenvalues that gradients may have."""
-HEAVY, SHARE = 4, 0.5
-"""Robots of a target with and without which its choices are searched apart, at most, and their share of the mean."""
+SHARE = 0.5
+"""Share of the mean from which a robot's choices are searched apart."""
 SOUND = 1e-7
 """Quotient of the eigenvalues of what is chosen already, in the coordinates, below which nothing is claimed."""
-
-MESH = 1_000
-"""Corners of the cells that are kept, at most."""
-
-
-class Meshes(NamedTuple):
-    """Cells of the last searches, of each target and pattern of heavy robots, for searches of other families.
-
-    ``n_corners`` (K,) of each slot, 0 for no cells, which are three fewer; ``white`` (K, V, 3), ``cells`` (K, V, 4) and
-    ``weights`` (K, V, 4) as in ``cell_bound.py``; ``mean`` (K, 3) is the unit matrix of the coordinates; the cells
-    contain all gradients with eigenvalues up to ``high`` (K,) there
-    """
-
-    n_corners: Any
-    white: Any
-    cells: Any
-    weights: Any
-    mean: Any
-    high: Any
-
-    @classmethod
-    def of(cls, n_targets: int) -> Meshes:
-        """None yet."""
-        slots = n_targets * 2**HEAVY
-        return cls(
-            n_corners=np.zeros(slots, dtype=np.int64),
-            white=np.empty((slots, MESH, 3)),
-            cells=np.empty((slots, MESH, 4), dtype=np.int16),
-            weights=np.empty((slots, MESH, 4)),
-            mean=np.empty((slots, 3)),
-            high=np.empty(slots),
-        )
 
 
 @numba.njit(cache=True)
@@ -177,56 +146,26 @@ def _add_corner(  # noqa: PLR0917
 
 
 @numba.njit(cache=True)
-def _begin(high: float, corners: Any, cells: Any) -> int:
-    """Slopes with eigenvalues of at most ``high``, of none at least, in one cell; returns its corners."""
-    # Matrices of trace t without negative eigenvalues are a disk, and in the triangle around it.
-    corners.white[0] = 0.0
-    for k in range(1, 4):
-        x, y = 2 * np.cos(2 * np.pi * k / 3), 2 * np.sin(2 * np.pi * k / 3)
-        corners.white[k, 0], corners.white[k, 1], corners.white[k, 2] = high * (1 + x), high * y, high * (1 - x)
-    cells[0] = np.arange(4)
-    return 4
+def _setting(family: Any, meshes: Any, slot: int, most: int) -> Any:
+    """Axes of the coordinates, and the eigenvalues of gradients there, at least (-1: cannot be said) and at most.
 
-
-@numba.njit(cache=True)
-def _resume(meshes: Any, slot: int, corners: Any, cells: Any, weights: Any) -> int:
-    """The cells that a slot has; returns their corners."""
-    n_corners = meshes.n_corners[slot]
-    corners.white[:n_corners] = meshes.white[slot, :n_corners]
-    cells[: n_corners - 3] = meshes.cells[slot, : n_corners - 3]
-    weights[: n_corners - 3] = meshes.weights[slot, : n_corners - 3]
-    return int(n_corners)
-
-
-@numba.njit(cache=True)
-def _keep(meshes: Any, slot: int, n_corners: int, corners: Any, cells: Any, weights: Any) -> None:  # noqa: PLR0917
-    """Let the slot have these cells, or none where they are too many."""
-    if n_corners > meshes.white.shape[1]:
-        meshes.n_corners[slot] = 0
-        return
-    meshes.n_corners[slot] = n_corners
-    meshes.white[slot, :n_corners] = corners.white[:n_corners]
-    meshes.cells[slot, : n_corners - 3] = cells[: n_corners - 3]
-    meshes.weights[slot, : n_corners - 3] = weights[: n_corners - 3]
-
-
-@numba.njit(cache=True)
-def _setting(family: Any, meshes: Any, slot: int) -> Any:
-    """Axes of the coordinates, the eigenvalues of gradients there, and whether the slot's cells contain them all."""
-    for is_known in (True, False):
-        if is_known and meshes.n_corners[slot] == 0:
-            continue
-        if not is_known:
-            mean = meshes.mean[slot]
-            mean[:] = family.start[0]
-            for i in range(family.information.shape[2]):
-                mean += family.information[0, :, i] * (family.size / family.information.shape[2])
-        axes = _axes(meshes.mean[slot])
-        low, high = _range(family, 0, axes, meshes.mean[slot])
-        if is_known and high <= meshes.high[slot]:
-            return axes, low, high, True
+    A slot keeps its cells if they contain all these gradients, and are few enough to be divided.
+    """
+    mean = meshes.mean[slot]
+    if 0 < meshes.n_corners[slot] <= most:
+        axes = _axes(mean)
+        low, high = _range(family, 0, axes, mean)
+        if low >= 0 and high <= meshes.high[slot]:
+            return axes, low, high
+    meshes.n_corners[slot] = 0
+    mean[:] = family.start[0]
+    n_robots = family.information.shape[2]
+    for i in range(n_robots):
+        mean += family.information[0, :, i] * (family.size / n_robots)
+    axes = _axes(mean)
+    low, high = _range(family, 0, axes, mean)
     meshes.high[slot] = high
-    return axes, low, high, False
+    return axes, low, high
 
 
 @numba.njit(cache=True)
@@ -236,15 +175,15 @@ def _search_cells(  # noqa: PLR0917
     """:func:`least_choice` of the only target of a family, where it is at most ``known``; with the cells of a slot."""
     (tolerance, most), best = effort, known
     work = room(len(shares))
-    if meshes.n_corners[slot] > most:
-        meshes.n_corners[slot] = 0
-    axes, low, high, is_known = _setting(family, meshes, slot)
+    axes, low, high = _setting(family, meshes, slot, most)
     if low < 0:
-        meshes.n_corners[slot] = 0
         return -np.inf, best
     corners = Corners(np.empty((most + 4, 3)), np.empty((most + 4, 3)), np.empty(most + 4))
     cells, weights = np.empty((most + 4, 4), dtype=np.int64), np.empty((most + 4, 4))
-    n_corners = _resume(meshes, slot, corners, cells, weights) if is_known else _begin(high, corners, cells)
+    n_corners = resume(meshes, slot, corners, cells, weights)
+    is_known = n_corners > 0
+    if not is_known:
+        n_corners = begin(high, corners, cells)
     for k in range(n_corners):
         best = min(best, _add_corner(family, shares, corners, k, axes, work, best, slopes))
     waiting = [(-np.inf, 0)]
@@ -273,7 +212,7 @@ def _search_cells(  # noqa: PLR0917
             mine = cell_bound(family, corners, cells[child], (axes, low), weights[child], best - tolerance)
             if mine < np.inf:
                 heappush(waiting, (max(bound, mine), child))
-    _keep(meshes, slot, n_corners, corners, cells, weights)
+    keep(meshes, slot, n_corners, corners, cells, weights)
     least = waiting[0][0] if len(waiting) > 0 else best
     return min(least, best), best
 

@@ -24,7 +24,7 @@ from ratt_opt.attackers.by_size.family_prices.paying_pairs import (
 )
 from ratt_opt.attackers.weakest_set.branch_and_bound import SetNode
 from ratt_opt.attackers.weakest_set.decomposition import decomposed
-from ratt_opt.attackers.weakest_set.slope_cells import Meshes
+from ratt_opt.attackers.weakest_set.slope_meshes import Meshes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
