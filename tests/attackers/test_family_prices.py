@@ -18,7 +18,7 @@ from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.size_vectors import SizeVectors
-from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound
+from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound, _Verdict
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
@@ -205,6 +205,25 @@ def test_a_goal_out_of_reach_is_asked_once(monkeypatch):
     ThresholdBound(team, problem.threat).run(bracket, Budget())
     assert asked == [bracket.goal]
     assert not bracket.is_closed
+
+
+@pytest.mark.parametrize(("name", "share"), [("logdet", 1 - threshold_bound.WIDE), ("maxeig", 0.75)])
+def test_what_is_promised_is_asked_first_and_then_what_is_in_reach(name, share, monkeypatch):
+    """Half of what is left where searches are quick; with prices that reach nine tenths of the attack."""
+    asked = []
+
+    def decide(_, threshold, aim, *_others):
+        asked.append(threshold)
+        assert aim >= threshold
+        return _Verdict.REFUTED if aim <= 90.0 else _Verdict.OUT_OF_REACH
+
+    monkeypatch.setattr(ThresholdBound, "_decide", decide)
+    problem = Problem(make_team(name, 1).objective, np.arange(N_ROBOTS), None, 0, 14)
+    bracket = AttackBracket(Attack(), 100.0, 50.0)
+    ThresholdBound(make_team(name, 1), problem.threat).run(bracket, Budget())
+    assert asked[0] == pytest.approx(100 * share)
+    assert all(threshold > 50 for threshold in asked)
+    assert 90 - 3 * threshold_bound.NEAR * 100 <= bracket.lower <= 90
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
