@@ -207,7 +207,7 @@ def test_a_goal_out_of_reach_is_asked_once(monkeypatch):
     assert not bracket.is_closed
 
 
-@pytest.mark.parametrize(("name", "share"), [("logdet", 1 - threshold_bound.PROMISED), ("maxeig", 0.75)])
+@pytest.mark.parametrize(("name", "share"), [("logdet", 1 - threshold_bound.WIDE), ("maxeig", 0.75)])
 def test_what_is_promised_is_asked_first_and_then_what_is_in_reach(name, share, monkeypatch):
     """Half of what is left where searches are quick; with prices that reach nine tenths of the attack."""
     asked = []

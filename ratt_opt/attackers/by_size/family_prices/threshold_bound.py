@@ -41,15 +41,15 @@ FIRST_EFFORT, QUICK_EFFORT, HARDER = 400_000, 300_000, 4
 growth when the lower ones are refuted."""
 OPEN_SHARE = 0.3
 """Share of what is between the lower end and an open threshold that is not worth another one with the same effort."""
-STEP, LONG_STEP, WIDE = 2.0, 4.0, 0.02
-"""What is left to the lowest threshold not refuted is divided by it for the next one: the second one where that is
-more than such a share of the attack and searches take long. Those are of the sizes of which least is proved first, so
-that one that does not end has proved most of what it could; at 60 robots, (8, 999), trace,
-where 1 % is left, long steps left 0.93 instead of 0.81 % after 60 s."""
-PROMISED, PROMISING = 0.0095, 30.0
-"""Share of the attack below it of the threshold that is asked at once where searches take long and so many seconds are
-left, as lower ones first, or higher ones that do not end, gain nothing then: at 60 robots, (0, 1226), log-det, 97.66 %
-and 99.42 % left 1.4 % after 60 s, 99.05 % at once 0.95 %. With a limit of 20 s nothing was proved by it in time."""
+STEP, LONG_STEP, WIDE = 2.0, 4.0, 0.0095
+"""What is left to the lowest threshold not refuted is divided by it for the next one: by the second one where more than
+such a share of the attack is left and searches take long. Those are of the sizes of which least is proved first, so
+that one that does not end has proved most of what it could. Where 1 % is left, long steps left more at 60 robots,
+(8, 999), trace; shorter ones from 2 % on left 1.22 instead of 1.06 % at (17, 1226), log-det."""
+PROMISING = 30.0
+"""Seconds left from which the first threshold is that share below the attack: then nothing is gained by lower ones
+before, nor by higher ones that do not end (60 robots, (0, 1226), log-det, 60 s: 97.66 % and 99.42 % left 1.4 %, 99.05 %
+at once 0.95 %). With a limit of 20 s it proved nothing in time."""
 EASY = 0.95
 """Share of the time that a threshold refuted soon leaves of what it had."""
 FIRST_MOVES, LONGER, MOST_MOVES = 3_000, 2, 24_000
@@ -146,10 +146,10 @@ class ThresholdBound:
         if room <= near:
             return bracket.goal
         high = min(top, self._unknown)
-        size, is_long = abs(bracket.upper), not self._finder.is_quick
-        if is_long and high == bracket.goal and high - bracket.lower > PROMISED * size and seconds >= PROMISING:
-            return bracket.upper - PROMISED * size
-        is_long &= high - bracket.lower > WIDE * size
+        width = WIDE * abs(bracket.upper)
+        is_long = not self._finder.is_quick and high - bracket.lower > width
+        if is_long and high == bracket.goal and seconds >= PROMISING:
+            return bracket.upper - width
         return float(high - (high - bracket.lower) / ((LONG_STEP if is_long else STEP) * 2**self._easy))
 
     def _decide(self, threshold: float, aim: float, bracket: AttackBracket, budget: Budget) -> _Verdict:
