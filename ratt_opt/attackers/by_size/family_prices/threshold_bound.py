@@ -45,7 +45,7 @@ STEP, LONG_STEP, WIDE = 2.0, 4.0, 0.0095
 """What is left to the lowest threshold not refuted is divided by it for the next one: by the second one where more than
 such a share of the attack is left and searches take long. Those are of the sizes of which least is proved first, so
 that one that does not end has proved most of what it could. Where 1 % is left, long steps left more at 60 robots,
-(8, 999), trace; shorter ones from 2 % on left 1.22 instead of 1.06 % at (17, 1226), log-det."""
+(8, 999), trace."""
 PROMISING = 30.0
 """Seconds left from which the first threshold is that share below the attack: then nothing is gained by lower ones
 before, nor by higher ones that do not end (60 robots, (0, 1226), log-det, 60 s: 97.66 % and 99.42 % left 1.4 %, 99.05 %
