@@ -238,7 +238,9 @@ def cell_bound(family: Any, corners: Any, cell: Any, setting: Any, weights: Any,
         return np.inf
     weights[:] = 0.25
     gradient = as_gradient(axes, middle)
-    bound = _bound_with(family, corners, cell, matrix_of_gradient(family.code, family.weights[0], gradient))
+    bound = -np.inf
+    if gradient[0] * gradient[2] - gradient[1] * gradient[1] > 0:  # not where rounding hides the smaller eigenvalue
+        bound = _bound_with(family, corners, cell, matrix_of_gradient(family.code, family.weights[0], gradient))
     if bound < enough:
         bound = max(bound, _bound_with(family, corners, cell, _levelling(corners, cell)))
     if bound < enough:

@@ -105,7 +105,9 @@ def _longest_edge(corners: Any, cell: Any, middle: Any, weights: Any) -> Any:
     """
     a, b, c = middle
     determinant = a * c - b * b
-    p, q, r = c / determinant, -b / determinant, a / determinant
+    p, q, r = 1.0, 0.0, 1.0
+    if determinant > 0:  # not where rounding hides the smaller eigenvalue
+        p, q, r = c / determinant, -b / determinant, a / determinant
     small, large, ends, longest = np.inf, -np.inf, (0, 0), -1.0
     x0, x1 = 0, 0
     for x in range(4):
