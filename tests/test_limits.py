@@ -276,7 +276,7 @@ class Interrupt:
             signal.setitimer(signal.ITIMER_REAL, 0.01)
             return
         self.happened = time.process_time()
-        raise KeyboardInterrupt
+        signal.getsignal(signal.SIGINT)(signal.SIGINT, frame)  # whoever handles interrupts there
 
     def __exit__(self, *_):
         signal.setitimer(signal.ITIMER_REAL, 0)
