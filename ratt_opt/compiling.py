@@ -12,6 +12,9 @@ An interrupt while compiled loops run came when the arrays that they return are 
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
 here, so that nobody is asked and the interrupt comes once the loop has returned.
 
+A generator of random numbers is asked for its functions by Python code of ctypes. An interrupt there ended the process:
+Numba goes on with an object that there is not. Here they are read from what the generator offers to C.
+
 What it frees later it frees in destructors, too, when the collector comes to it, long after compiling. An interrupt
 there is dropped as well, so it is raised again.
 
@@ -27,14 +30,16 @@ import signal
 import sys
 import threading
 import weakref
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._interrupts import again_later, interrupts_afterwards
 
 with interrupts_afterwards():
     import numba
+    from llvmlite import ir
     from llvmlite.binding import executionengine, ffi, linker
-    from numba.core import boxing, compiler_lock, event, pythonapi, types
+    from numba.core import boxing, cgutils, compiler_lock, event, pythonapi, types
     from numba.core.caching import CompileResultCacheImpl
     from numba.core.registry import cpu_target
 
@@ -139,6 +144,34 @@ def _array_of_constant_class(kind: Any, value: Any, context: Any) -> Any:
         del api.serialize_object, api.unserialize
 
 
+def _bit_generator(kind: Any, generator: Any, context: Any) -> Any:
+    """Code that takes a source of random bits from Python: its state and functions, as NumPy's ``bitgen_t`` has them.
+
+    Source: ``numpy/random/bitgen.h`` and "C API for random" of NumPy's reference, which fix the struct and the name.
+    """
+    api, builder = context.pyapi, context.builder
+    write: Any = cgutils  # without types
+    taken = write.create_struct_proxy(kind)(context.context, builder)
+    taken.parent = generator
+    is_error = write.alloca_once_value(builder, write.false_bit)
+    with ExitStack() as stack:
+        capsule = api.object_getattr_string(generator, "capsule")
+        with write.early_exit_if_null(builder, stack, capsule):
+            builder.store(write.true_bit, is_error)
+        name = context.context.insert_const_string(builder.module, "BitGenerator")
+        pointer = ir.FunctionType(write.voidptr_t, [api.pyobj, write.voidptr_t])
+        fields = builder.call(api._get_function(pointer, "PyCapsule_GetPointer"), [capsule, name])
+        api.decref(capsule)  # the generator has it, too
+        with write.early_exit_if_null(builder, stack, fields):
+            builder.store(write.true_bit, is_error)
+        fields = builder.bitcast(fields, write.intp_t.as_pointer())
+        for place, field in enumerate(("state", "fnptr_next_uint64", "fnptr_next_uint32", "fnptr_next_double")):
+            setattr(taken, field, builder.load(write.gep(builder, fields, place)))
+        taken.state_address = taken.state
+    native: Any = pythonapi.NativeValue
+    return native(taken._getvalue(), is_error=builder.load(is_error))
+
+
 with interrupts_afterwards():
     cpu_target.typing_context.refresh()
     cpu_target.target_context.refresh()
@@ -147,4 +180,5 @@ for kind in ("numba:compiler_lock", "numba:llvm_lock"):  # all of compiling; wha
     event.register(kind, INTERRUPTS)  # type: ignore[no-untyped-call]
 sys.unraisablehook = _raised_again(sys.unraisablehook)
 pythonapi._boxers.functions[types.Array] = _array_of_constant_class
+pythonapi._unboxers.functions[types.NumPyRandomBitGeneratorType] = _bit_generator
 CompileResultCacheImpl._locator_classes = [SourcesLocator, *SourcesLocator.others]

@@ -13,6 +13,7 @@ import time
 import weakref
 from pathlib import Path
 
+import numpy as np
 import pytest
 from numba.core import event
 from numba.core.registry import cpu_target
@@ -211,6 +212,50 @@ except KeyboardInterrupt:
 def test_one_in_compiled_loops_that_return_arrays_stays_an_interrupt():
     done = subprocess.run([sys.executable, "-c", RETURNS_TWO], capture_output=True, text=True, check=False)
     assert done.stdout == "answered\n", done.stderr
+
+
+@numba.njit
+def _drawn(rng, count):
+    total = 0.0
+    for _ in range(count):
+        total += rng.random() + rng.integers(0, 7) + rng.standard_normal()
+    return total
+
+
+@pytest.mark.parametrize("source", [np.random.PCG64, np.random.MT19937, np.random.Philox, np.random.SFC64])
+def test_loops_draw_from_a_generator_what_numpy_draws(source):
+    ours, theirs = np.random.Generator(source(3)), np.random.Generator(source(3))
+    expected = sum(theirs.random() + theirs.integers(0, 7) + theirs.standard_normal() for _ in range(50))
+    assert _drawn(ours, 50) == pytest.approx(expected, rel=1e-12)
+    assert ours.random() == theirs.random()
+
+
+DRAWS = """
+import random, signal
+import numpy as np
+from ratt_opt.compiling import numba
+
+@numba.njit
+def drawn(rng):
+    return rng.random()
+
+rng, answered = np.random.default_rng(0), 0
+drawn(rng)
+signal.signal(signal.SIGALRM, signal.default_int_handler)
+while answered < 300:
+    try:
+        signal.setitimer(signal.ITIMER_REAL, random.uniform(1e-5, 1e-3))
+        while True:
+            drawn(rng)
+    except KeyboardInterrupt:
+        answered += 1
+print("answered")
+"""
+
+
+def test_one_as_a_generator_is_handed_to_compiled_loops_stays_an_interrupt():
+    done = subprocess.run([sys.executable, "-c", DRAWS], capture_output=True, text=True, check=False)
+    assert done.stdout == "answered\n", done.returncode
 
 
 LISTED = """
