@@ -269,23 +269,29 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     assert problem.team_value(np.arange(13), result.attack) == result.upper
 
 
-@pytest.mark.parametrize("name", ["trace", "logdet"])
-def test_a_search_of_weak_sets_goes_on_where_it_ended(name, monkeypatch):
-    only_branch(monkeypatch)
-    objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), 13, 4, 1))
-    team = PlanarTeam.of(objective, np.arange(13))
-    values = {frozenset(one): team.value(one) for one in combinations(range(13), 5)}
+def searched_in_pieces(name, n_robots, nodes, growth):
+    """The search for some twenty weak sets of five robots, in budgets each so many times the last; how many it took."""
+    objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), n_robots, 4, 1))
+    team = PlanarTeam.of(objective, np.arange(n_robots))
+    values = {frozenset(one): team.value(one) for one in combinations(range(n_robots), 5)}
     threshold = float(np.mean(sorted(values.values())[20:22]))
     search, found, runs = WeakestSetSearch(team, 5, threshold), set(), 0
     while search.lower < np.inf:
-        runs += 1
         with suppress(OutOfBudget):
-            for one in search.run(Budget(max_nodes=2)):
+            for one in search.run(Budget(max_nodes=int(nodes * growth**runs))):
                 found |= {one} if one is not None else set()
         left = [value for one, value in values.items() if value < threshold and one not in found]
         assert search.lower <= min(left, default=np.inf) + 1e-9
-    assert runs > 2
+        runs += 1
     assert found == {one for one, value in values.items() if value < threshold}
+    return search, runs
+
+
+@pytest.mark.parametrize("name", ["trace", "logdet"])
+def test_a_search_of_weak_sets_goes_on_where_it_ended(name, monkeypatch):
+    only_branch(monkeypatch)
+    _, runs = searched_in_pieces(name, 13, 2, 1.0)
+    assert runs > 2
 
 
 @pytest.mark.parametrize("whole", [0, 500, 20_000, 10**9])
@@ -294,19 +300,7 @@ def test_a_small_team_is_enumerated_whole_only_before_it_is_divided(name, whole,
     """Enumerated again after that, from one of its parts, sets of the others were lost; after the end it raised."""
     for limit, value in {"WHOLE_ENUMERATION": whole, "SHORTEST_ENUMERATION": 1, "LONGEST_ENUMERATION": 1}.items():
         monkeypatch.setattr(branch_and_bound, limit, value)
-    objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), 12, 4, 1))
-    team = PlanarTeam.of(objective, np.arange(12))
-    values = {frozenset(one): team.value(one) for one in combinations(range(12), 5)}
-    threshold = float(np.mean(sorted(values.values())[20:22]))
-    search, found, nodes = WeakestSetSearch(team, 5, threshold), set(), 1.0
-    while search.lower < np.inf:
-        nodes *= 1.2
-        with suppress(OutOfBudget):
-            for one in search.run(Budget(max_nodes=int(nodes))):
-                found |= {one} if one is not None else set()
-        left = [value for one, value in values.items() if value < threshold and one not in found]
-        assert search.lower <= min(left, default=np.inf) + 1e-9
-    assert found == {one for one, value in values.items() if value < threshold}
+    search, _ = searched_in_pieces(name, 12, 1.2, 1.2)
     assert not list(search.run(Budget()))
 
 
