@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-__all__ = ["AGAIN_AFTER", "again_later", "imported_whole", "interrupts_afterwards", "interrupts_between_packages"]
+__all__ = ["again_later", "imported_whole", "interrupts_afterwards", "interrupts_between_packages"]
 
 PACKAGE = __name__.partition(".")[0]
 AGAIN_AFTER = 0.01
