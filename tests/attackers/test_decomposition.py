@@ -8,11 +8,11 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from ratt_opt.attackers.weakest_set.decomposition import _compiled, decomposed
+from ratt_opt.attackers.weakest_set.by_targets.decomposition import _compiled, decomposed
+from ratt_opt.attackers.weakest_set.by_targets.slope_cells import least_choice
+from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import Meshes
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
-from ratt_opt.attackers.weakest_set.slope_cells import least_choice
-from ratt_opt.attackers.weakest_set.slope_meshes import Meshes
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES
 

@@ -2,10 +2,7 @@
 
 Open ``branch_and_bound.py`` first: it bounds nodes that fix some robots, and lets ``enumeration.py`` finish
 small families. The bounds are ``weakest_axis.py`` where one axis decides, and else ``minorant.py`` over the polytopes
-of ``outer_polytopes.py``. Sharper ones, which take a tenth of a second each, are in ``decomposition.py``, for sets that
-must pay prices: every target chooses a set of its own (``target_choices.py``), of which ``slope_cells.py`` proves what
-it is worth, cell by cell (``cell_bound.py``), beginning with the cells of the last proof (``slope_meshes.py``).
-``selection.py`` is for all compiled loops. ``exchanges.py``
-finds weak sets without a claim, in large teams from where ``linear_descent.py`` ends; ``planar_team.py`` has the arrays
-all of them share.
+of ``outer_polytopes.py``. Sharper ones, which take a tenth of a second each, are in ``by_targets/``, for sets that must
+pay prices. ``selection.py`` is for all compiled loops. ``exchanges.py`` finds weak sets without a claim, in large teams
+from where ``linear_descent.py`` ends; ``planar_team.py`` has the arrays all of them share.
 """

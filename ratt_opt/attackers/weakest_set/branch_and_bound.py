@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.weakest_set.decomposition import Decomposition
+    from ratt_opt.attackers.weakest_set.by_targets.decomposition import Decomposition
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
     from ratt_opt.budget import Budget
 

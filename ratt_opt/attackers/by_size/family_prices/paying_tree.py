@@ -2,9 +2,9 @@
 
 Pairs (``paying_pairs.py``) are sharp for few robots, and a node takes half a millisecond: all sets of 12 of 60 robots
 are ruled out by some hundreds. For 18 robots of 60 they lack 31 of 248 where a minorant of value and prices together
-(``weakest_set/decomposition.py``) lacks 2, and takes a tenth of a second, at first half a second. There a best-first
-search divides nodes by minorants, which decide some robots for their children, and pairs end the smallest ones.
-Leaving every node to the pairs for a while took five times as long for sets of 12.
+(``weakest_set/by_targets/decomposition.py``) lacks 2, and takes a tenth of a second, at first half a second. There a
+best-first search divides nodes by minorants, which decide some robots for their children, and pairs end the smallest
+ones. Leaving every node to the pairs for a while took five times as long for sets of 12.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from ratt_opt.attackers.by_size.family_prices.paying_pairs import (
     slack_of_pairs,
 )
 from ratt_opt.attackers.weakest_set.branch_and_bound import SetNode
-from ratt_opt.attackers.weakest_set.decomposition import decomposed
-from ratt_opt.attackers.weakest_set.slope_meshes import Meshes
+from ratt_opt.attackers.weakest_set.by_targets.decomposition import decomposed
+from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import Meshes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.by_size.family_prices.pair_bound import View
     from ratt_opt.attackers.by_size.family_prices.paying_pairs import Question
-    from ratt_opt.attackers.weakest_set.decomposition import Decomposition
+    from ratt_opt.attackers.weakest_set.by_targets.decomposition import Decomposition
     from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
     from ratt_opt.budget import Budget
 

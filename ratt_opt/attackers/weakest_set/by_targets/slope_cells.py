@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.cell_bound import (
+from ratt_opt.attackers.weakest_set.by_targets.cell_bound import (
     ROUNDING,
     Corners,
     as_gradient,
@@ -32,8 +32,8 @@ from ratt_opt.attackers.weakest_set.cell_bound import (
     cell_bound,
     clipped_middle,
 )
-from ratt_opt.attackers.weakest_set.slope_meshes import HEAVY, begin, keep, resume
-from ratt_opt.attackers.weakest_set.target_choices import IN_ANY_ORDER, Family, choose, room
+from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import HEAVY, begin, keep, resume
+from ratt_opt.attackers.weakest_set.by_targets.target_choices import IN_ANY_ORDER, Family, choose, room
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, target_gradient
 

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.attackers.weakest_set.by_targets.slope_cells import least_choice
+from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import Meshes
+from ratt_opt.attackers.weakest_set.by_targets.target_choices import Ascent, Family, ascend, choose, room
 from ratt_opt.attackers.weakest_set.outer_polytopes import target_values
-from ratt_opt.attackers.weakest_set.slope_cells import least_choice
-from ratt_opt.attackers.weakest_set.slope_meshes import Meshes
-from ratt_opt.attackers.weakest_set.target_choices import Ascent, Family, ascend, choose, room
 from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
