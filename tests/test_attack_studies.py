@@ -6,7 +6,8 @@ import pytest
 
 from analysis import caa_conjecture, caa_validation
 from analysis.benchmarks import attack
-from analysis.tables import print_table, write_csv
+from analysis.benchmarks.network_tables import network_table, read_rows, summary
+from analysis.tables import append_csv, print_table, write_csv
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.ratt import ratt
@@ -60,3 +61,26 @@ def test_the_benchmark_s_plain_ways_agree():
     plan = ratt(problem).elements
     assert attack.plain_enumeration(problem, plan) == pytest.approx(worst_case_attack(problem, plan).upper, rel=1e-12)
     assert attack.evaluations()[0]["ratio"] >= 100
+
+
+def test_tables_of_networks_keep_the_last_row_of_an_instance_and_count_what_is_open(tmp_path):
+    log = tmp_path / "log.csv"
+    first = {"robots": 24, "family": "hubs", "seed": 0, "alpha_s": 4, "alpha_c": 9}
+    shared = {"processor_seconds": 2.04, "plain_over_exact": 1.05}
+    append_csv(log, first | {"stop": "time", "gap": 0.5} | shared)
+    append_csv(log, first | {"alpha_s": 8, "stop": "time", "gap": 0.0301} | shared)
+    append_csv(log, first | {"seed": 2, "stop": "time", "gap": 0.011, "processor_seconds": 30, "plain_over_exact": 0.9})
+    append_csv(log, first | {"stop": "closed", "gap": 0.0} | shared)
+    append_csv(log, first | {"family": "dense", "stop": "closed", "gap": 0.0} | shared)
+    ((robots, rows),) = read_rows([log]).items()
+    assert robots == 24
+    assert network_table(rows).splitlines() == [
+        "| graph | seed 0 | seed 2 |",
+        "| --- | --- | --- |",
+        "| hubs | 2.0 s, 3.1 % | 1.1 % |",
+        "| dense | 2.0 s | not run |",
+    ]
+    assert summary(rows, 0.02) == (
+        "2 of 4 closed, 3 within 2 %; beyond: hubs (8, 9) seed 0 3.1 %. "
+        "Plain annealing found a worse attack on 1 of 4, a milder one by up to 5.0 %."
+    )
