@@ -15,6 +15,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers import any_graph, exact
+from ratt_opt.attackers.by_partition import settled_partitions
 from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
 from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.attackers.weakest_set import branch_and_bound
@@ -33,6 +34,12 @@ CALLS = 12
 
 WAYS = {
     "partitions": {},
+    "sharp partitions": {
+        (any_graph, "SOON_NODES"): 20,
+        (settled_partitions, "PLAIN_NODES"): 3,
+        (settled_partitions, "AXIS_NODES"): 3,
+        (settled_partitions, "SHARPER_AFTER"): (0, 5),
+    },
     "covers": {(any_graph, "PARTITIONED"): 0},
     "prices": {(exact, "MANY_GROUPS"): 0},
     "dense": {(any_graph, "DENSE"): 0.0},

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attackers.by_partition.group_floors import least_in_groups
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
-from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from ratt_opt.stopping import Stop
 
@@ -82,18 +82,9 @@ class SplitSearch:
 
     def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
         """No ``size`` robots of the groups ``rows`` are worth less."""
-        family = self.team.family(np.arange(self.n_robots), size)
         if self.team.objective.states("planar_levels"):
-            return np.full(len(rows), weakest_axis(family).bound)
-        minorant = affine_minorant(family, 2, -np.inf, self.survivors.minorants.get(size + 1))
-        self.survivors.minorants[size] = minorant
-        scores = minorant.scores[self.groups.robots]
-        total, taken = np.full(len(rows), minorant.constant), np.zeros(len(rows), dtype=np.int64)
-        for place in np.argsort(scores, kind="stable").tolist():
-            takes = (self.groups.masks[rows] >> place & 1).astype(np.bool_) & (taken < size)
-            total[takes] += scores[place]
-            taken += takes
-        return total
+            return np.full(len(rows), weakest_axis(self.team.family(np.arange(self.n_robots), size)).bound)
+        return least_in_groups(self.survivors.minorants.rough(size), self.groups, rows, size)
 
     def _reach(self, threshold: float) -> bool:
         """Find an attack below the threshold, or prove that there is none."""
