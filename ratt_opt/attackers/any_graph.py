@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import isinf
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.annealed_values import ANNEALING_SHARE, annealed_attacks
 from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
 from ratt_opt.attackers.first_bound import first_bound
@@ -80,9 +81,7 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     least = _by_trees(task, is_brief=is_brief)
     prices = _price_search(task) if task.budget.stop() is None else None
     if prices is None:
-        stop = forced_group_bound(task, team, least)
-        is_done = stop is Stop.CLOSED or isinf(task.budget.seconds_left)
-        return stop if is_done else last_stage(task, AttackTree(task))
+        return _without_prices(task, team, least)
     prices.anneal(INNER_STARTS if is_brief else _starts(task.problem))
     # On sparse graphs they prove less than the first threshold; of targets in three coordinates and more only their
     # number is used, which proves nothing there.
@@ -93,6 +92,16 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     if team is not None and groups is not None and _closed_by_partitions(task, team, groups, least):
         return Stop.CLOSED
     return last_stage(task, prices)
+
+
+def _without_prices(task: AttackTask, team: PlanarTeam | None, least: int) -> Stop:
+    """Where a criterion has no compiled code: the forced size, and within a limit annealing and all attacks."""
+    stop = forced_group_bound(task, team, least)
+    if stop is Stop.CLOSED or isinf(task.budget.seconds_left):
+        return stop
+    with task.budget.stage(ANNEALING_SHARE) as part:
+        annealed_attacks(replace(task, budget=part))
+    return last_stage(task, AttackTree(task))
 
 
 def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_brief: bool) -> Stop:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.annealed_values import annealed_attacks
+from ratt_opt.attackers.annealed_values import ANNEALING_SHARE, annealed_attacks
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.any_graph import any_graph, last_stage
 from ratt_opt.attackers.attack_tree import AttackTree
@@ -40,9 +40,6 @@ THRESHOLDS_FASTER = 15
 FEW_GROUPS, MANY_GROUPS, LISTING_SHARE = 10_000, 300_000, 0.1
 """Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else; and
 of the seconds left, for listing them. It takes a second on sparse graphs of 50 robots, four on dense ones."""
-
-ANNEALING_SHARE = 0.5
-"""Of the seconds and values left for annealed attacks on set functions known by their values; then all are searched."""
 
 RENEWED = 4
 """Times as many seconds as an earlier attack on the plan had, from which its first stages, which had shares of them,
@@ -80,8 +77,9 @@ def worst_case_attack(
       Relies on a non-decreasing objective, which the three criteria are.
     - Two-dimensional targets on other graphs that an attack can split into few groups (up to 300,000), 16 to 60
       robots: partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a partial
-      set), beyond 20 robots and where half of all links are there for a fifth of the budget; where there are more
-      than 10,000 groups, annealed attacks, and prices that leave few of them (``by_covers``). Before, on a complete
+      set), beyond 20 robots and where half of all links are there for a fifth of the budget, elsewhere with annealed
+      attacks after about a second; where there are more than 10,000 groups, these first, and prices that leave few
+      groups (``by_covers``). Before, on a complete
       graph, the bounds of the attacker that may cut protected links too (``unprotected_bound``). Relies on a
       non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply or end: annealed attacks, tree
@@ -94,9 +92,9 @@ def worst_case_attack(
       steps and exchanges, and the bounds of ``any_function.py``; within a limit of time or values, annealing where no
       other search asks, and where none does or it asks again with a memory, all attacks by branch and bound
       (``attack_tree.py``).
-    - Otherwise (criteria of one's own) an honest bracket (``forced_group.py``), within a limit of time then all attacks
-      by branch and bound, without one ``HEURISTIC`` where it did not close. Relies on a non-decreasing objective (not
-      checked).
+    - Otherwise (criteria of one's own) an honest bracket (``forced_group.py``), within a limit of time then annealing
+      and all attacks by branch and bound, without one ``HEURISTIC`` where it did not close. Relies on a non-decreasing
+      objective (not checked).
 
     A keyboard interrupt or a spent budget returns the bracket reached; the lower bound of up to 12 robots
     then relies on a non-decreasing objective too. Interrupted before any attack is known, it evaluates the team
