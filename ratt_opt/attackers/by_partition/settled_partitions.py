@@ -1,8 +1,8 @@
 """Partitions of a team into groups that an attack may leave: who is blinded in each, and whether the needs fit.
 
 A group needs so many blinded robots that some subset of the others is worth less than a threshold
-(:class:`GroupSurvivors`). Needs may be given from below: they are computed only for groups that a partition asks for; a
-group needs at least what any group inside it needs.
+(:class:`GroupSurvivors`). Needs may be given from below: they are raised only for groups that a partition asks for, and
+no further than it takes to rule that partition out; a group needs at least what any group inside it needs.
 """
 
 from __future__ import annotations
@@ -141,7 +141,8 @@ class SettledPartitions:
     def _can_be_weak(self, group: int, most: int, budget: Budget) -> bool:
         """Whether blinding so many of its robots makes a group weak; if not, nor does it any group around it."""
         robots = frozenset(self._groups.members(group).tolist())
-        blinded = min(most, len(robots - self._survivors.must))
+        free = len(robots - self._survivors.must)
+        blinded = min(most, free)
         if self.need[group] > blinded:
             return False
         known = self._weak.get(group)
@@ -158,7 +159,7 @@ class SettledPartitions:
             return True
         masks = self._groups.masks
         around = (masks & masks[group]) == masks[group]
-        more = blinded + 1 if blinded < self._n_blinded else IMPOSSIBLE
+        more = blinded + 1 if blinded < min(free, self._n_blinded) else IMPOSSIBLE
         self.need[around] = np.maximum(self.need[around], more)
         return False
 
