@@ -11,6 +11,7 @@ from analysis.tables import append_csv, print_table, write_csv
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.ratt import ratt
+from tests.documents import ROOT
 
 
 def test_tables_are_printed_and_written(tmp_path, capsys):
@@ -84,3 +85,14 @@ def test_tables_of_networks_keep_the_last_row_of_an_instance_and_count_what_is_o
         "2 of 4 closed, 3 within 2 %; beyond: hubs (8, 9) seed 0 3.1 %. "
         "Plain annealing found a worse attack on 1 of 4, a milder one by up to 5.0 %."
     )
+
+
+def test_the_tables_of_networks_on_the_page_are_those_of_the_rows_measured():
+    page = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    rows = read_rows([ROOT / "analysis" / "measured" / "networks_attack.csv"])
+    assert set(rows) == {24, 30, 50, 100}
+    for robots, of_team in rows.items():
+        assert network_table(of_team) in page
+        assert summary(of_team, 0.05 if robots == 100 else 0.02) in page
+        for row in of_team:
+            assert float(row["lower"]) <= float(row["upper"])
