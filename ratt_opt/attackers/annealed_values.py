@@ -7,6 +7,7 @@ group; the links between groups may exceed the budget at a price.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackTask
 
-__all__ = ["ANNEALING_SHARE", "annealed_attacks"]
+__all__ = ["anneal_for_a_share", "annealed_attacks"]
 
 ANNEALING_SHARE = 0.5
 """Of the seconds and values left for annealed attacks; then all are searched. Without them attacks on 24 and 30 robots
@@ -41,6 +42,17 @@ PRICE = 0.02
 
 REMEMBERED = 200_000
 """Values of groups that are kept from start to start."""
+
+
+def anneal_for_a_share(task: AttackTask) -> None:
+    """Offer annealed attacks within their share of the budget.
+
+    Raises
+    ------
+    OutOfBudget : the whole budget is spent.
+    """
+    with task.budget.stage(ANNEALING_SHARE) as part:
+        annealed_attacks(replace(task, budget=part))
 
 
 def annealed_attacks(task: AttackTask, seed: int = 0) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from math import isinf
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.annealed_values import ANNEALING_SHARE, annealed_attacks
+from ratt_opt.attackers.annealed_values import anneal_for_a_share
 from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
 from ratt_opt.attackers.first_bound import first_bound
@@ -100,8 +100,7 @@ def _without_prices(task: AttackTask, team: PlanarTeam | None, least: int) -> St
     stop = forced_group_bound(task, team, least)
     if stop is Stop.CLOSED or isinf(task.budget.seconds_left):
         return stop
-    with task.budget.stage(ANNEALING_SHARE) as part:
-        annealed_attacks(replace(task, budget=part))
+    anneal_for_a_share(task)
     return last_stage(task, AttackTree(task))
 
 

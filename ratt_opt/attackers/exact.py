@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.annealed_values import ANNEALING_SHARE, annealed_attacks
+from ratt_opt.attackers.annealed_values import anneal_for_a_share
 from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
 from ratt_opt.attackers.any_graph import any_graph, last_stage
 from ratt_opt.attackers.attack_tree import AttackTree
@@ -79,9 +78,8 @@ def worst_case_attack(
       robots: partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a partial
       set), beyond 20 robots and where half of all links are there for a fifth of the budget, elsewhere with annealed
       attacks after about a second; where there are more than 10,000 groups, these first, and prices that leave few
-      groups (``by_covers``). Before, on a complete
-      graph, the bounds of the attacker that may cut protected links too (``unprotected_bound``). Relies on a
-      non-decreasing objective, as above.
+      groups (``by_covers``). Before, on a complete graph, the bounds of the attacker that may cut protected links too
+      (``unprotected_bound``). Relies on a non-decreasing objective, as above.
     - Teams of more than 20 robots on any graph, where the lines above do not apply or end: annealed attacks, tree
       inequalities (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``;
       where another search asks, on dense graphs and within a limit of time), and prices that no weak group pays
@@ -215,8 +213,7 @@ def _any_function(task: AttackTask, *, is_inner: bool) -> Stop:
         any_bound(task)
         exchange_attack(task)
         if is_limited and not (task.bracket.is_closed or has_table or is_inner):
-            with budget.stage(ANNEALING_SHARE) as part:
-                annealed_attacks(replace(task, budget=part))
+            anneal_for_a_share(task)
         if task.bracket.is_closed:
             return Stop.CLOSED
     if has_table:

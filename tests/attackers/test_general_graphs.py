@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import any_graph, exact
+from ratt_opt.attackers import annealed_values, exact
 from ratt_opt.attackers.forced_group import forced_survivors
 from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -93,7 +93,7 @@ def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
 
 def test_attacks_under_a_criterion_of_one_s_own_are_annealed_for_half_of_the_time(monkeypatch):
     """From greedy steps alone they were up to 6 % milder than the worst one."""
-    given, annealed = [], any_graph.annealed_attacks
+    given, annealed = [], annealed_values.annealed_attacks
 
     def watched(task):
         given.append((task.budget.seconds_left, task.bracket.upper))
@@ -101,7 +101,7 @@ def test_attacks_under_a_criterion_of_one_s_own_are_annealed_for_half_of_the_tim
             annealed(replace(task, budget=Budget(time_limit=3)))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(any_graph, "annealed_attacks", watched)
+    monkeypatch.setattr(annealed_values, "annealed_attacks", watched)
     problem = ro.network_scenario("hubs", 24, 6, alpha_s=1 / 3, alpha_c=0.3, seed=1).problem("trace")
     own = ro.Problem(
         Hidden(problem.objective.prior, problem.objective.information), problem.robot, problem.graph, 8, problem.alpha_c

@@ -130,11 +130,11 @@ class SettledPartitions:
 
         Small groups are settled first; of the last one it is asked only what the others leave to blind.
         """
-        first = sorted(chosen, key=lambda group: int(self._sizes[group]))
-        for group in first:
+        smallest_first = sorted(chosen, key=lambda group: int(self._sizes[group]))
+        for group in smallest_first:
             if not self._can_be_weak(group, self._n_blinded - int(self.need[chosen].sum() - self.need[group]), budget):
                 return False
-            if group != first[-1]:
+            if group != smallest_first[-1]:
                 self._settle(group, budget)
         return True
 
