@@ -13,7 +13,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-__all__ = ["again_later", "imported_whole", "interrupts_afterwards", "interrupts_between_packages"]
+__all__ = [
+    "again_later",
+    "imported_whole",
+    "interrupt_main_thread",
+    "interrupts_afterwards",
+    "interrupts_between_packages",
+]
 
 PACKAGE = __name__.partition(".")[0]
 AGAIN_AFTER = 0.01
@@ -22,7 +28,18 @@ AGAIN_AFTER = 0.01
 
 def again_later(number: int = signal.SIGINT) -> None:
     """Interrupt the main thread once more in a moment."""
-    threading.Timer(AGAIN_AFTER, signal.raise_signal, [number]).start()
+    threading.Timer(AGAIN_AFTER, interrupt_main_thread, [number]).start()
+
+
+def interrupt_main_thread(number: int = signal.SIGINT) -> None:
+    """From any thread; also where the main one sleeps or waits, if the system can tell a single thread.
+
+    A main thread that waits goes on for as long as it was to where the signal is sent to another one.
+    """
+    if sys.platform != "win32":
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
+    else:
+        signal.raise_signal(number)
 
 
 @contextmanager

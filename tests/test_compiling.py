@@ -110,7 +110,8 @@ class Value:
 
 
 def test_one_in_the_callback_of_a_weak_reference_comes_after_it():
-    """There Python drops it as well, and an attack on a network went on to its limit."""
+    """There Python drops it as well, and an attack on a network went on to its limit. Sleep ends by it."""
+    began = time.monotonic()
     key, value, weak = Interrupting(), Value(), weakref.WeakValueDictionary()
     weak[key] = value
     key.is_armed = True
@@ -118,6 +119,7 @@ def test_one_in_the_callback_of_a_weak_reference_comes_after_it():
         with event.trigger_event("numba:compiler_lock"):
             del value
         time.sleep(60)
+    assert time.monotonic() - began < 30
     assert not key.is_armed
     assert not weak
 
@@ -156,7 +158,9 @@ except KeyboardInterrupt:
 @pytest.mark.parametrize("where", ["a destructor", "a callback"])
 def test_one_where_the_collector_frees_what_was_compiled_comes_after_it(where):
     """Long after compiling, when nobody handles interrupts: one of 20 of a certificate was lost in a destructor."""
+    began = time.monotonic()
     done = subprocess.run([sys.executable, "-c", FREED_LATER, where], capture_output=True, text=True, check=False)
+    assert time.monotonic() - began < 60
     assert (done.stdout, done.stderr) == ("answered\n", "")
 
 

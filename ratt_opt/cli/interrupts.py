@@ -8,6 +8,8 @@ import threading
 from time import sleep
 from typing import TYPE_CHECKING, Any, Self
 
+from ratt_opt._interrupts import interrupt_main_thread
+
 if TYPE_CHECKING:
     from types import FrameType
 
@@ -71,10 +73,9 @@ class Interrupts:
 
     def _again(self) -> None:
         """Interrupt the main thread until it has met that, unless the process would end by it."""
-        send = getattr(signal, "pthread_kill", lambda _, number: signal.raise_signal(number))
         sleep(AGAIN_AFTER)
         while not self._met and signal.getsignal(signal.SIGINT) == self._interrupt:
-            send(threading.main_thread().ident, signal.SIGINT)
+            interrupt_main_thread()
             sleep(AGAIN_AFTER)
 
 
