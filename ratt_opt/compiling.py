@@ -46,10 +46,18 @@ with interrupts_afterwards():
     from ratt_opt._kept_code import SourcesLocator
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from types import FrameType
 
 __all__ = ["numba"]
+
+
+def _makers(kind: Any) -> Iterator[Any]:
+    """What makes the instances of a class, and of all that are derived from it."""
+    yield kind.__init__
+    for derived in kind.__subclasses__():
+        yield from _makers(derived)
+
 
 DROPPED_IN = {"_raw_object_cache_notify", "_raw_object_cache_getbuffer", "__del__"}
 """Functions called by compiled code or the collector, which drop exceptions."""
@@ -69,10 +77,11 @@ HANDS_OVER = {
         executionengine.ExecutionEngine.remove_module,
         ffi.ObjectRef.close,
         ffi.OutputString.close,
+        *_makers(ffi.ObjectRef),
     )
 }
 """Code of the functions that note who owns a thing, a lock or the handling of interrupts only after they have handed it
-over, or freed it."""
+over, or freed it. A thing half made cannot be freed: its destructor ended in an error, which was shown."""
 FREED_BY = ("llvmlite.", "numba.", weakref.__name__, _weakrefset.__name__)
 """Modules of the destructors and callbacks in which the collector frees what was compiled."""
 
