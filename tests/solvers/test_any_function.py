@@ -145,7 +145,7 @@ def test_a_large_team_is_searched_until_its_values_or_nodes_are_spent(robots, se
     prior, information = information_data(rng, 3 * robots, 2)
     f = Opaque(ro.TraceObjective(prior, information))
     problem = ro.Problem(f, np.repeat(np.arange(robots), 3), None, robots // 5, robots)
-    assert ro.solve_maxmin(problem, max_evaluations=3000).stop is ro.Stop.EVALUATIONS
+    assert ro.solve_maxmin(problem, max_evaluations=1500).stop is ro.Stop.EVALUATIONS
 
 
 ALWAYS = 16
