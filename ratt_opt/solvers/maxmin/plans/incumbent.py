@@ -184,7 +184,8 @@ class Incumbent:
         for plan, share in self._contenders():
             aim = self._aim() if plan is best else -np.inf
             self.proved.attack(plan, self.budget.part(share), aim)
-            if self.is_proved or self.candidates.level < level:
+            # Where several plans are worth the same, the level stays as the first of them falls.
+            if self.is_proved or self.candidates.level < level or self.candidates.best is not best:
                 return True
         return False
 
