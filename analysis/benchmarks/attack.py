@@ -25,7 +25,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.outcomes import non_dominated_outcomes
@@ -191,7 +191,7 @@ def _gap_by_sizes(problem: Problem, plan: np.ndarray) -> float:
     first = greedy_attack(problem, plan)
     bracket = AttackBracket(first.attack, first.upper, 0.0)
     task = AttackTask(problem, PlanValues(problem, plan), bracket, Budget())
-    forced_group_bound(task, PlanarTeam.of(problem.objective, plan))
+    forced_group_bound(task, PackedTeam.planar(problem.objective, plan))
     return relative_gap(bracket.lower, bracket.upper)
 
 

@@ -1,4 +1,4 @@
-"""The worst attack on one plan by whatever edition of ``ratt_opt`` is on the path, for comparisons in the same run.
+"""The worst attack on one plan, or the best plan, by the edition of ``ratt_opt`` on the path, compared in the same run.
 
 Run by ``analysis.benchmarks.networks`` as a process of its own: reads the plan's data from a file, prints a line of
 JSON. Only names of the public contract are used, which every edition has.
@@ -22,21 +22,30 @@ if TYPE_CHECKING:
     from ratt_opt import Problem
     from ratt_opt._validation import IntArray
 
-__all__ = ["earlier_attack"]
+__all__ = ["earlier_bracket"]
 
-SPARE = 240.0
+SPARE = 120.0
 """Seconds beyond the limit before an earlier edition is given up: first uses compile, and some overrun."""
-BUSY = 10
+BUSY = 3
 """Wall seconds that a processor second may take on a busy machine."""
 WARM = 1.0
-"""Seconds of a first attack, with no budgets to speak of, not counted: what is compiled is loaded then."""
+"""Seconds of a first search, with no budgets to speak of, not counted: what is compiled is loaded then."""
 
 
-def earlier_attack(
-    tree: Path, problem: Problem, plan: IntArray, objective: str, *, seconds: float, processor: bool = False
+def earlier_bracket(
+    tree: Path,
+    problem: Problem,
+    objective: str,
+    plan: IntArray | None = None,
+    *,
+    seconds: float,
+    gap: float = 0.0,
+    processor: bool = False,
 ) -> dict[str, Any]:
     """``lower``, ``upper``, ``stop`` and ``seconds`` of the edition in ``tree``; ``stop`` "none" where nothing came.
 
+    ``plan`` : attacked; without one the best plan is searched for
+    ``gap`` : that a search for the best plan is asked for
     ``processor`` : count seconds of the processor
     """
     patience = BUSY * seconds + SPARE if processor else seconds + SPARE
@@ -45,8 +54,11 @@ def earlier_attack(
         team: Any = problem.objective
         links = np.array(sorted(problem.communication.links)).reshape(-1, 2)
         budgets = np.array([problem.alpha_s, problem.alpha_c])
-        np.savez(path, prior=team.prior, information=team.information[plan], links=links, budgets=budgets)
-        asked = [sys.executable, __file__, str(path), objective, str(seconds), str(processor)]
+        elements = np.arange(team.n) if plan is None else plan
+        chosen = {"information": team.information[elements], "robot": problem.robot[elements]}
+        np.savez(path, prior=team.prior, links=links, budgets=budgets, **chosen)
+        what = "plan" if plan is None else "attack"
+        asked = [sys.executable, __file__, what, str(path), objective, str(seconds), str(gap), str(processor)]
         environment = {
             **os.environ,
             "PYTHONPATH": str(tree),
@@ -62,7 +74,7 @@ def earlier_attack(
         return answer
 
 
-def _main(path: str, objective: str, seconds: float, *, processor: bool) -> None:
+def _main(what: str, path: str, objective: str, seconds: float, gap: float, *, processor: bool) -> None:
     if processor:
         time.monotonic = time.perf_counter = time.process_time  # before the edition reads either
     import networkx as nx
@@ -70,20 +82,27 @@ def _main(path: str, objective: str, seconds: float, *, processor: bool) -> None
     import ratt_opt
 
     data = np.load(path)
-    n_robots = len(data["information"])
+    robot = data["robot"]
     graph: nx.Graph[int] = nx.Graph()
-    graph.add_nodes_from(range(n_robots))
+    graph.add_nodes_from(range(robot.max() + 1))
     graph.add_edges_from(data["links"].tolist())
     kinds = {"trace": "TraceObjective", "logdet": "LogDetObjective", "maxeig": "MaxEigenvalueObjective"}
     team = getattr(ratt_opt, kinds[objective])(data["prior"], data["information"])
-    problem = ratt_opt.Problem(team, np.arange(n_robots), graph, *data["budgets"].tolist())
-    ratt_opt.worst_case_attack(replace(problem, alpha_s=1, alpha_c=1), np.arange(n_robots), time_limit=WARM)
+    problem = ratt_opt.Problem(team, robot, graph, *data["budgets"].tolist())
+
+    def search(problem: Problem, limit: float) -> Any:
+        if what == "attack":
+            return ratt_opt.worst_case_attack(problem, np.arange(len(robot)), time_limit=limit)
+        return ratt_opt.solve_maxmin(problem, gap=gap, time_limit=limit)
+
+    search(replace(problem, alpha_s=1, alpha_c=1), WARM)
     began = time.perf_counter()
-    result = ratt_opt.worst_case_attack(problem, np.arange(n_robots), time_limit=seconds)
+    result = search(problem, seconds)
     spent = time.perf_counter() - began
     ends = {"lower": result.lower, "upper": result.upper, "stop": result.stop.value, "seconds": spent}
     sys.stdout.write(json.dumps(ends) + "\n")
 
 
 if __name__ == "__main__":
-    _main(sys.argv[1], sys.argv[2], float(sys.argv[3]), processor=sys.argv[4] == "True")
+    what, path, objective, seconds, gap, processor = sys.argv[1:]
+    _main(what, path, objective, float(seconds), float(gap), processor=processor == "True")

@@ -13,7 +13,7 @@ from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ratt_opt._rounding import up
+from ratt_opt._rounding import relative_gap, up
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["network_table", "read_rows", "summary"]
 
 Row = dict[str, str]
+DONE = {"closed", "gap"}
+"""Stops of searches that proved all that they were asked for."""
 
 
 def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
@@ -35,7 +37,7 @@ def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
 
 
 def network_table(rows: list[Row]) -> str:
-    """Families by seeds: seconds of the processor where a bracket closed, else what is left."""
+    """Families by seeds: seconds of the processor where all was proved that was asked for, else what is left."""
     cells: dict[str, dict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
         cells[row["family"]][int(row["seed"])].append(_cell(row))
@@ -49,7 +51,7 @@ def network_table(rows: list[Row]) -> str:
 
 def summary(rows: list[Row], within: float) -> str:
     """How many rows are closed, how many within the target; each of the others; plain annealing where it was run."""
-    open_rows = [row for row in rows if row["stop"] != "closed"]
+    open_rows = [row for row in rows if row["stop"] not in DONE]
     over = [row for row in open_rows if float(row["gap"]) > within]
     text = f"{len(rows) - len(open_rows)} of {len(rows)} closed, {len(rows) - len(over)} within {100 * within:g} %"
     if over:
@@ -63,13 +65,16 @@ def summary(rows: list[Row], within: float) -> str:
         text += f", a milder one by up to {100 * (max(compared) - 1):.1f} %"
     earlier = [row for row in rows if row.get("earlier_stop")]
     if earlier:
-        closed = sum(row["earlier_stop"] == "closed" for row in earlier)
-        text += f". The earlier edition closed {closed} of {len(earlier)}"
+        closed = sum(row["earlier_stop"] in DONE for row in earlier)
+        ends = [(float(row["earlier_lower"]), float(row["earlier_upper"])) for row in earlier]
+        gaps = [relative_gap(lower, upper) if lower > 0 else 1.0 for lower, upper in ends]
+        text += f". The earlier edition closed {closed} of {len(earlier)}, {sum(gap <= within for gap in gaps)} within"
+        text += f" {100 * within:g} %, and left up to {up(100 * max(gaps), 3)} %"
     return text + "."
 
 
 def _cell(row: Row) -> str:
-    if row["stop"] != "closed":
+    if row["stop"] not in DONE:
         return f"{up(100 * float(row['gap']), 2)} %"
     seconds = float(row["processor_seconds"])
     return f"{seconds:.0f} s" if seconds >= 9.95 else f"{seconds:.1f} s"

@@ -3,8 +3,8 @@
 Run as ``python -m analysis.benchmarks.networks [attack maxmin] [--robots 24 30 50 100] [--families dense ...]
 [--budgets fifth third random] [--seeds K] [--first-seed K] [--seconds S] [--processor] [--plain-seconds P]
 [--objective trace] [--earlier TREE] [--log FILE]``. Attacked are RATT's plans, under three pairs of budgets: a fifth of
-the robots and 15 % of the links, a third and 30 %, and random ones. ``--earlier`` attacks the same plans with the
-edition in another source tree, too. Limits are wall time, or, with ``--processor``, what a busy machine gave.
+the robots and 15 % of the links, a third and 30 %, and random ones. ``--earlier`` asks the edition in another source
+tree for the same, too. Limits are wall time, or, with ``--processor``, what a busy machine gave.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import ratt_opt as ro
-from analysis.benchmarks.earlier_edition import earlier_attack
+from analysis.benchmarks.earlier_edition import earlier_bracket
 from analysis.benchmarks.timing import count_processor_time
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ratt_opt import Problem
+    from ratt_opt._validation import IntArray
 
 TARGETS = {24: 25, 30: 25, 50: 30, 100: 100}
 SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
@@ -64,11 +65,7 @@ def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[s
         from analysis.benchmarks.plain_annealing import plain_annealing  # reads the clock that --processor sets
 
         row["plain_over_exact"] = plain_annealing(problem, plan, plain, seed) / exact.upper
-    if options.earlier is not None:
-        limit = {"seconds": options.seconds, "processor": options.processor}
-        earlier = earlier_attack(options.earlier, problem, plan, options.objective, **limit)
-        row |= {f"earlier_{name}": value for name, value in earlier.items()}
-    return row
+    return row | earlier_edition(problem, options, plan)
 
 
 def planned(problem: Problem, options: argparse.Namespace) -> dict[str, object]:
@@ -79,7 +76,18 @@ def planned(problem: Problem, options: argparse.Namespace) -> dict[str, object]:
     row: dict[str, object] = {"lower": best.lower, "upper": best.upper, "gap": relative_gap(best.lower, best.upper)}
     known = best.lower if best.worst_case is None else best.worst_case.upper
     row |= {"plan_gap": relative_gap(best.lower, known), "stop": best.stop.value, "nodes": best.nodes}
-    return row | {"seconds": spent, "processor_seconds": worked}
+    return row | {"seconds": spent, "processor_seconds": worked} | earlier_edition(problem, options, gap=GAP)
+
+
+def earlier_edition(
+    problem: Problem, options: argparse.Namespace, plan: IntArray | None = None, gap: float = 0.0
+) -> dict[str, object]:
+    """The bracket of an earlier edition, of an attack on the plan or of the best plan; nothing where none is named."""
+    if options.earlier is None:
+        return {}
+    limits = {"seconds": options.seconds, "gap": gap, "processor": options.processor}
+    earlier = earlier_bracket(options.earlier, problem, options.objective, plan, **limits)
+    return {f"earlier_{name}": value for name, value in earlier.items()}
 
 
 def measured(what: str, problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:
@@ -109,7 +117,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one call")
     parser.add_argument("--processor", action="store_true", help="count seconds of the processor, on a busy machine")
     parser.add_argument("--plain-seconds", type=float, help="of plain annealing; as the attack's where absent")
-    parser.add_argument("--earlier", type=Path, help="source tree of an earlier edition to attack the same plans with")
+    parser.add_argument("--earlier", type=Path, help="source tree of an earlier edition that is asked the same")
     parser.add_argument("--objective", default="trace", choices=("trace", "logdet", "maxeig"))
     parser.add_argument("--log", type=Path, help="CSV file to which every row is appended as it ends")
     return parser.parse_args()

@@ -20,7 +20,7 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.price_search import PriceSearch
     from ratt_opt.attackers.task import AttackTask, Resumable
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
@@ -70,7 +70,7 @@ after possible sizes and before prices: a disk of 24 robots and mean degree 12 c
 30 by prices; a random graph with 0.7 of all links in 6 s by sizes and prices, and not in 60 by partitions."""
 
 
-def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
+def any_graph(task: AttackTask, team: PackedTeam | None, groups: SeparableGroups | None, *, is_brief: bool) -> Stop:
     """Partitions where groups are few; else annealing, bounds of sizes, on dense graphs partitions too, prices."""
     is_dense = _is_dense(task.problem) and not is_brief and task.problem.n_robots > LARGEST_COMPILED
     if team is not None and groups is not None and not is_dense:
@@ -95,7 +95,7 @@ def any_graph(task: AttackTask, team: PlanarTeam | None, groups: SeparableGroups
     return last_stage(task, prices)
 
 
-def _without_prices(task: AttackTask, team: PlanarTeam | None, least: int) -> Stop:
+def _without_prices(task: AttackTask, team: PackedTeam | None, least: int) -> Stop:
     """Where a criterion has no compiled code: the forced size, and within a limit annealing and all attacks."""
     stop = forced_group_bound(task, team, least)
     if stop is Stop.CLOSED or isinf(task.budget.seconds_left):
@@ -104,7 +104,7 @@ def _without_prices(task: AttackTask, team: PlanarTeam | None, least: int) -> St
     return last_stage(task, AttackTree(task))
 
 
-def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_brief: bool) -> Stop:
+def _listed(task: AttackTask, team: PackedTeam, groups: SeparableGroups, *, is_brief: bool) -> Stop:
     """Where all groups are listed: partitions of few, prices of many on graphs that are not dense."""
     if forced_group_bound(task, team) is Stop.CLOSED:
         return Stop.CLOSED
@@ -119,14 +119,14 @@ def _listed(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_b
     return last_stage(task, search)
 
 
-def _closed_by_partitions(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, least: int) -> bool:
+def _closed_by_partitions(task: AttackTask, team: PackedTeam, groups: SeparableGroups, least: int) -> bool:
     """Whether partitions within their share close it, or the weak sets of possible sizes, asked one by one again."""
     with task.budget.stage(SPLIT_SHARE, max_nodes=SPLIT_NODES) as part:
         _group_search(replace(task, budget=part), team, groups, is_many=False).run()
     return task.bracket.is_closed or _closed_by_sizes(task, team, least)
 
 
-def _group_search(task: AttackTask, team: PlanarTeam, groups: SeparableGroups, *, is_many: bool) -> Resumable:
+def _group_search(task: AttackTask, team: PackedTeam, groups: SeparableGroups, *, is_many: bool) -> Resumable:
     if is_many:
         from ratt_opt.attackers.by_covers.cover_search import CoverSearch  # compiles
 
@@ -147,7 +147,7 @@ def last_stage(task: AttackTask, search: Resumable) -> Stop:
 
 
 def _closed_by_sizes(
-    task: AttackTask, team: PlanarTeam | None, least: int, *, looks: bool = True, asked: float = ASKED_SHARE
+    task: AttackTask, team: PackedTeam | None, least: int, *, looks: bool = True, asked: float = ASKED_SHARE
 ) -> bool:
     """Whether groups of possible sizes, where one ``looks`` at them, or the weakest of the forced size close it.
 

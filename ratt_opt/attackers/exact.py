@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, AttackTask, MeetsAim, PlanValues
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.threshold import LARGEST_COMPILED
@@ -47,6 +48,9 @@ are run again before its last one goes on."""
 GREEDY_SHARE = 0.05
 """Of the time left for greedy steps on networks, which at 500 robots of disk-6 took 36 of 40 seconds; annealed attacks,
 which come later, are worse for the team."""
+
+SPATIAL_SHARE = 0.6
+"""Of the time left for families by their sizes where targets are not in the plane, before prices."""
 
 UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
 
@@ -187,11 +191,16 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
 def _larger_team(task: AttackTask, *, is_inner: bool) -> Stop:
     """More robots than thresholds are decided for at once, under a criterion of information matrices."""
     problem, plan = task.problem, task.values.plan
-    team = PlanarTeam.of(problem.objective, plan)
+    team = PackedTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
 
-        return SizeVectorSearch(task, team).run()
+        if team.is_planar:
+            return SizeVectorSearch(task, team).run()
+        with task.budget.stage(SPATIAL_SHARE) as part:
+            SizeVectorSearch(replace(task, budget=part), team).run()
+        if task.bracket.is_closed:
+            return Stop.CLOSED
     with task.budget.stage(GREEDY_SHARE) as part:
         better = greedy_attack(problem, plan, budget=part)
         task.bracket.offer(better.attack, better.upper)
@@ -233,7 +242,7 @@ def _has_table(task: AttackTask) -> bool:
     return task.problem.n_robots <= LARGEST_COMPILED and 2**task.problem.n_robots <= task.budget.evaluations_left
 
 
-def _few_groups(task: AttackTask, team: PlanarTeam | None) -> SeparableGroups | None:
+def _few_groups(task: AttackTask, team: PackedTeam | None) -> SeparableGroups | None:
     """The groups an attack may leave, where they are few enough, and soon listed, to search partitions of the team."""
     problem = task.problem
     if team is None or problem.n_robots <= THRESHOLDS_FASTER:

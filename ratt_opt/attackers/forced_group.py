@@ -15,7 +15,7 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["forced_group_bound", "forced_survivors"]
@@ -34,7 +34,7 @@ def forced_survivors(threat: Threat) -> int:
     return max(by_sizes, counting_bound(threat) - threat.n_blinded, 1 if threat.n_blinded < n_robots else 0)
 
 
-def forced_group_bound(task: AttackTask, team: PlanarTeam | None, least: int = 0) -> Stop:
+def forced_group_bound(task: AttackTask, team: PackedTeam | None, least: int = 0) -> Stop:
     """Narrow the bracket where no exact search applies: more incumbents, then the weakest group of the forced size.
 
     ``least`` : seeing robots that are known to be left in some group

@@ -21,7 +21,7 @@ from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 
 __all__ = ["forced_size_tree"]
 
@@ -37,7 +37,7 @@ LEAST_RISE = 1e-3
 """Of the rise that would close a case: what a case that does not rise at all counts for in the product."""
 
 
-def forced_size_tree(team: PlanarTeam, size: int, threshold: float, max_nodes: int) -> list[int] | None:
+def forced_size_tree(team: PackedTeam, size: int, threshold: float, max_nodes: int) -> list[int] | None:
     """A cover of all sets of ``size`` robots of the team that proves them worth ``threshold``, in preorder.
 
     ``None`` where a set is worth less, or the cover is beyond ``max_nodes`` or the limits of this file.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_bounds import BLINDED, ELSE, OPEN, OUTSIDE, SEEING, GroupBounds
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
@@ -81,7 +81,7 @@ def _prices(sets: PlanSets) -> tuple[PriceVector, int]:
     team = PricedTeam.of(problem.objective, sets.elements)
     if team is None:
         raise NotClosedError
-    sizes = WeakSizes(team, PlanarTeam.of(problem.objective, sets.elements))
+    sizes = WeakSizes(team, PackedTeam.planar(problem.objective, sets.elements))
     budget = Budget(None if seconds == np.inf else seconds)
     decision = ThresholdDecision(team, Links.of(problem.threat), problem.threat, sizes)
     try:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell
 
@@ -33,7 +33,7 @@ def size_tree(sets: PlanSets, size: int, max_nodes: int, among: Sequence[int] | 
     ------
     NotClosedError : a set is worth less, or the tree is too large.
     """
-    team = PlanarTeam.of(sets.objective, sets.elements)
+    team = PackedTeam.planar(sets.objective, sets.elements)
     robots = list(range(sets.problem.n_robots) if among is None else among)
     if team is None or len(robots) <= LARGEST_PLAIN or size > len(robots):
         return _SizeTree(sets, size, max_nodes, frozenset(robots)).run()

@@ -8,6 +8,7 @@ is normalised, non-decreasing in ``S`` and concave in ``Lambda``; each has a fil
 from __future__ import annotations
 
 from copy import copy
+from math import isqrt
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-__all__ = ["InformationObjective", "packed", "symmetric_inverse"]
+__all__ = ["InformationObjective", "from_triangles", "packed", "symmetric_inverse", "triangles"]
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
@@ -161,9 +162,23 @@ def symmetric_inverse(matrices: FloatArray) -> FloatArray:
 
 def packed(matrices: FloatArray) -> list[Any]:
     """Lower triangles by rows, the form in certificates: (..., d, d) -> nested lists (..., d (d + 1) / 2)."""
+    entries: list[Any] = triangles(matrices).tolist()
+    return entries
+
+
+def triangles(matrices: FloatArray) -> FloatArray:
+    """Lower triangles by rows, the form in compiled loops: (..., d, d) -> (..., d (d + 1) / 2)."""
     rows, columns = np.tril_indices(matrices.shape[-1])
-    triangles: list[Any] = matrices[..., rows, columns].tolist()
-    return triangles
+    return np.ascontiguousarray(matrices[..., rows, columns])
+
+
+def from_triangles(entries: FloatArray) -> FloatArray:
+    """The symmetric matrices again."""
+    d = (isqrt(8 * entries.shape[-1] + 1) - 1) // 2
+    place = np.zeros((d, d), dtype=np.int64)
+    rows, columns = np.tril_indices(d)
+    place[rows, columns] = place[columns, rows] = np.arange(len(rows))
+    return np.ascontiguousarray(entries[..., place])
 
 
 def _check_symmetric(argument: str, matrices: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from ratt_opt.attackers.by_size import annealed_families as module
 from ratt_opt.attackers.by_size import size_vector_search
 from ratt_opt.attackers.by_size.annealed_families import AnnealedFamilies
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget
 from ratt_opt.graph.survivor_sizes import cheapest_cut
 from ratt_opt.problem import Problem
@@ -27,7 +27,7 @@ def teams(name, count):
         budgets = int(rng.integers(0, 5)), int(rng.integers(5, comb(N_ROBOTS, 2)))
         must = frozenset(rng.choice(N_ROBOTS, int(rng.integers(0, 3)), replace=False).tolist())
         problem = Problem(objective, np.arange(N_ROBOTS), None, *budgets, protected_robots=must)
-        yield problem, PlanarTeam.of(objective, np.arange(N_ROBOTS))
+        yield problem, PackedTeam.planar(objective, np.arange(N_ROBOTS))
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -54,7 +54,7 @@ def test_nothing_is_left_of_a_team_all_blinded():
     rng = np.random.default_rng(0)
     objective = OBJECTIVES["trace"](*information_data(rng, N_ROBOTS, 3))
     problem = Problem(objective, np.arange(N_ROBOTS), None, N_ROBOTS, 0)
-    team = PlanarTeam.of(objective, np.arange(N_ROBOTS))
+    team = PackedTeam.planar(objective, np.arange(N_ROBOTS))
     assert AnnealedFamilies(team, problem.threat).start(Budget()) == ()
 
 

@@ -24,7 +24,7 @@ from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
@@ -261,7 +261,7 @@ def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
 @pytest.mark.parametrize("seed", range(12))
 def test_no_weak_set_is_larger_than_its_size(seed):
     problem, plan = team_problem(seed, 7)
-    team, planar = PricedTeam.of(problem.objective, plan), PlanarTeam.of(problem.objective, plan)
+    team, planar = PricedTeam.of(problem.objective, plan), PackedTeam.planar(problem.objective, plan)
     values = {s: problem.objective(plan[list(s)]) for k in range(8) for s in combinations(range(7), k)}
     sizes = WeakSizes(team, planar)
     for share in (0.3, 0.6, 0.9):
@@ -367,7 +367,7 @@ def unpaid_question(seed):
     problem, plan = team_problem(6 * seed + 1, 6, graph=nx.connected_watts_strogatz_graph(6, 4, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
     threshold, robot, blinded = 0.7 * problem.objective(plan), rng.uniform(0, 2, 6), rng.uniform(0.5, 2)
-    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    size = WeakSizes(team, PackedTeam.planar(problem.objective, plan)).largest(threshold, Budget())
     while least_cost(problem, plan, threshold, (robot, blinded)) < 1e-3:
         robot *= 0.6
     for _ in range(3):  # as much as they may be, nearly
@@ -431,7 +431,7 @@ def test_the_search_for_groups_that_pay_finds_some_or_proves_that_none_does(seed
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
     threshold, prices = problem.objective(plan) * rng.uniform(0.4, 0.9), (rng.uniform(0, 2, 6), rng.uniform(0.0, 2))
-    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    size = WeakSizes(team, PackedTeam.planar(problem.objective, plan)).largest(threshold, Budget())
     raised = max(least_cost(problem, plan, threshold, prices), 0) + 0.5  # some groups pay
     prices = (prices[0] + raised, prices[1])
     least = least_cost(problem, plan, threshold, prices)
@@ -458,7 +458,7 @@ def test_prices_fall_for_groups_that_pay_until_none_does(seed, way):
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, 0.5, seed=seed))
     team, links, threat = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat
     threshold, blinded = problem.objective(plan) * rng.uniform(0.4, 0.9), rng.uniform(0.0, 2)
-    size = WeakSizes(team, PlanarTeam.of(problem.objective, plan)).largest(threshold, Budget())
+    size = WeakSizes(team, PackedTeam.planar(problem.objective, plan)).largest(threshold, Budget())
     robot = rng.uniform(0, 2, 6)
     robot += max(least_cost(problem, plan, threshold, (robot, blinded)), 0) + 0.5  # some groups pay
     first = PriceVector(robot=robot.copy(), blinded=blinded, links=float(robot.sum() - blinded * threat.n_blinded))

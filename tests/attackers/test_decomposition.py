@@ -12,7 +12,7 @@ from ratt_opt.attackers.weakest_set.by_targets.decomposition import _compiled, d
 from ratt_opt.attackers.weakest_set.by_targets.slope_cells import least_choice
 from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import Meshes
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES
 
@@ -42,7 +42,7 @@ def odd_data(rng, shape, n_robots=N_ROBOTS, n_targets=3):
 def team_of(name, seed, shape):
     rng = np.random.default_rng([seed, SHAPES.index(shape)])
     prior, information = odd_data(rng, shape)
-    return PlanarTeam.of(OBJECTIVES[name](prior, information), np.arange(N_ROBOTS)), rng
+    return PackedTeam.planar(OBJECTIVES[name](prior, information), np.arange(N_ROBOTS)), rng
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -13,7 +13,7 @@ from ratt_opt.attackers.by_size.family_prices.family_dive import FamilyDive
 from ratt_opt.attackers.by_size.family_prices.family_program import Choice, FamilyProgram
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.survivor_sizes import cheapest_cut
 from ratt_opt.problem import Problem
@@ -31,7 +31,7 @@ def dives(name, count):
         budgets = int(rng.integers(0, 4)), int(rng.integers(comb(N_ROBOTS, 2) // 2, comb(N_ROBOTS, 2) - 2))
         must = frozenset(rng.choice(N_ROBOTS, int(rng.integers(0, 2)), replace=False).tolist())
         problem = Problem(objective, EVERYONE, None, *budgets, protected_robots=must)
-        team = PlanarTeam.of(objective, EVERYONE)
+        team = PackedTeam.planar(objective, EVERYONE)
         yield problem, team, FamilyDive(team, problem.threat, SetFinder(team, N_ROBOTS - problem.threat.n_blinded))
 
 

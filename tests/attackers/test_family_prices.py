@@ -14,14 +14,14 @@ from ratt_opt.attackers.by_size.family_prices import family_search, paying_tree,
 from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_of_size, annealed_sets
 from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices, FamilyProgram
 from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
-from ratt_opt.attackers.by_size.family_prices.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.size_vectors import SizeVectors
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound, _Verdict
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attackers.weakest_set.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 from ratt_opt.problem import Attack, Problem
@@ -35,7 +35,7 @@ EVERYONE = np.arange(N_ROBOTS)
 
 def make_team(name, seed, n_robots=N_ROBOTS):
     objective = OBJECTIVES[name](*information_data(np.random.default_rng(seed), n_robots, 3))
-    return PlanarTeam.of(objective, np.arange(n_robots))
+    return PackedTeam.planar(objective, np.arange(n_robots))
 
 
 def problems(name, count, n_robots=N_ROBOTS):
@@ -200,7 +200,7 @@ def test_a_goal_out_of_reach_is_asked_once(monkeypatch):
     monkeypatch.setattr(ThresholdBound, "_decide", decide)
     prior, information = information_data(np.random.default_rng(0), 1, 3)
     objective = OBJECTIVES["logdet"](prior, np.repeat(information, 7, axis=0))
-    problem, team = Problem(objective, np.arange(7), None, 0, 14), PlanarTeam.of(objective, np.arange(7))
+    problem, team = Problem(objective, np.arange(7), None, 0, 14), PackedTeam.planar(objective, np.arange(7))
     bracket = AttackBracket(Attack(), team.value(range(4)), (1 - 1e-5) * team.value(range(4)))
     ThresholdBound(team, problem.threat).run(bracket, Budget())
     assert asked == [bracket.goal]
@@ -260,7 +260,7 @@ def test_annealed_sets_of_a_size_stay_weak_and_pay_most(name):
 def test_prices_of_all_weak_sets_claim_nothing_of_what_attacks_reach(name):
     refuted = {True: 0, False: 0}
     for problem in problems(name, 12, n_robots=5):
-        team = PlanarTeam.of(problem.objective, np.arange(5))
+        team = PackedTeam.planar(problem.objective, np.arange(5))
         worst = brute_force_worst_case(problem, np.arange(5))
         for share in (0.7, 0.999, 1.001):
             claims = {}
@@ -284,7 +284,7 @@ def test_prices_of_sizes_know_that_no_vector_is_a_mixture():
     """Of seven robots alike, sevenths of groups of three keep seven links; groups keep six, unless one has four."""
     prior, information = information_data(np.random.default_rng(0), 1, 3)
     objective = OBJECTIVES["logdet"](prior, np.repeat(information, 7, axis=0))
-    problem, team = Problem(objective, np.arange(7), None, 0, 14), PlanarTeam.of(objective, np.arange(7))
+    problem, team = Problem(objective, np.arange(7), None, 0, 14), PackedTeam.planar(objective, np.arange(7))
     threshold = (team.value(range(3)) + team.value(range(4))) / 2
     claims = []
     for vectors in (None, SizeVectors(7, vectors_of(problem))):
@@ -301,7 +301,7 @@ def test_a_program_is_divided_where_a_relaxed_attack_mixes_vectors():
     """Both parts know the same sets, and claim at least as much; together they have all vectors."""
     divided = 0
     for problem in problems("logdet", 16):
-        vectors, team = vectors_of(problem), PlanarTeam.of(problem.objective, EVERYONE)
+        vectors, team = vectors_of(problem), PackedTeam.planar(problem.objective, EVERYONE)
         program = FamilyProgram(problem.threat, SizeVectors(N_ROBOTS, vectors))
         for size in range(1, N_ROBOTS + 1):
             for one in combinations(range(N_ROBOTS), size):
@@ -338,7 +338,7 @@ def vectors_of(problem):
 
 def bounded(problem, budget, vectors=None):
     """The lower end by prices alone, from no attack at all."""
-    team = PlanarTeam.of(problem.objective, np.arange(problem.n_robots))
+    team = PackedTeam.planar(problem.objective, np.arange(problem.n_robots))
     bracket = AttackBracket(Attack(), problem.team_value(np.arange(problem.n_robots), Attack()), 0.0)
     try:
         ThresholdBound(team, problem.threat, vectors).run(bracket, budget)
@@ -385,7 +385,7 @@ def test_prices_of_sizes_close_on_the_worst_attack(name):
     closed, count = 0, 6
     for problem in problems(name, count):
         worst = worst_case_attack(problem, EVERYONE)
-        team = PlanarTeam.of(problem.objective, EVERYONE)
+        team = PackedTeam.planar(problem.objective, EVERYONE)
         bracket = AttackBracket(worst.attack, worst.upper, 0.0, problem.objective.rounding)
         with suppress(OutOfBudget):
             ThresholdBound(team, problem.threat, vectors_of(problem)).run(bracket, Budget(max_nodes=20_000))
@@ -416,7 +416,7 @@ def test_with_time_left_a_search_of_all_families_goes_on(name, monkeypatch):
     bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), 0.0)
     task = AttackTask(problem, values, bracket, Budget(time_limit=0.5))
     try:
-        stop = FamilySearch(task, PlanarTeam.of(objective, values.plan), []).run()
+        stop = FamilySearch(task, PackedTeam.planar(objective, values.plan), []).run()
     except OutOfBudget as out:
         stop = out.stop
     assert stop in {Stop.CLOSED, Stop.TIME}

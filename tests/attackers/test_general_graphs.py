@@ -9,7 +9,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers import annealed_values, exact
 from ratt_opt.attackers.forced_group import forced_survivors
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
@@ -46,7 +46,7 @@ def test_both_large_searches_agree_on_a_complete_graph(seed):
     plan = np.arange(13)
     shown = ro.worst_case_attack(ro.Problem(ro.TraceObjective(prior, information), plan, None, *budgets), plan)
     hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, None, *budgets), plan)
-    assert PlanarTeam.of(Hidden(prior, information), plan) is None
+    assert PackedTeam.planar(Hidden(prior, information), plan) is None
     assert shown.stop is ro.Stop.CLOSED
     assert hidden.stop is ro.Stop.EXHAUSTED
     assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)

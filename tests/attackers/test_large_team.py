@@ -27,7 +27,7 @@ from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attackers.weakest_set.linear_descent import descended
 from ratt_opt.attackers.weakest_set.minorant import affine_minorant
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
@@ -50,7 +50,7 @@ def run_large(problem, elements, max_nodes=None):
     values = PlanValues(problem, elements)
     start = bounded_rational_attack(problem, elements)
     bracket, budget = AttackBracket(start.attack, start.upper, 0.0), Budget(max_nodes=max_nodes)
-    team = PlanarTeam.of(problem.objective, values.plan)
+    team = PackedTeam.planar(problem.objective, values.plan)
     try:
         stop = SizeVectorSearch(AttackTask(problem, values, bracket, budget), team).run()
     except OutOfBudget as out:
@@ -111,7 +111,7 @@ def test_shares_that_end_anywhere_lose_no_set(name, seed, monkeypatch):
     problem, elements = team_problem(seed, 6 + seed % 4, name, protect=seed % 3 == 0)
     expected, values = ro.worst_case_attack(problem, elements).upper, PlanValues(problem, elements)
     start = bounded_rational_attack(problem, elements)
-    bracket, team = AttackBracket(start.attack, start.upper, 0.0), PlanarTeam.of(problem.objective, values.plan)
+    bracket, team = AttackBracket(start.attack, start.upper, 0.0), PackedTeam.planar(problem.objective, values.plan)
     search = SizeVectorSearch(AttackTask(problem, values, bracket, Budget()), team)
     search.bounds = dict.fromkeys(search.vectors, -np.inf)
     stop, nodes = None, 1
@@ -181,7 +181,7 @@ def test_minorants_lie_below_every_set(name, seed):
     data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 4)
     data[1][3] = data[1][2]
     data[1][4] = 0.0
-    team = PlanarTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    team = PackedTeam.planar(OBJECTIVES[name](*data), np.arange(n_robots))
     minorant = affine_minorant(team.family(np.arange(n_robots), size), 2, np.inf)
     slack = [
         team.value(chosen) - minorant.constant - minorant.scores[list(chosen)].sum()
@@ -199,7 +199,7 @@ def test_minorants_lie_below_every_set(name, seed):
 @pytest.mark.parametrize("seed", range(10))
 def test_all_sets_below_a_threshold_are_enumerated(seed, name):
     rng = np.random.default_rng(seed)
-    team = PlanarTeam.of(OBJECTIVES[name](*information_data(rng, 8, 3)), np.arange(8))
+    team = PackedTeam.planar(OBJECTIVES[name](*information_data(rng, 8, 3)), np.arange(8))
     values = {frozenset(s): team.value(s) for s in combinations(range(8), 4)}
     threshold = float(np.median(list(values.values())))
     sets, found = Enumeration(team, np.arange(8), frozenset(), 4), set()
@@ -219,7 +219,7 @@ def test_a_team_of_twenty_closes_and_is_beaten_by_no_local_search(name):
     assert result.stop is ro.Stop.CLOSED
     assert result.upper - result.lower <= 1e-9 * result.upper
     assert result.upper <= ro.greedy_attack(problem, plan).upper
-    team = PlanarTeam.of(problem.objective, plan)
+    team = PackedTeam.planar(problem.objective, plan)
     weakest = min(team.value(rng.choice(20, 7, replace=False)) for _ in range(3000))
     assert result.lower <= weakest
     again = ro.worst_case_attack(problem, plan)
@@ -238,7 +238,7 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
     rng = np.random.default_rng(seed)
     n_robots, size = 8, int(rng.integers(0, 9))
     data = range_bearing(rng, n_robots, 3, 1) if seed % 2 else information_data(rng, n_robots, 3)
-    team = PlanarTeam.of(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
+    team = PackedTeam.planar(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
     axis = weakest_axis(team.family(np.arange(n_robots), size))
     weakest = min(team.value(chosen) for chosen in combinations(range(n_robots), size))
     assert axis.bound <= weakest + 1e-12
@@ -272,7 +272,7 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
 def searched_in_pieces(name, n_robots, nodes, growth):
     """The search for some twenty weak sets of five robots, in budgets each so many times the last; how many it took."""
     objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), n_robots, 4, 1))
-    team = PlanarTeam.of(objective, np.arange(n_robots))
+    team = PackedTeam.planar(objective, np.arange(n_robots))
     values = {frozenset(one): team.value(one) for one in combinations(range(n_robots), 5)}
     threshold = float(np.mean(sorted(values.values())[20:22]))
     search, found, runs = WeakestSetSearch(team, 5, threshold), set(), 0
@@ -325,7 +325,7 @@ def test_no_exchange_lowers_a_weak_set(name, seed):
     rng = np.random.default_rng(seed)
     n_robots, size = 11, int(rng.integers(1, 11))
     data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 3)
-    team = PlanarTeam.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    team = PackedTeam.planar(OBJECTIVES[name](*data), np.arange(n_robots))
     found = weak_sets_of_size(team, size)
     values = [team.value(robots) for robots in found]
     assert values == sorted(values)
@@ -343,7 +343,7 @@ def test_no_exchange_lowers_a_weak_set(name, seed):
 @pytest.mark.parametrize("seed", range(8))
 def test_exchanges_keep_fixed_robots_and_stay_among_those_allowed(name, seed):
     rng = np.random.default_rng(seed)
-    team = PlanarTeam.of(OBJECTIVES[name](*range_bearing(rng, 12, 4, 1)), np.arange(12))
+    team = PackedTeam.planar(OBJECTIVES[name](*range_bearing(rng, 12, 4, 1)), np.arange(12))
     among = frozenset(rng.permutation(12)[:9].tolist())
     start = frozenset(sorted(among)[:5])
     fixed = frozenset(sorted(start)[:2])
@@ -360,7 +360,7 @@ def test_exchanges_keep_fixed_robots_and_stay_among_those_allowed(name, seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_linear_descent_ends_no_higher_and_where_no_step_leads_on(name, seed):
     problem, elements = team_problem(seed, 14, name)
-    team = PlanarTeam.of(problem.objective, elements)
+    team = PackedTeam.planar(problem.objective, elements)
     rng = np.random.default_rng(seed)
     start = rng.permutation(14)[: int(rng.integers(1, 14))]
     found = descended(team, start)
@@ -377,7 +377,7 @@ def test_large_teams_start_from_where_linear_descent_ends(name, monkeypatch):
     for seed in range(4):
         problem = ro.random_scenario(40, 12, alpha_s=4, alpha_c=40, seed=seed).problem(name)
         values = PlanValues(problem, ro.ratt(problem).elements)
-        team = PlanarTeam.of(problem.objective, values.plan)
+        team = PackedTeam.planar(problem.objective, values.plan)
         task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=0))
         sizes = SizeVectorSearch(task, team).vectors[0]
         for large in found:
@@ -390,7 +390,7 @@ def test_exchanges_that_do_not_end_leave_time_for_bounds(monkeypatch):
     monkeypatch.setattr(group_exchanges, "_exchange", lambda *_: (1e9, False))
     problem = ro.random_scenario(40, 4, alpha_s=4, alpha_c=40, seed=1).problem("logdet")
     values = PlanValues(problem, ro.ratt(problem).elements)
-    team = PlanarTeam.of(problem.objective, values.plan)
+    team = PackedTeam.planar(problem.objective, values.plan)
     task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=2.0))
     search = SizeVectorSearch(task, team)
     assert search.weak.exchanged(search.vectors)

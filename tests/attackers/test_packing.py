@@ -10,7 +10,7 @@ import pytest
 from ratt_opt.attackers.by_size import packing
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.weakest_set import branch_and_bound
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.stopping import Stop
 from tests.strategies import OBJECTIVES, information_data
@@ -30,7 +30,7 @@ def exists(team, available, sizes, threshold, must):
 
 def question(name, seed):
     rng = np.random.default_rng(seed)
-    team = PlanarTeam.of(OBJECTIVES[name](*information_data(rng, N_ROBOTS, 3)), np.arange(N_ROBOTS))
+    team = PackedTeam.planar(OBJECTIVES[name](*information_data(rng, N_ROBOTS, 3)), np.arange(N_ROBOTS))
     robots = rng.permutation(N_ROBOTS).tolist()
     available = frozenset(robots[: int(rng.integers(4, N_ROBOTS + 1))])
     must = frozenset(i for i in robots if rng.random() < 0.2)

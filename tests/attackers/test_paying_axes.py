@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from tests.strategies import information_data
@@ -49,7 +49,7 @@ def test_who_pays_along_an_axis(data):
     answers = set()
     for seed in range(40):
         rng = np.random.default_rng([seed, 3])
-        team = PlanarTeam.of(MaxEigenvalueObjective(*data(rng)), np.arange(N_ROBOTS))
+        team = PackedTeam.planar(MaxEigenvalueObjective(*data(rng)), np.arange(N_ROBOTS))
         values = np.array([team.value(one) for one in SETS])
         threshold = float(rng.choice(values) + rng.choice([-1e-6, 1e-6, 0.1]) * values[-1])
         prices = rng.choice([rng.normal(size=N_ROBOTS), np.repeat(rng.normal(), N_ROBOTS)])
@@ -74,7 +74,7 @@ def test_who_pays_along_an_axis(data):
 
 def test_an_axis_search_cut_short_says_so():
     rng = np.random.default_rng(0)
-    team = PlanarTeam.of(MaxEigenvalueObjective(*plain(rng)), np.arange(N_ROBOTS))
+    team = PackedTeam.planar(MaxEigenvalueObjective(*plain(rng)), np.arange(N_ROBOTS))
     threshold, finder = 0.9 * team.value(range(N_ROBOTS)), PayingSets(team)
     size = max(finder.sizes(threshold, N_ROBOTS))
     question = Question(threshold, np.zeros(N_ROBOTS), 1e-9)

@@ -8,7 +8,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_elements, random_problem
@@ -23,7 +23,7 @@ def _task(problem, plan, budget=None):
 def _bounded(problem, plan, budget=None, least=0):
     """The bracket after the bound, and the seeing robots left in some group."""
     task = _task(problem, plan, budget)
-    return task.bracket, possible_sizes_bound(task, PlanarTeam.of(problem.objective, plan), least)
+    return task.bracket, possible_sizes_bound(task, PackedTeam.planar(problem.objective, plan), least)
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -62,7 +62,7 @@ def test_spent_time_and_interrupts_claim_nothing():
     interrupted = Budget()
     interrupted.interrupt()
     for budget in (Budget(time_limit=0.0), interrupted):
-        task, team = _task(problem, plan, budget), PlanarTeam.of(problem.objective, plan)
+        task, team = _task(problem, plan, budget), PackedTeam.planar(problem.objective, plan)
         with pytest.raises(OutOfBudget):
             possible_sizes_bound(task, team, 3)
         assert task.bracket.lower == -np.inf

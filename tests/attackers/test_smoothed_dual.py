@@ -10,7 +10,7 @@ from scipy.optimize import approx_fprime, linprog
 
 from ratt_opt.attackers.weakest_set.minorant import _program, affine_minorant
 from ratt_opt.attackers.weakest_set.outer_polytopes import outer_polytopes
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.attackers.weakest_set.smoothed_dual import Multipliers
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES, range_bearing
@@ -18,7 +18,7 @@ from tests.strategies import OBJECTIVES, range_bearing
 
 def sensor_family(name, seed, n_robots=9, n_targets=4, size=None):
     rng = np.random.default_rng(seed)
-    team = PlanarTeam.of(OBJECTIVES[name](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
+    team = PackedTeam.planar(OBJECTIVES[name](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
     size = int(rng.integers(2, n_robots - 2)) if size is None else size
     return team, team.family(np.arange(n_robots), size)
 

@@ -19,7 +19,7 @@ from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
 from tests.oracles import brute_force_worst_case
@@ -54,7 +54,7 @@ def run_split(problem, elements, max_nodes=None, search=SplitSearch):
     values = PlanValues(problem, elements)
     first = bounded_rational_attack(problem, elements)
     bracket, budget = AttackBracket(first.attack, first.upper, 0.0), Budget(max_nodes=max_nodes)
-    team = PlanarTeam.of(problem.objective, values.plan)
+    team = PackedTeam.planar(problem.objective, values.plan)
     groups = separable_groups(problem.threat, 100_000)
     try:
         stop = search(AttackTask(problem, values, bracket, budget), team, groups).run()
@@ -105,7 +105,7 @@ def test_agrees_with_the_threshold_search(seed, plain, sharper, search, monkeypa
 @pytest.mark.parametrize("seed", [seed for seed in range(12) if list(OBJECTIVES)[seed % 3] != "maxeig"])
 def test_minorants_of_sizes_hold_in_every_group(seed):
     problem, elements = team_problem(1998 + seed, 7, density=0.4)
-    team, groups = PlanarTeam.of(problem.objective, elements), separable_groups(problem.threat, 100_000)
+    team, groups = PackedTeam.planar(problem.objective, elements), separable_groups(problem.threat, 100_000)
     minorants, members = MinorantsOfSizes(team), [groups.members(group).tolist() for group in range(len(groups.masks))]
     for size in range(6, 0, -1):
         rows = np.array([row for row, robots in enumerate(members) if len(robots) >= size], dtype=np.int64)

@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq
 
 from ratt_opt import random_scenario, ratt, worst_case_attack
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.certificates import forced_size, lower, size_tree
 from ratt_opt.certificates.forced_size import forced_size_tree
 from ratt_opt.certificates.plan_sets import PlanSets
@@ -26,7 +26,7 @@ def case(kind, seed, robots=14):
     alpha_s, alpha_c = ((3, 13), (4, 0), (0, 24))[seed % 3]
     problem = random_scenario(robots, 4, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed).problem(kind)
     elements = ratt(problem).elements
-    team = PlanarTeam.of(problem.objective, elements)
+    team = PackedTeam.planar(problem.objective, elements)
     size = forced_group_size(robots, alpha_s, alpha_c)
     sets = (np.bitwise_count(np.arange(2**robots)) == size).nonzero()[0]
     members = (sets[:, None] >> np.arange(robots)) & 1

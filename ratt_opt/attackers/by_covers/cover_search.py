@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 
 __all__ = ["CoverSearch"]
 
@@ -42,9 +42,9 @@ class CoverSearch:
     A node is a program solved, a group tried in a partition, or a partial set.
     """
 
-    def __init__(self, task: AttackTask, team: PlanarTeam, groups: SeparableGroups) -> None:
+    def __init__(self, task: AttackTask, team: PackedTeam, groups: SeparableGroups) -> None:
         priced = PricedTeam.of(task.problem.objective, task.values.plan)
-        assert priced is not None, "a planar team's criterion has compiled loops"
+        assert priced is not None, "a packed team's criterion has compiled loops"
         self.task, self._team, self._groups = task, priced, groups
         self._sizes = WeakSizes(priced, team)
         self._survivors = GroupSurvivors(team, task.problem.protected_robots)

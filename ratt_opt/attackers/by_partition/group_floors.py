@@ -17,7 +17,7 @@ from ratt_opt.attackers.weakest_set.minorant import Minorant, affine_minorant
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.weakest_set.by_targets.decomposition import Decomposition
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam, SetFamily
     from ratt_opt.budget import Budget
     from ratt_opt.graph.separable_groups import SeparableGroups
 
@@ -36,9 +36,10 @@ class MinorantsOfSizes:
     """Minorants of the sets of one size of all robots, one for each size.
 
     A criterion of levels (max-eigenvalue) has none: its bounds are by the weakest axis, which is quick for each group.
+    Nor have targets that are not in the plane.
     """
 
-    def __init__(self, team: PlanarTeam) -> None:
+    def __init__(self, team: PackedTeam) -> None:
         self._team = team
         self._best: dict[int, Minorant | Decomposition] = {}
 
@@ -61,7 +62,7 @@ class MinorantsOfSizes:
         ------
         OutOfBudget : the time is up, or no node is left.
         """
-        if self._team.objective.states("planar_levels") or not 0 < size < len(self._team.single):
+        if not (self._team.has_minorants and 0 < size < len(self._team.single)):
             return None
         budget.spend(budget.nodes_left(MINORANT_NODES))
         known = self._best.get(size)

@@ -21,7 +21,7 @@ from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.separable_groups import SeparableGroups
 
@@ -41,7 +41,7 @@ class GroupSurvivors:
     ``must`` : robots that cannot be blinded
     """
 
-    team: PlanarTeam
+    team: PackedTeam
     must: frozenset[int]
     minorants: MinorantsOfSizes = field(init=False)
 
@@ -76,7 +76,7 @@ class GroupSurvivors:
             constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
             affine = AffineBound(constant, minorant.scores[free])
             sets = Enumeration.surest_first(self.team, free, fixed, left, affine)
-        most = AXIS_NODES if self.team.objective.states("planar_levels") else PLAIN_NODES
+        most = AXIS_NODES if self.team.is_by_axis else PLAIN_NODES
         while not sets.finished and sets.nodes < most:
             found = sets.next_within(threshold, most - sets.nodes, budget)
             if found is not None:

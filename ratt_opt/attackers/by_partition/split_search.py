@@ -15,13 +15,13 @@ import numpy as np
 
 from ratt_opt.attackers.by_partition.group_floors import least_in_groups
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
-from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
+from ratt_opt.attackers.weakest_set.branch_and_bound import bound_family
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.separable_groups import SeparableGroups
 
 __all__ = ["SplitSearch"]
@@ -36,7 +36,7 @@ CHUNK = 4096
 class SplitSearch:
     """Closes the task's bracket; relies on a non-decreasing objective."""
 
-    def __init__(self, task: AttackTask, team: PlanarTeam, groups: SeparableGroups) -> None:
+    def __init__(self, task: AttackTask, team: PackedTeam, groups: SeparableGroups) -> None:
         self.task, self.team, self.groups = task, team, groups
         self.n_robots, self.n_blinded = task.problem.n_robots, task.problem.threat.n_blinded
         self.survivors = GroupSurvivors(team, task.problem.protected_robots)
@@ -82,9 +82,10 @@ class SplitSearch:
 
     def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
         """No ``size`` robots of the groups ``rows`` are worth less."""
-        if self.team.objective.states("planar_levels"):
-            return np.full(len(rows), weakest_axis(self.team.family(np.arange(self.n_robots), size)).bound)
-        return least_in_groups(self.survivors.minorants.rough(size), self.groups, rows, size)
+        if self.team.has_minorants:
+            return least_in_groups(self.survivors.minorants.rough(size), self.groups, rows, size)
+        family = self.team.family(np.arange(self.n_robots), size)
+        return np.full(len(rows), bound_family(family, np.inf, None, self.task.budget).bound)
 
     def _reach(self, threshold: float) -> bool:
         """Find an attack below the threshold, or prove that there is none."""

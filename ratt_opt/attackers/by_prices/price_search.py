@@ -11,7 +11,7 @@ from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import OutOfBudget
 from ratt_opt.stopping import Stop
 
@@ -71,7 +71,7 @@ class PriceSearch:
         threat = task.problem.threat
         links = Links.of(threat)
         self._starts = Starts(team, links, threat)
-        planar = PlanarTeam.of(task.problem.objective, task.values.plan)
+        planar = PackedTeam.planar(task.problem.objective, task.values.plan)
         self._decision = ThresholdDecision(team, links, threat, WeakSizes(team, planar))
         self._effort, self._share = FIRST_EFFORT, 0.5
         self._took = 0.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -35,9 +35,7 @@ class PricedTeam(NamedTuple):
         """The compact form, or ``None`` where the objective has no compiled code."""
         if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
             return None
-        rows, columns = np.tril_indices(objective.dimension)
-        prior = np.ascontiguousarray(objective.prior_information[..., rows, columns])
-        information = np.ascontiguousarray(objective.information[plan][..., rows, columns])
+        prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
         baseline = float(objective.combine(objective.criterion(objective.prior_information)))
         empty = np.zeros(objective.n, dtype=np.bool_)
         single = np.array([objective.evaluate(_only(empty, e))[0] for e in plan])

@@ -18,7 +18,7 @@ from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
@@ -46,7 +46,7 @@ SEED = 0
 class AnnealedFamilies:
     """Starts from random families, each with more moves than the one before; deterministic but for where time ends."""
 
-    def __init__(self, team: PlanarTeam, threat: Threat) -> None:
+    def __init__(self, team: PackedTeam, threat: Threat) -> None:
         self._team, self._threat = team, threat
         n_robots, n_blinded, alpha_c = len(team.single), threat.n_blinded, threat.alpha_c
         first = forced_group_size(n_robots, n_blinded, alpha_c)
@@ -74,7 +74,7 @@ class Cooling(NamedTuple):
 
 def annealed_from(  # noqa: PLR0917
     groups: tuple[frozenset[int], ...],
-    team: PlanarTeam,
+    team: PackedTeam,
     threat: Threat,
     cooling: Cooling,
     rng: np.random.Generator,
@@ -191,7 +191,7 @@ def _changed_values(criterion: Any, groups: Any, pair: Any, sums: Any, kept: Any
     code, weights, baseline, _, information = criterion
     (source, target), (i, other), (sizes, changed) = groups, pair, kept
     for m in range(sums.shape[1]):
-        for t in range(3):
+        for t in range(sums.shape[2]):
             moved = information[i, m, t] - (information[other, m, t] if other >= 0 else 0.0)
             changed[0, m, t] = sums[source, m, t] - moved
             changed[1, m, t] = sums[target, m, t] + moved

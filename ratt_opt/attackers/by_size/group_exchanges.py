@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
@@ -41,7 +41,7 @@ class GroupExchanges:
     must : (N,) robots that cannot be blinded
     """
 
-    def __init__(self, team: PlanarTeam, sizes: Sizes, must: BoolArray) -> None:
+    def __init__(self, team: PackedTeam, sizes: Sizes, must: BoolArray) -> None:
         self._team, self._must, self.sizes = team, must, sizes
         self._rng = np.random.default_rng(SEED)
         self._home: IntArray = np.zeros(len(team.single), dtype=np.int64)
@@ -111,7 +111,7 @@ def _exchange(criterion: Any, home: Any, n_groups: int, must: Any, steps: int) -
     """
     code, weights, baseline, prior, information = criterion
     n_robots, n_targets = information.shape[0], information.shape[1]
-    sums, values = np.zeros((n_groups + 1, n_targets, 3)), np.full(n_groups + 1, -np.inf)
+    sums, values = np.zeros((n_groups + 1, *prior.shape)), np.full(n_groups + 1, -np.inf)
     for g in range(n_groups + 1):
         sums[g] = prior
     for i in range(n_robots):
@@ -125,7 +125,7 @@ def _exchange(criterion: Any, home: Any, n_groups: int, must: Any, steps: int) -
             return float(values[top]), True
         other = home[enters]
         for j in range(n_targets):
-            for t in range(3):
+            for t in range(prior.shape[1]):
                 change = information[enters, j, t] - information[leaves, j, t]
                 sums[top, j, t] += change
                 sums[other, j, t] -= change
@@ -172,6 +172,6 @@ def _exchanged_value(criterion: Any, sums: Any, leaves: int, enters: int) -> flo
     code, weights, baseline, _, information = criterion
     one = np.empty_like(sums)
     for j in range(len(sums)):
-        for t in range(3):
+        for t in range(one.shape[1]):
             one[j, t] = sums[j, t] - information[leaves, j, t] + information[enters, j, t]
     return float(baseline - team_criterion(code, weights, one))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
@@ -34,7 +34,7 @@ many the next time, and the last time where there is no limit of time or nodes."
 class LargestFirst:
     """Closes the bracket of a task, share after share of its budget; ``accept`` offers groups as an attack."""
 
-    def __init__(self, task: AttackTask, team: PlanarTeam, accept: Callable[[Sequence[frozenset[int]]], bool]) -> None:
+    def __init__(self, task: AttackTask, team: PackedTeam, accept: Callable[[Sequence[frozenset[int]]], bool]) -> None:
         self.team, self.bracket, self.accept = team, task.bracket, accept
         self._must = task.problem.threat.protected_robots
         self._searches: dict[int, WeakestSetSearch] = {}

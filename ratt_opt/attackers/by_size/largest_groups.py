@@ -20,7 +20,7 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.possible_sizes import PossibleSizes
 
 __all__ = ["largest_groups_bound", "weak_sets"]
@@ -67,7 +67,7 @@ def _offer(task: AttackTask, seeing: frozenset[int], group: frozenset[int]) -> N
         task.offer(Attack(blinded, frozenset(cut)))
 
 
-def weak_sets(task: AttackTask, team: PlanarTeam, possible: PossibleSizes) -> WeakSets | None:
+def weak_sets(task: AttackTask, team: PackedTeam, possible: PossibleSizes) -> WeakSets | None:
     """Every set below the goal of a size that a largest group may have, with its value; ``None`` where too many.
 
     Larger sets than those of a size of which none is below the goal are not below it either.

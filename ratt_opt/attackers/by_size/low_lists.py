@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
 
     MaskArray = NDArray[np.uint64]
@@ -78,7 +78,7 @@ class Filter:
 
 
 def list_low_sets(
-    team: PlanarTeam, order: IntArray, size: int, wanted: Filter, budget: Budget, *, quick: bool = False
+    team: PackedTeam, order: IntArray, size: int, wanted: Filter, budget: Budget, *, quick: bool = False
 ) -> LowList | None:
     """Every set of ``size`` robots that is wanted, or ``None`` where they are too many or too long to find.
 
@@ -93,8 +93,8 @@ def list_low_sets(
     OutOfBudget : the time is up, or too few nodes are left for the next look at the clock.
     """
     information = np.ascontiguousarray(team.information[order[::-1]])
-    n_robots, n_targets = information.shape[:2]
-    sums = np.zeros((size + 1, n_targets, 3))
+    n_robots = len(information)
+    sums = np.zeros((size + 1, *team.prior.shape))
     sums[0] = team.prior
     counters = np.zeros(2, dtype=np.int64)
     state = np.zeros(size + 1, dtype=np.int64), sums, np.zeros((2, size + 1, n_robots + 1)), counters
@@ -133,7 +133,7 @@ def _worths(criterion: Any, sums: Any, information: Any, places: Any, worths: An
     one = np.empty_like(sums)
     for i in range(first, len(information)):
         for j in range(len(one)):
-            for t in range(3):
+            for t in range(one.shape[1]):
                 one[j, t] = sums[j, t] + left * information[i, j, t]
         worths[i] = baseline - team_criterion(code, weights, one)
 
@@ -183,9 +183,9 @@ def _record(data: Any, limits: Any, position: Any, found: Any, number: int) -> i
 def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
     """Go on until every set is decided (true), the work is done or the arrays are full.
 
-    data : criterion (code, weights (M,), baseline); information (F, M, 3); costs (F,)
+    data : criterion (code, weights (M,), baseline); information (F, M, T); costs (F,)
     limits : threshold, room, work
-    state : position (size + 1,) next robot at each depth; sums (size + 1, M, 3); worths and sums of the smallest (2,
+    state : position (size + 1,) next robot at each depth; sums (size + 1, M, T); worths and sums of the smallest (2,
         size + 1, F + 1); counters (2,): depth, sets found
     """
     criterion, information, costs = data
@@ -221,7 +221,7 @@ def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
         position[depth] = p + 1
         spent[depth + 1] = spent[depth] + costs[p]
         for j in range(n_targets):
-            for t in range(3):
+            for t in range(information.shape[2]):
                 sums[depth + 1, j, t] = sums[depth, j, t] + information[p, j, t]
         depth += 1
         position[depth] = p + 1

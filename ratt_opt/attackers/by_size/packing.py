@@ -13,7 +13,7 @@ from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
@@ -35,7 +35,7 @@ class Packing:
 class Packer:
     """Packs groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
 
-    team: PlanarTeam
+    team: PackedTeam
     must: frozenset[int]
     budget: Budget
 

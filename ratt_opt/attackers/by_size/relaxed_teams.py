@@ -18,7 +18,7 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
@@ -35,7 +35,7 @@ LARGEST = 100
 """Robots of which sizes are looked at: some twenty seconds without a limit."""
 
 
-def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
+def unprotected_bound(task: AttackTask, team: PackedTeam) -> None:
     """Raise the lower bound to the worst case without protected links, no larger; keep its attack if allowed."""
     problem, bracket = task.problem, task.bracket
     relaxed = replace(problem, protected_links=frozenset())
@@ -48,7 +48,7 @@ def unprotected_bound(task: AttackTask, team: PlanarTeam) -> None:
             task.offer(start.attack)
 
 
-def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, *, asked: float = 1.0) -> int:
+def possible_sizes_bound(task: AttackTask, team: PackedTeam | None, least: int, *, asked: float = 1.0) -> int:
     """Raise the lower bound to the least that groups of possible sizes leave, whichever robots are in them.
 
     ``least`` : seeing robots that are known to be left in some group; ``asked`` : share of the seconds left to ask of
@@ -80,7 +80,7 @@ def possible_sizes_bound(task: AttackTask, team: PlanarTeam | None, least: int, 
     return least
 
 
-def _sizes_bound(task: AttackTask, team: PlanarTeam, vectors: list[Sizes]) -> None:
+def _sizes_bound(task: AttackTask, team: PackedTeam, vectors: list[Sizes]) -> None:
     """The same for these ``vectors``: every attack leaves groups of seeing robots of such sizes, or mergers of them."""
     problem, bracket = task.problem, task.bracket
     every_link = comb(problem.n_robots, 2)
@@ -90,7 +90,7 @@ def _sizes_bound(task: AttackTask, team: PlanarTeam, vectors: list[Sizes]) -> No
 
 
 def _search(
-    task: AttackTask, team: PlanarTeam, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
+    task: AttackTask, team: PackedTeam, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
 ) -> None:
     """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
     try:

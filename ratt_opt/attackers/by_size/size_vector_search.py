@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["SizeVectorSearch"]
@@ -85,7 +85,7 @@ class SizeVectorSearch:
     ``vectors`` : of sizes to search; those that the budgets allow by default
     """
 
-    def __init__(self, task: AttackTask, team: PlanarTeam, vectors: list[Sizes] | None = None) -> None:
+    def __init__(self, task: AttackTask, team: PackedTeam, vectors: list[Sizes] | None = None) -> None:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
         n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c

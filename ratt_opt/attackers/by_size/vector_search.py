@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.by_size.low_lists import LowList
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
 
 __all__ = ["LowLists", "VectorSearch"]
@@ -46,7 +46,7 @@ class LowLists:
     ``order`` : (F,) the robots, strongest first; bit ``k`` of a mask is ``order[k]``
     """
 
-    def __init__(self, team: PlanarTeam, order: IntArray) -> None:
+    def __init__(self, team: PackedTeam, order: IntArray) -> None:
         self.team, self.order = team, order
         self.single: FloatArray = team.single[order]
         self._known: dict[int, LowList | None] = {}

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
@@ -41,7 +41,7 @@ where it costs more than it saves."""
 class WeakFamilies:
     """Finds families that no exchange makes weaker."""
 
-    def __init__(self, task: AttackTask, team: PlanarTeam) -> None:
+    def __init__(self, task: AttackTask, team: PackedTeam) -> None:
         self._team, self._budget = team, task.budget
         self._must = np.isin(np.arange(len(team.single)), list(task.problem.threat.protected_robots))
         self._weak: dict[int, list[frozenset[int]]] = {}

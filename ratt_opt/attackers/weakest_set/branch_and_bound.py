@@ -16,6 +16,7 @@ import numpy as np
 from ratt_opt.attackers.weakest_set.enumeration import AffineBound, Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import exchanged
 from ratt_opt.attackers.weakest_set.minorant import Minorant, affine_minorant
+from ratt_opt.attackers.weakest_set.pair_bound import pairs_of_family
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.weakest_set.by_targets.decomposition import Decomposition
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam, SetFamily
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam, SetFamily
     from ratt_opt.budget import Budget
 
     Found = Generator[frozenset[int] | None, None, None]
@@ -47,7 +48,7 @@ class SetNode(Generic[Bound]):
     outside: frozenset[int] = field(compare=False)
     minorant: Bound | None = field(compare=False, default=None)
 
-    def undecided(self, team: PlanarTeam) -> IntArray:
+    def undecided(self, team: PackedTeam) -> IntArray:
         """Robots neither inside nor outside, strongest first."""
         order = np.argsort(-team.single, kind="stable")
         return np.array([i for i in order.tolist() if i not in self.inside and i not in self.outside], dtype=np.int64)
@@ -74,7 +75,7 @@ class SetNode(Generic[Bound]):
         minorant = self.minorant.restricted(free, surely_in)
         return replace(self, inside=inside, outside=outside, minorant=minorant), robots[free]
 
-    def enumeration(self, team: PlanarTeam, robots: IntArray, size: int) -> Enumeration:
+    def enumeration(self, team: PackedTeam, robots: IntArray, size: int) -> Enumeration:
         """The sets of the node one by one: ``size`` of the undecided ``robots``."""
         if self.minorant is None:
             return Enumeration(team, robots, self.inside, size)
@@ -124,14 +125,16 @@ class FamilyBound:
 
 
 def bound_family(family: SetFamily, goal: float, parent: Minorant | None, budget: Budget) -> FamilyBound:
-    """Bound a family by its worst axis where that decides, and else by an affine minorant.
+    """Bound a family by its worst axis where that decides, and else by an affine minorant; not in the plane, by pairs.
 
     ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family; ``budget`` : once it is over, the
     minorant is taken as it is
     """
-    if family.team.objective.states("planar_levels"):
+    if family.team.is_by_axis:
         axis = weakest_axis(family)
         return FamilyBound(axis.bound, axis.chosen)
+    if not family.team.is_planar:
+        return FamilyBound(pairs_of_family(family))
     n_free = len(family.information)
     if not 0 < family.size < n_free:
         return FamilyBound(-np.inf)
@@ -160,7 +163,7 @@ class WeakestSetSearch:
 
     def __init__(
         self,
-        team: PlanarTeam,
+        team: PackedTeam,
         size: int,
         threshold: float,
         floor: float = -np.inf,

@@ -15,7 +15,7 @@ from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
 
 __all__ = ["AffineBound", "Enumeration"]
@@ -37,7 +37,7 @@ class Enumeration:
     """
 
     def __init__(
-        self, team: PlanarTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound | None = None
+        self, team: PackedTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound | None = None
     ) -> None:
         self._team, self._robots, self._chosen, self._size = team, robots, chosen, size
         affine = affine or AffineBound(-np.inf, np.zeros(len(robots)))
@@ -55,7 +55,7 @@ class Enumeration:
 
     @classmethod
     def surest_first(
-        cls, team: PlanarTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound
+        cls, team: PackedTeam, robots: IntArray, chosen: frozenset[int], size: int, affine: AffineBound
     ) -> Enumeration:
         """The same search, those ``robots`` first whose side, inside or outside, the minorant is surest of."""
         if not 0 < size < len(robots):
@@ -111,16 +111,16 @@ def _smallest_sums(scores: FloatArray, size: int) -> FloatArray:
 
 @numba.njit(cache=True)
 def _averaged(code: int, weights: Any, sums: Any, information: Any, left: int) -> float:
-    """No ``left`` of the robots bring the criterion above this: (M,), (M, 3), (F, M, 3) -> scalar.
+    """No ``left`` of the robots bring the criterion above this: (M,), (M, T), (F, M, T) -> scalar.
 
     ``sums`` plus the information of robots ``T`` is the average over ``i`` in ``T`` of ``sums + |T| information[i]``,
     and the criterion is convex: it is at most the average there, so at most that of the ``|T|`` largest.
     """
     n_robots, n_targets = information.shape[0], information.shape[1]
-    one, worth = np.empty((n_targets, 3)), np.empty(n_robots)
+    one, worth = np.empty_like(sums), np.empty(n_robots)
     for i in range(n_robots):
         for j in range(n_targets):
-            for t in range(3):
+            for t in range(sums.shape[1]):
                 one[j, t] = sums[j, t] + left * information[i, j, t]
         worth[i] = team_criterion(code, weights, one)
     return float(np.sort(worth)[n_robots - left :].mean())
@@ -134,11 +134,11 @@ def _search(criterion: Any, information: Any, affine: Any, threshold: float, lim
     scores`` or the averaged bound (:func:`_averaged`) of every completion reaches the threshold.
 
     ``criterion`` : code, weights (M,), baseline
-    ``information`` : (F, M, 3) of the robots to choose from
+    ``information`` : (F, M, T) of the robots to choose from
     ``affine`` : scores (F,), a set's value is at least linear[0] + sum of its scores; and (F + 1, size + 1) the sum of
         the q smallest scores among robots p.. at [p, q]
     ``limit`` : nodes (partial choices looked at) before pausing, counted in ``counters[1]``
-    ``state`` : position (size + 1,), sums (size + 1, M, 3), linear (size + 1,), counters (2,)
+    ``state`` : position (size + 1,), sums (size + 1, M, T), linear (size + 1,), counters (2,)
     """
     code, weights, baseline = criterion
     scores, smallest = affine
@@ -163,7 +163,7 @@ def _search(criterion: Any, information: Any, affine: Any, threshold: float, lim
         if bound + smallest[p + 1, left - 1] >= threshold:
             continue
         for j in range(n_targets):
-            for t in range(3):
+            for t in range(information.shape[2]):
                 sums[depth + 1, j, t] = sums[depth, j, t] + information[p, j, t]
         if left == 1:
             if baseline - team_criterion(code, weights, sums[depth + 1]) >= threshold:

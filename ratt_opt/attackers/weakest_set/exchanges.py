@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 
 __all__ = ["exchanged", "weak_sets_of_size"]
 
@@ -39,7 +39,7 @@ BARRED, INSIDE, OUTSIDE = 0, 1, 2
 
 
 def exchanged(
-    team: PlanarTeam,
+    team: PackedTeam,
     start: Iterable[int],
     *,
     among: Iterable[int] | None = None,
@@ -61,7 +61,7 @@ def exchanged(
     return kept.union(np.flatnonzero(where == INSIDE).tolist())
 
 
-def weak_sets_of_size(team: PlanarTeam, size: int, budget: Budget | None = None) -> list[frozenset[int]]:
+def weak_sets_of_size(team: PackedTeam, size: int, budget: Budget | None = None) -> list[frozenset[int]]:
     """Sets of ``size`` robots that no exchange lowers, lowest value first; fewer, and rougher, once time is up.
 
     Deterministic. Starts: the robots of least individual value, those of least information about each target, and
@@ -83,9 +83,9 @@ def weak_sets_of_size(team: PlanarTeam, size: int, budget: Budget | None = None)
     return sorted(found, key=found.__getitem__)
 
 
-def _starts(team: PlanarTeam, size: int) -> Iterator[IntArray]:
+def _starts(team: PackedTeam, size: int) -> Iterator[IntArray]:
     yield np.argsort(team.single, kind="stable")[:size]
-    traces = team.information[:, :, 0] + team.information[:, :, 2]
+    traces = team.traces
     rng = np.random.default_rng(SEED)
     targets = rng.permutation(traces.shape[1])
     for j in targets:
@@ -94,7 +94,7 @@ def _starts(team: PlanarTeam, size: int) -> Iterator[IntArray]:
         yield rng.permutation(len(traces))[:size]
 
 
-def _settle(team: PlanarTeam, kept: FloatArray, where: Any, budget: Budget) -> None:
+def _settle(team: PackedTeam, kept: FloatArray, where: Any, budget: Budget) -> None:
     """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
     inside, outside = int((where == INSIDE).sum()), int((where == OUTSIDE).sum())
     steps = max(AT_ONCE // max(inside * outside * len(team.weights), 1), 1)
@@ -107,7 +107,7 @@ def _settle(team: PlanarTeam, kept: FloatArray, where: Any, budget: Budget) -> N
 def _exchange(code: int, weights: Any, kept: Any, robots: Any, steps: int) -> bool:
     """Exchange one robot inside for one outside, the best pair each time, while that lowers the value.
 
-    ``kept`` : (M, 3) information without the robots inside; ``robots`` : information, and where each is (N,), which
+    ``kept`` : (M, T) information without the robots inside; ``robots`` : information, and where each is (N,), which
     is changed in place. Returns whether nothing was left before ``steps`` exchanges.
     """
     information, where = robots
@@ -139,7 +139,7 @@ def _exchange(code: int, weights: Any, kept: Any, robots: Any, steps: int) -> bo
 
 @numba.njit(cache=True)
 def _replace(sums: Any, leaves: Any, enters: Any, changed: Any) -> None:
-    """``changed = sums - leaves + enters``, all (M, 3)."""
+    """``changed = sums - leaves + enters``, all (M, T)."""
     for j in range(sums.shape[0]):
-        for t in range(3):
+        for t in range(sums.shape[1]):
             changed[j, t] = sums[j, t] - leaves[j, t] + enters[j, t]

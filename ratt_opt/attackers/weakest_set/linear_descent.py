@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.setfunctions.information import from_triangles, triangles
+
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 
 __all__ = ["descended"]
 
 
-def descended(team: PlanarTeam, start: IntArray) -> IntArray:
+def descended(team: PackedTeam, start: IntArray) -> IntArray:
     """Robots, as many as in ``start`` (K,) and worth no more; from the end of their descent."""
     chosen, value = start, team.value(start)
     while True:
@@ -29,8 +31,8 @@ def descended(team: PlanarTeam, start: IntArray) -> IntArray:
         chosen, value = others, lower
 
 
-def _slopes(team: PlanarTeam, sums: FloatArray) -> FloatArray:
-    """(M, 3) supergradient of the value in the entries of ``[[a, b], [b, c]]``, at posterior information (M, 3)."""
-    matrices = np.stack([sums[:, :2], sums[:, 1:]], axis=1)
-    gradient = team.objective.gradient(matrices)
-    return np.stack([gradient[:, 0, 0], 2 * gradient[:, 0, 1], gradient[:, 1, 1]], axis=-1)
+def _slopes(team: PackedTeam, sums: FloatArray) -> FloatArray:
+    """(M, T) supergradient of the value in the entries of packed matrices, at posterior information (M, T)."""
+    gradient = team.objective.gradient(from_triangles(sums))
+    off_diagonal_twice = triangles(2 - np.eye(gradient.shape[-1]))
+    return off_diagonal_twice * triangles(gradient)

@@ -22,7 +22,7 @@ from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import SetFamily
+    from ratt_opt.attackers.weakest_set.packed_team import SetFamily
     from ratt_opt.budget import Budget
 
 __all__ = ["Minorant", "affine_minorant"]

@@ -17,7 +17,7 @@ from ratt_opt.setfunctions.criteria.compiled import target_value
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import SetFamily
+    from ratt_opt.attackers.weakest_set.packed_team import SetFamily
 
 __all__ = ["OuterPolytopes", "cut_polytopes", "matrix_values", "outer_polytopes", "target_values", "vertex_values"]
 

@@ -17,7 +17,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.planar_team import SetFamily
+    from ratt_opt.attackers.weakest_set.packed_team import SetFamily
 
 __all__ = ["WeakestAxis", "weakest_axis"]
 

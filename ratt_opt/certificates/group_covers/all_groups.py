@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt.attackers.by_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.attackers.by_prices.team import PricedTeam
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.covers import price_record, refute_covers, set_records
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
@@ -58,7 +58,7 @@ class _AllGroups:
         from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 
         self.sets, self.threat = sets, listed.threat
-        sizes = WeakSizes(team, PlanarTeam.of(sets.problem.objective, sets.elements))
+        sizes = WeakSizes(team, PackedTeam.planar(sets.problem.objective, sets.elements))
         self.weak = WeakSets(team, sets.threshold, sizes.largest(sets.threshold, budget), tick)
         self.program = CoverProgram(self.threat, self.weak)
         self.groups = ListedGroups(listed, self.weak, self.program)

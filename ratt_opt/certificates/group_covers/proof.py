@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt.attackers.by_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.covers import price_record, refute_covers, set_records
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
@@ -75,7 +75,7 @@ class _CoverProof:
         self.links = Links.of(threat)
         self.network = Network.of(threat, self.links)
         seconds = seconds_left()
-        sizes = WeakSizes(team, PlanarTeam.of(sets.problem.objective, sets.elements))
+        sizes = WeakSizes(team, PackedTeam.planar(sets.problem.objective, sets.elements))
         largest = sizes.largest(sets.threshold, Budget(None if seconds == np.inf else seconds))
         self.weak: WeakSets = WeakSets(team, sets.threshold, largest, tick)
         self.program = CoverProgram(threat, self.weak)

@@ -19,7 +19,7 @@ from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.team import PricedTeam
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
 
 __all__ = ["WeakSizes"]
@@ -33,10 +33,10 @@ ROUNDING = 1e-12
 
 
 class WeakSizes:
-    """Largest sizes of weak sets of one team; ``planar`` : the same team for targets in the plane, if they are."""
+    """Largest sizes of weak sets of one team; ``packed`` : the same, for sharper bounds where targets are planar."""
 
-    def __init__(self, team: PricedTeam, planar: PlanarTeam | None) -> None:
-        self._team, self._planar = team, planar
+    def __init__(self, team: PricedTeam, packed: PackedTeam | None) -> None:
+        self._team, self._planar = team, packed if packed is not None and packed.is_planar else None
         self._floors: dict[int, float] = {}
 
     def largest(self, threshold: float, budget: Budget) -> int:
@@ -67,10 +67,11 @@ class WeakSizes:
             self._floors[size] = self._average(size) if planar is None else self._minorant(planar, size)
         return self._floors[size]
 
-    def _minorant(self, planar: PlanarTeam, size: int) -> float:
+    def _minorant(self, planar: PackedTeam, size: int) -> float:
         family = planar.family(np.arange(len(self._team.single)), size)
-        by_axis = planar.objective.states("planar_levels")
-        return float(weakest_axis(family).bound if by_axis else affine_minorant(family, 2, -np.inf).bound(size))
+        return float(
+            weakest_axis(family).bound if planar.is_by_axis else affine_minorant(family, 2, -np.inf).bound(size)
+        )
 
     def _average(self, size: int) -> float:
         team = self._team

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.family_prices.pair_bound import worth
+from ratt_opt.attackers.weakest_set.pair_bound import worth
 from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray
-    from ratt_opt.attackers.by_size.family_prices.pair_bound import View
+    from ratt_opt.attackers.weakest_set.pair_bound import View
     from ratt_opt.budget import Budget
 
 __all__ = ["annealed_of_size", "annealed_sets"]

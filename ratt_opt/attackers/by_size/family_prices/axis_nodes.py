@@ -10,7 +10,7 @@ from ratt_opt.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
-    from ratt_opt.attackers.by_size.family_prices.pair_bound import View
+    from ratt_opt.attackers.weakest_set.pair_bound import View
 
 __all__ = ["INSIDE", "OPEN", "OUTSIDE", "SHORTEST", "AxisNodes", "divide_by", "halve_arc", "join"]
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices
     from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
@@ -39,7 +39,7 @@ SEED = 0
 class FamilyDive:
     """Makes one family after the other; deterministic."""
 
-    def __init__(self, team: PlanarTeam, threat: Threat, finder: SetFinder) -> None:
+    def __init__(self, team: PackedTeam, threat: Threat, finder: SetFinder) -> None:
         self._team, self._threat, self._finder = team, threat, finder
         self._rng = np.random.default_rng(SEED)
         self._known: dict[bytes, tuple[BoolArray, float]] = {}

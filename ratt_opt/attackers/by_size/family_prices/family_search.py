@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
@@ -53,7 +53,7 @@ class FamilySearch:
     def __init__(
         self,
         task: AttackTask,
-        team: PlanarTeam,
+        team: PackedTeam,
         families: list[GroupExchanges],
         vectors: Sequence[Sizes] | None = None,
     ) -> None:
@@ -139,9 +139,9 @@ class FamilySearch:
             self._prices.learn(groups)
 
     def _is_out_of_reach(self) -> bool:
-        """Whether nothing is left for prices, or they would take too long."""
-        bracket = self._task.bracket
-        return bracket.is_closed or len(self._team.single) > LARGEST or not bracket.upper > 0
+        """Whether nothing is left for prices, which are of the plane, or they would take too long."""
+        bracket, team = self._task.bracket, self._team
+        return bracket.is_closed or not team.is_planar or len(team.single) > LARGEST or not bracket.upper > 0
 
     def price(self, share: float) -> None:
         """Raise the lower end by prices, as far as they reach in a share of the time left."""

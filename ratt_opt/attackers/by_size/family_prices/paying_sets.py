@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attackers.by_size.family_prices.axis_nodes import AxisNodes
-from ratt_opt.attackers.by_size.family_prices.pair_bound import views, weakest_bound
 from ratt_opt.attackers.by_size.family_prices.paying_axes import search_axes
 from ratt_opt.attackers.by_size.family_prices.paying_pairs import FINISHED, FOUND, Question
 from ratt_opt.attackers.by_size.family_prices.paying_tree import BETWEEN_LOOKS, ENOUGH, PayingTree
+from ratt_opt.attackers.weakest_set.pair_bound import views, weakest_bound
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt._validation import BoolArray
-    from ratt_opt.attackers.by_size.family_prices.pair_bound import View
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+    from ratt_opt.attackers.weakest_set.pair_bound import View
     from ratt_opt.budget import Budget
 
 __all__ = ["PayingSets", "Question", "Sets"]
@@ -48,7 +48,7 @@ class Sets:
 class PayingSets:
     """Answers questions about one team; a node is a node of the search."""
 
-    def __init__(self, team: PlanarTeam) -> None:
+    def __init__(self, team: PackedTeam) -> None:
         self._team, self._views = team, views(team)
         self.is_by_axis: bool = team.objective.states("planar_levels")
         self._n_robots = len(team.single)

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ratt_opt._validation import BoolArray
-    from ratt_opt.attackers.by_size.family_prices.pair_bound import View
     from ratt_opt.attackers.by_size.family_prices.paying_pairs import Question
     from ratt_opt.attackers.weakest_set.by_targets.decomposition import Decomposition
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+    from ratt_opt.attackers.weakest_set.pair_bound import View
     from ratt_opt.budget import Budget
 
 __all__ = ["PayingTree"]
@@ -58,7 +58,7 @@ BETWEEN_LOOKS = 10_000_000
 class PayingTree:
     """Answers questions about the sets of one size, one after the other; each search begins with the last minorant."""
 
-    def __init__(self, team: PlanarTeam, view: View, size: int) -> None:
+    def __init__(self, team: PackedTeam, view: View, size: int) -> None:
         self._team, self._view, self._size = team, view, size
         self._root: Decomposition | None = None
         self._meshes = Meshes.of(len(team.weights))

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_of_size, annealed_sets
-from ratt_opt.attackers.by_size.family_prices.pair_bound import views
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question, Sets
 from ratt_opt.attackers.weakest_set.exchanges import exchanged
 from ratt_opt.attackers.weakest_set.linear_descent import descended
+from ratt_opt.attackers.weakest_set.pair_bound import views
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray
     from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
 
 __all__ = ["SetFinder"]
@@ -34,7 +34,7 @@ class SetFinder:
     ``is_quick`` : whether a search takes hardly longer than annealing, which then is left out
     """
 
-    def __init__(self, team: PlanarTeam, n_seeing: int) -> None:
+    def __init__(self, team: PackedTeam, n_seeing: int) -> None:
         self._team, self._n_seeing, self._sets = team, n_seeing, PayingSets(team)
         self.is_quick = self._sets.is_by_axis
         self._likely: set[int] = set()

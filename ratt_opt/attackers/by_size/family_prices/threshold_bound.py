@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.by_size.family_prices.family_program import FamilyPrices
     from ratt_opt.attackers.by_size.family_prices.paying_sets import Sets
     from ratt_opt.attackers.task import AttackBracket
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.graph.threat import Threat
@@ -87,7 +87,7 @@ class ThresholdBound:
 
     def __init__(
         self,
-        team: PlanarTeam,
+        team: PackedTeam,
         threat: Threat,
         vectors: Sequence[Sizes] | None = None,
         known: Iterable[frozenset[int]] = (),

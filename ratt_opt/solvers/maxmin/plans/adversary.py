@@ -13,11 +13,11 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackMemory
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
-from ratt_opt.setfunctions.criteria.two_by_two import triples
+from ratt_opt.setfunctions.information import triangles
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class LastingAttacks:
         return self._known[key]
 
     @cached_property
-    def _team(self) -> PlanarTeam | None:
+    def _team(self) -> PackedTeam | None:
         return _at_their_best(self._problem)
 
     def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...], part: Budget) -> list[frozenset[int]] | None:
@@ -87,7 +87,7 @@ class LastingAttacks:
         return groups
 
 
-def _at_their_best(problem: Problem) -> PlanarTeam | None:
+def _at_their_best(problem: Problem) -> PackedTeam | None:
     """A team in which each robot sees every target as with whichever of its elements sees that target best.
 
     No one element need do all of that; its ``single`` values are those of the robots' individually best elements. With
@@ -96,14 +96,14 @@ def _at_their_best(problem: Problem) -> PlanarTeam | None:
     """
     single = problem.objective.singletons()
     strongest = np.array([choice[single[choice].argmax()] for choice in problem.choices])
-    team = PlanarTeam.of(problem.objective, strongest)
+    team = PackedTeam.of(problem.objective, strongest)
     if team is None:
         return None
     information = problem.information_objective.information
     traces = np.trace(information, axis1=-2, axis2=-1)
     best = np.array([choice[traces[choice].argmax(axis=0)] for choice in problem.choices])
     targets = np.arange(traces.shape[1])
-    return replace(team, information=triples(information[best, targets]))
+    return replace(team, information=triangles(information[best, targets]))
 
 
 SEARCHED_BY_SIZE = 12
@@ -178,7 +178,7 @@ class Adversary:
 
     def _learn_near(self, plan: IntArray) -> bool:
         """Exchange robots of known outcomes for a worse one: few descents where an attack takes hundreds."""
-        team = PlanarTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
+        team = PackedTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
         if team is None or len(plan) <= SEARCHED_BY_SIZE:
             return False
         from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges  # compiles

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.graph.survivor_sizes import first_non_dominated_sizes
-from ratt_opt.setfunctions.criteria.two_by_two import triples
+from ratt_opt.setfunctions.information import triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -43,13 +43,13 @@ SHAKEN, SHAKES = 2, 6
 class NodeAttacks:
     """Finds outcomes for nodes of one problem's search, as far as the budget lasts."""
 
-    def __init__(self, problem: Problem, pool: OutcomePool, team: PlanarTeam, budget: Budget) -> None:
+    def __init__(self, problem: Problem, pool: OutcomePool, team: PackedTeam, budget: Budget) -> None:
         threat = problem.threat
         sizes = first_non_dominated_sizes(problem.n_robots, threat.n_blinded, threat.alpha_c)
         self._vectors = [one for one in sizes[:MOST_VECTORS] if len(one) > 1]
         self._pool, self._team, self._budget = pool, team, budget
         information = problem.information_objective.information
-        self._information, self._traces = triples(information), np.trace(information, axis1=-2, axis2=-1)
+        self._information, self._traces = triangles(information), np.trace(information, axis1=-2, axis2=-1)
         self._must = np.zeros(problem.n_robots, dtype=np.bool_)
         self._last = dict.fromkeys(self._vectors, -np.inf)
 
@@ -58,7 +58,7 @@ class NodeAttacks:
         """``None`` where robots or links differ to the adversary, all outcomes are known, or loops are not compiled."""
         if pool.complete or not problem.threat.is_symmetric:
             return None
-        team = PlanarTeam.of(problem.objective, np.array([choice[0] for choice in problem.choices]))
+        team = PackedTeam.of(problem.objective, np.array([choice[0] for choice in problem.choices]))
         return None if team is None else cls(problem, pool, team, budget)
 
     def learn(self, choices: Choices, level: float) -> bool:
@@ -80,7 +80,7 @@ class NodeAttacks:
         targets = np.arange(self._traces.shape[1])
         return np.array([self._information[choice[self._traces[choice].argmax(axis=0)], targets] for choice in choices])
 
-    def _weakest(self, team: PlanarTeam) -> tuple[tuple[frozenset[int], ...], float]:
+    def _weakest(self, team: PackedTeam) -> tuple[tuple[frozenset[int], ...], float]:
         """The outcome found that leaves a team least, and what it leaves."""
         from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges  # compiles
 

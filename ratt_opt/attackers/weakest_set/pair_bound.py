@@ -16,6 +16,7 @@ Imported only where a large team is attacked: compiling takes seconds, once per 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -26,15 +27,15 @@ from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
-    from ratt_opt.attackers.weakest_set.planar_team import PlanarTeam
+    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam, SetFamily
 
-__all__ = ["View", "fill_pairs", "mean_of_least", "views", "weakest_bound", "worth"]
+__all__ = ["View", "fill_pairs", "mean_of_least", "pairs_of_family", "views", "weakest_bound", "worth"]
 
 
 class View(NamedTuple):
     """What decides whether a set is weak: some of a team's targets.
 
-    ``code``, ``weights`` (M,), ``baseline`` : of the criterion; ``prior`` : (M, 3); ``information`` : (N, M, 3)
+    ``code``, ``weights`` (M,), ``baseline`` : of the criterion; ``prior`` : (M, T); ``information`` : (N, M, T)
     """
 
     code: int
@@ -44,7 +45,7 @@ class View(NamedTuple):
     information: FloatArray
 
 
-def views(team: PlanarTeam) -> list[View]:
+def views(team: PackedTeam) -> list[View]:
     """A set is weak where it is in one of these: all targets at once, or each alone where the worst one decides."""
     n_targets = len(team.weights)
     by_target = team.objective.states("planar_levels")
@@ -71,9 +72,15 @@ def weakest_bound(view: View, size: int) -> float:
     return float(mean_of_least(pairs, np.zeros(n_robots), n_robots, size, least))
 
 
+def pairs_of_family(family: SetFamily) -> float:
+    """No set of the family is worth less; minus infinity of sets of fewer than three free robots."""
+    team = replace(family.team, prior=family.start, information=family.information)
+    return min(weakest_bound(view, family.size) for view in views(team))
+
+
 @numba.njit(cache=True)
 def worth(view: Any, matrices: Any) -> float:
-    """The value of posterior information (M, 3)."""
+    """The value of posterior information (M, T)."""
     return float(view.baseline - team_criterion(view.code, view.weights, matrices))
 
 
@@ -85,7 +92,7 @@ def fill_pairs(view: Any, sums: Any, robots: Any, size: int, pairs: Any) -> None
         for y in range(x):
             first, second = view.information[robots[x]], view.information[robots[y]]
             for j in range(len(one)):
-                for t in range(3):
+                for t in range(one.shape[1]):
                     one[j, t] = sums[j, t] + half * (first[j, t] + second[j, t])
             pairs[x, y] = pairs[y, x] = worth(view, one)
 
