@@ -27,6 +27,7 @@ __all__ = [
     "check_subset",
     "integer_array",
     "readonly",
+    "whole",
 ]
 
 T = TypeVar("T")
@@ -34,6 +35,9 @@ T = TypeVar("T")
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+
+LARGEST_EXACT = 2**53
+"""Up to this size a float that is an integer is the one that was meant: beyond it, integers are rounded."""
 
 
 def readonly(array: NDArray[Any]) -> NDArray[Any]:
@@ -44,12 +48,12 @@ def readonly(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def check_integer(argument: str, value: object, *, low: int, high: int | None = None) -> int:
-    """Return ``value`` as an ``int`` in ``[low, high]``; booleans and fractions are refused."""
+    """Return ``value`` as an ``int`` in ``[low, high]``; 2.0 counts as 2, booleans and fractions are refused."""
     rule = f"must be an integer in [{low}, {high}]" if high is not None else f"must be an integer >= {low}"
     if isinstance(value, (bool, np.bool_)):
         raise InputError(argument, rule, value)
     try:
-        number = operator.index(value)  # type: ignore[arg-type]
+        number = operator.index(whole(value))  # type: ignore[arg-type]
     except TypeError:
         raise InputError(argument, rule, value) from None
     if number < low or (high is not None and number > high):
@@ -57,9 +61,19 @@ def check_integer(argument: str, value: object, *, low: int, high: int | None = 
     return number
 
 
+def whole(value: object) -> object:
+    """A float that is exactly an integer, as that ``int``; anything else, also what may be rounded, as it is."""
+    if isinstance(value, (float, np.floating)):
+        number = float(value)
+        if abs(number) <= LARGEST_EXACT and number.is_integer():
+            return int(number)
+    return value
+
+
 def integer_array(value: ArrayLike) -> NDArray[Any]:
     """Return ``value`` as an array, of objects where an entry is no integer: NumPy reads ``[True, 2]`` as ``[1, 2]``.
 
+    2.0 counts as 2.
     Rows of different shapes give an array without entries.
     """
     if isinstance(value, np.ndarray) and value.dtype.kind in "iu":
@@ -68,8 +82,10 @@ def integer_array(value: ArrayLike) -> NDArray[Any]:
         entries = np.asarray(value, dtype=object)
     except ValueError:
         return np.empty(0, dtype=object)
-    whole = all(isinstance(x, (int, np.integer)) and not isinstance(x, bool) for x in entries.flat)
-    return np.array(entries.tolist()) if whole else entries
+    numbers = np.empty(entries.shape, dtype=object)
+    numbers.reshape(-1)[:] = [whole(x) for x in entries.flat]
+    exact = all(isinstance(x, (int, np.integer)) and not isinstance(x, bool) for x in numbers.flat)
+    return np.array(numbers.tolist()) if exact else entries
 
 
 def check_link(argument: str, link: Any) -> tuple[int, int]:

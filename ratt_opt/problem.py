@@ -17,7 +17,7 @@ from ratt_opt.setfunctions.base import SetFunction
 from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     import networkx as nx
     from numpy.typing import ArrayLike
@@ -50,7 +50,7 @@ def _is_link(link: tuple[int, int]) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Plan(ByValue, Shown):
-    """One element per robot; two plans are equal when all their fields are.
+    """One element per robot; two plans are equal when all their fields are. Iterating gives the elements as ``int``.
 
     ``elements`` : (N,) flat element indices, robot by robot.
     ``evaluations`` : set-function values the planner asked for.
@@ -62,6 +62,9 @@ class Plan(ByValue, Shown):
     evaluations: int
     bait: tuple[int, ...] = ()
     alpha_cs: int | None = None
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self.elements.tolist())
 
 
 def _of_threat(name: str) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import pickle
 from dataclasses import replace
 from functools import partial
@@ -10,9 +11,12 @@ from functools import partial
 import networkx as nx
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt import Attack, InputError, Plan, Problem, TableFunction, TraceObjective
+from ratt_opt._validation import check_integer, integer_array
 from ratt_opt.graph.communication import CommunicationGraph
 
 MODULAR = TableFunction([bin(mask).count("1") for mask in range(16)])
@@ -67,7 +71,7 @@ def test_interleaved_and_ragged_owners() -> None:
         ({"alpha_c": True}, r"alpha_c must be"),
         ({"robot": [0, 0, 2, 2]}, "none for robot 1"),
         ({"robot": [0, 0, 1]}, r"robot must have shape \(4,\)"),
-        ({"robot": [0.0, 0, 1, 1]}, "robot must hold integers"),
+        ({"robot": [0.5, 0, 1, 1]}, "robot must hold integers"),
         ({"robot": [0, False, 1, 1]}, "robot must hold integers"),
         ({"robot": [0, 0, True, 1]}, "robot must hold integers"),
         ({"robot": [[0], [0, 1], 1, 1]}, "robot must hold integers"),
@@ -101,7 +105,7 @@ def test_bad_problems_are_refused(change: dict[str, object], text: str) -> None:
         ([0, 1], r"elements\[1\] must be an element of robot 1; got 1 of robot 0"),
         ([0], "one element per robot"),
         ([0, 4], r"elements\[1\] must be an integer in \[0, 3\]"),
-        ([0.0, 2.0], r"elements\[0\] must be an integer"),
+        ([0.5, 2.0], r"elements\[0\] must be an integer"),
         ([[0, 2]], "one element per robot"),
         ([True, 2], r"elements\[0\] must be an integer in \[0, 3\]; got True"),
         ([0, 2**70], r"elements\[1\] must be an integer in \[0, 3\]"),
@@ -159,7 +163,7 @@ def test_groups_left_are_the_non_blinded_robots_of_each_component() -> None:
 def test_robots_and_links_are_integers_of_any_kind_given_once() -> None:
     one, three = np.int32(1), np.uint8(3)
     assert Attack([one, 2], [(one, three)]) == Attack({1, 2}, {(1, 3)})  # type: ignore[arg-type]
-    for wrong in (True, np.True_, 1.0, "1", None):
+    for wrong in (True, np.True_, 1.5, "1", None):
         with pytest.raises(InputError, match="attack robot must be an integer"):
             Attack([wrong])  # type: ignore[arg-type]
         with pytest.raises(InputError, match="attack link must be an integer"):
@@ -214,3 +218,23 @@ def test_planners_and_attackers_say_that_they_want_a_problem(given: object) -> N
     for call in calls:
         with pytest.raises(InputError, match=r"problem must be a Problem, as scenario.problem\(\) returns; got"):
             call(given)
+
+
+@given(st.lists(st.integers(0, 2**40), max_size=8))
+def test_a_plan_iterates_as_python_integers(elements: list[int]) -> None:
+    plan = Plan(elements=np.array(elements, dtype=np.int64), evaluations=0)
+    assert json.loads(json.dumps(list(plan))) == elements
+
+
+@given(st.integers(0, 2**53), st.sampled_from([float, np.float64]))
+def test_a_float_that_is_an_integer_counts_as_it(number: int, kind: type) -> None:
+    assert check_integer("k", kind(number), low=0) == number
+    assert type(check_integer("k", kind(number), low=0)) is int
+    assert integer_array([kind(number), 1]).tolist() == [number, 1]
+
+
+@given(st.floats().filter(lambda x: not (x.is_integer() and abs(x) <= 2**53)))
+def test_a_float_that_may_be_rounded_is_no_integer(number: float) -> None:
+    with pytest.raises(InputError, match="must be an integer"):
+        check_integer("k", number, low=-(2**1030))
+    assert integer_array([number]).dtype == object

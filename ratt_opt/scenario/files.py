@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+from codecs import BOM_UTF8
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -101,6 +102,8 @@ def scenario_schema(kind: str = "scenario") -> dict[str, Any]:
 def read_json(path: str | Path) -> Any:
     """Read strict JSON: UTF-8, no NaN or Infinity, no repeated keys, of bounded size and depth.
 
+    A byte-order mark at the start is passed over.
+
     Raises
     ------
     FileFormatError : any of these is broken, with the line where one is known.
@@ -152,7 +155,7 @@ def _read_text(path: Path) -> str:
             content = file.read(LARGEST_FILE + 1)
         if len(content) > LARGEST_FILE:
             raise FileFormatError(str(path), f"must be at most {LARGEST_FILE} bytes", "more")
-        return content.decode("utf-8")
+        return content.removeprefix(BOM_UTF8).decode("utf-8")
     except OSError as error:
         raise FileFormatError(str(path), "must be a file that can be read", error.strerror or "unreadable") from None
     except UnicodeDecodeError as error:

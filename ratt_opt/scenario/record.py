@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
+from ratt_opt._validation import whole
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,7 +29,8 @@ Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST), BeforeVal
 """A number: no text, no boolean."""
 Positive = Annotated[float, Field(strict=True, ge=1 / LARGEST, le=LARGEST), BeforeValidator(plain)]
 NonNegative = Annotated[float, Field(strict=True, ge=0, le=LARGEST), BeforeValidator(plain)]
-Whole = Annotated[int, Field(strict=True, ge=0), BeforeValidator(plain)]
+Whole = Annotated[int, Field(strict=True, ge=0), BeforeValidator(whole), BeforeValidator(plain)]
+"""An integer; 2.0, as some languages write it, counts as 2."""
 
 
 def _printable(text: str) -> str:

@@ -7,6 +7,7 @@ is normalised, non-decreasing in ``S`` and concave in ``Lambda``; each has a fil
 
 from __future__ import annotations
 
+import warnings
 from copy import copy
 from math import isqrt
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -26,6 +27,8 @@ __all__ = ["InformationObjective", "from_triangles", "packed", "symmetric_invers
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
+SINGLE_TOLERANCE = 1e-6
+"""The same for float32 matrices: eight of their roundings. What is beyond ``SYMMETRY_TOLERANCE`` is repaired."""
 LARGEST = 1e100
 """Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
 WIDEST = 2e14
@@ -46,7 +49,8 @@ class InformationObjective(CriterionParts):
     ----------
     prior : (M, d, d) predicted covariances, symmetric positive definite
     information : (E, M, d, d) information of element ``e`` about target ``j``, symmetric
-        positive semidefinite; smallest eigenvalue at least ``-1e-9`` times the largest
+        positive semidefinite; smallest eigenvalue at least ``-1e-9`` times the largest. float32: ``-1e-6``
+        times, and eigenvalues below the first limit are set to 0, with a ``UserWarning`` that says so
     weights : (M,) positive importance of each target; ones by default
 
     Raises
@@ -204,11 +208,24 @@ def _check_prior(value: ArrayLike) -> FloatArray:
     prior = _check_symmetric("prior", prior)
     for j, eigenvalues in enumerate(np.linalg.eigvalsh(prior)):
         if eigenvalues[0] <= np.finfo(np.float64).eps * abs(eigenvalues[-1]):
+            if np.linalg.eigvalsh(_unit_diagonal(prior[j]))[0] > np.finfo(np.float64).eps:
+                rule = "must have a condition below 4.5e15: rescale the states, for instance seconds to nanoseconds"
+                shown = f"eigenvalues from {eigenvalues[0]:.6g} to {eigenvalues[-1]:.6g}"
+                raise InputError(f"prior[{j}]", rule, shown)
             raise InputError(f"prior[{j}]", "must be positive definite", f"smallest eigenvalue {eigenvalues[0]:.6g}")
         if eigenvalues[0] < 1 / LARGEST:
             rule = f"must have eigenvalues of at least {1 / LARGEST:g}"
             raise InputError(f"prior[{j}]", rule, f"smallest eigenvalue {eigenvalues[0]:.6g}")
     return prior
+
+
+def _unit_diagonal(matrix: FloatArray) -> FloatArray:
+    """The matrix in units in which its diagonal is one: definite as before; as it is where an entry is not positive."""
+    diagonal = np.diagonal(matrix)
+    if diagonal.min() <= 0:
+        return matrix
+    scale = 1 / np.sqrt(diagonal)
+    return np.asarray(matrix * scale[:, None] * scale)
 
 
 def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
@@ -222,6 +239,9 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
         raise InputError("information", rule, f"shape {information.shape}")
     information = _check_symmetric("information", information)
     eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
+    if np.asarray(value).dtype == np.float32:
+        information = _repaired(information, eigenvalues)
+        eigenvalues = np.asarray(np.linalg.eigvalsh(information))
     bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
     if len(bad):
         e, j = bad[0].tolist()
@@ -229,6 +249,20 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
         raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
     _check_spread(eigenvalues, np.asarray(np.linalg.eigvalsh(prior)[:, -1]))
     return information
+
+
+def _repaired(information: FloatArray, eigenvalues: FloatArray) -> FloatArray:
+    """The matrices, negative eigenvalues set to 0 where rounding to float32 explains them; a warning says how many."""
+    least, most = eigenvalues[..., 0], np.abs(eigenvalues[..., -1])
+    rounded = (least < -SYMMETRY_TOLERANCE * most) & (least >= -SINGLE_TOLERANCE * most)
+    if not rounded.any():
+        return information
+    warnings.warn(f"information: float32 rounding repaired in {rounded.sum()} matrices", UserWarning, stacklevel=4)
+    values, vectors = np.linalg.eigh(information[rounded])
+    repaired = information.copy()
+    positive = (vectors * np.maximum(values, 0)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
+    repaired[rounded] = (positive + np.swapaxes(positive, -1, -2)) / 2
+    return repaired
 
 
 def _check_spread(eigenvalues: FloatArray, largest: FloatArray) -> None:

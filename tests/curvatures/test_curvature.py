@@ -293,7 +293,7 @@ def test_an_interrupt_returns_the_bracket(monkeypatch):
     ("call", "text"),
     [
         (lambda f: ro.total_curvature(f, [0]), "owners must hold 3 integers"),
-        (lambda f: ro.total_curvature(f, [0.0, 1.0, 2.0]), "owners must hold 3 integers"),
+        (lambda f: ro.total_curvature(f, [0.5, 1.0, 2.0]), "owners must hold 3 integers"),
         (lambda f: ro.total_curvature(f, plan=[0, 0]), "plan must not repeat"),
         (lambda f: ro.total_curvature(f, plan=[3]), "plan index"),
         (lambda f: ro.total_curvature(f, gap=-1), "gap must be a finite number >= 0"),

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from ratt_opt import (
     FileFormatError,
@@ -23,6 +26,7 @@ from ratt_opt import (
     save_scenario,
     scenario_schema,
 )
+from ratt_opt.scenario.files import read_json
 from tests.strategies import information_data
 
 
@@ -152,7 +156,7 @@ BAD = [
     (_document() | {"sensor": {"range_noise": 1e-320}}, "sensor.range_noise must be >= 1e-12"),
     (_document() | {"links": [[0, 1, 2]]}, r"links\[0\] must have at most 2 entries"),
     ('{"version": ' + "1" * 5000 + "}", "must be strict JSON; got an integer with too many digits"),
-    ("\ufeff{}", "line 1, column 1 must be strict JSON"),
+    ("\ufeff\ufeff{}", "line 1, column 1 must be strict JSON"),
 ]
 
 
@@ -219,3 +223,20 @@ def test_the_generator_refuses_bad_numbers(change: dict[str, Any], text: str) ->
     arguments: dict[str, Any] = {"n_robots": 2, "n_targets": 1, "alpha_s": 0, "alpha_c": 0, "seed": 0}
     with pytest.raises(InputError, match=text):
         random_scenario(**(arguments | change))
+
+
+@given(st.dictionaries(st.text(max_size=5), st.integers(), max_size=4))
+def test_a_byte_order_mark_changes_nothing(document: dict[str, int]) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "marked.json"
+        file.write_text(json.dumps(document, ensure_ascii=False), encoding="utf-8-sig")
+        assert read_json(file) == document
+
+
+@given(st.integers(0, 2), st.integers(0, 2))
+def test_budgets_written_as_floats_count_as_integers(alpha_s: int, alpha_c: int) -> None:
+    document = _document() | {"alpha_s": float(alpha_s), "alpha_c": float(alpha_c)}
+    document = {name: value for name, value in document.items() if name not in {"format", "version"}}
+    scenario = Scenario(**document)
+    assert [scenario.alpha_s, scenario.alpha_c] == [alpha_s, alpha_c]
+    assert type(scenario.alpha_s) is int is type(scenario.alpha_c)

@@ -6,6 +6,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt.errors import InputError
@@ -143,3 +145,20 @@ def test_individual_values_are_kept_and_those_of_these_elements(kind, monkeypatc
     for planner in (ro.ratt, ro.greedy, ro.myopic):
         planner(problem)
     assert calls.count(0) == 1
+
+
+@given(st.integers(-9, 3), st.integers(16, 24))
+def test_a_prior_that_is_only_badly_scaled_is_refused_by_its_condition(low: int, decades: int) -> None:
+    prior = np.diag([10.0 ** (low + decades), 10.0**low])
+    with pytest.raises(InputError, match=r"prior\[0\] must have a condition below 4.5e15: rescale"):
+        ro.TraceObjective([prior], np.zeros((1, 1, 2, 2)))
+
+
+@given(st.floats(1.5e-9, 9e-7), st.floats(0.01, 100))
+def test_float32_information_is_repaired_with_a_warning(defect: float, size: float) -> None:
+    given_matrix = np.diag([size, -defect * size]).astype(np.float32)
+    with pytest.warns(UserWarning, match="float32 rounding repaired in 1 matrices"):
+        f = ro.TraceObjective([np.eye(2)], np.array([[given_matrix]]))
+    np.testing.assert_allclose(f.information[0, 0], np.diag([given_matrix[0, 0], 0]), atol=1e-12 * size)
+    with pytest.raises(InputError, match="positive semidefinite"):
+        ro.TraceObjective([np.eye(2)], [[given_matrix.astype(np.float64)]])
