@@ -59,13 +59,13 @@ from .missions.players.attack_models import (
     PersistentAttacks as PersistentAttacks,
 )
 from .missions.belief import Belief as Belief
-from .missions.models.sensors import (
+from .missions.models.sensor_model import SensorModel as SensorModel
+from .missions.models.range_bearing import (
     BearingOnly as BearingOnly,
-    PositionSensor as PositionSensor,
     RangeBearing as RangeBearing,
     RangeOnly as RangeOnly,
-    SensorModel as SensorModel,
 )
+from .missions.models.sensors import PositionSensor as PositionSensor
 from .missions.models.targets import (
     ConstantVelocity as ConstantVelocity,
     CoordinatedTurn as CoordinatedTurn,

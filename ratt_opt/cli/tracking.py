@@ -51,8 +51,8 @@ def track(
     ] = "known velocity",
     linearisation: Annotated[
         Literal["first order", "second order", "iterated"],
-        typer.Option("--linearisation", help="The textbook EKF, or with the second-order term it leaves out."),
-    ] = "first order",
+        typer.Option("--linearisation", help="First order is the textbook EKF, without the second-order term."),
+    ] = "second order",
     time_limit: Annotated[
         float | None, typer.Option("--time-limit", help="Seconds a step for maxmin; else limited by nodes.")
     ] = None,
@@ -124,8 +124,11 @@ def _summary(missions: "list[Mission]") -> list[str]:
     low, high = first.nees_band()
     rmse = ", ".join(f"{mission.rmse.mean():.4g}" for mission in missions)
     nees = ", ".join(f"{mission.nees.mean():.3g}" for mission in missions)
+    short = [sum(step.links_short > 0 for step in mission.steps) for mission in missions]
+    capped = f"steps with fewer links than may be cut (all of them may): {', '.join(map(str, short))}"
     return [
         f"{len(first.steps)} steps, {first.scenario.n_robots} robots, {first.scenario.n_targets} targets",
         f"RMSE [m], mean over the steps: {rmse}",
         f"NEES, mean over the steps: {nees} (consistent: {first.dimension}; one step in [{low:.3g}, {high:.3g}])",
+        *([capped] if any(short) else []),
     ]

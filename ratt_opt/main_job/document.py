@@ -146,7 +146,7 @@ def _input(source: object) -> dict[str, Any] | None:
     """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` where a problem was given."""
     if not isinstance(source, ProblemRecord):
         return None
-    return {"sha256": source.digest, "document": source.model_dump(mode="json")}
+    return {"sha256": source.digest, "document": source.storable.model_dump(mode="json")}
 
 
 def _cast(report: BoundReport) -> dict[str, Any]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import Threatened, World
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Part", "TeamPlan", "offered_sequences", "plan_team"]
+__all__ = ["Part", "TeamPlan", "capped", "offered_sequences", "plan_team"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,12 +33,16 @@ class Part:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TeamPlan:
-    """What can be chosen in a step: ``sequences`` are the elements of ``problem``, the whole team's."""
+    """What can be chosen in a step: ``sequences`` are the elements of ``problem``, the whole team's.
+
+    ``links_short`` : by how many links the network is smaller than what may be cut.
+    """
 
     memory: Memory
     sequences: Sequences
     problem: Problem
     parts: tuple[Part, ...]
+    links_short: int
 
     def chosen(self, plan: Callable[[Problem], IntArray]) -> IntArray:
         """(N,) elements of the team, each part planned by ``plan``."""
@@ -47,7 +51,7 @@ class TeamPlan:
 
     def with_budgets(self, alpha_s: int, alpha_c: int) -> Problem:
         """The team's problem for an attacker with these budgets."""
-        return replace(self.problem, alpha_s=alpha_s, alpha_c=alpha_c)
+        return capped(self.problem, alpha_s, alpha_c)
 
     def groups_under(self, attack: Attack) -> list[frozenset[int]]:
         """Connected robots, blinded ones included, by the lowest."""
@@ -63,6 +67,12 @@ class TeamPlan:
         return self.problem.objective(elements[sorted(robots)])
 
 
+def capped(problem: Problem, alpha_s: int, alpha_c: int) -> Problem:
+    """The problem for an attacker with these budgets, or with all the robots and links that there are."""
+    links = len(problem.communication.links)
+    return replace(problem, alpha_s=min(alpha_s, problem.n_robots), alpha_c=min(alpha_c, links))
+
+
 def plan_team(world: World, memory: Memory, poses: FloatArray, step: int, threatened: Threatened) -> TeamPlan:
     """What the team can choose in a step, after everybody who is connected has told what it knows."""
     time = step * world.period
@@ -72,7 +82,8 @@ def plan_team(world: World, memory: Memory, poses: FloatArray, step: int, threat
     if all(belief is beliefs[0] or belief == beliefs[0] for belief in beliefs[1:]):
         objective, sequences = world.objective(beliefs[0], offered_sequences(world, beliefs[0], poses, time), time)
         problem = world.problem(objective, sequences.owner, poses, threatened)
-        return TeamPlan(memory, sequences, problem, (Part(np.arange(problem.objective.n), problem),))
+        whole = (Part(np.arange(problem.objective.n), problem),)
+        return TeamPlan(memory, sequences, problem, whole, threatened.alpha_c - problem.alpha_c)
     return _apart(world, memory, (poses, time, threatened), list(zip(apart, beliefs, strict=True)))
 
 
@@ -111,7 +122,7 @@ def _apart(
     for (group, _), objective in zip(groups, own, strict=True):
         elements = np.flatnonzero(np.isin(joined.owner, sorted(group)))
         parts.append(Part(readonly(elements), _part_problem(team, objective, sorted(group), elements, threatened)))
-    return TeamPlan(memory, joined, team, tuple(parts))
+    return TeamPlan(memory, joined, team, tuple(parts), threatened.alpha_c - team.alpha_c)
 
 
 def _part_problem(

@@ -39,7 +39,8 @@ class MissionStep(ByValue):
 
     ``truth`` : (M, d) states; ``links`` : those that were not cut; ``groups`` : by the lowest robot. ``best`` : which
     of them is the team's, the one with the smallest trace of position covariances (sharing the best group's belief
-    only: the group that the criterion values most); ``value`` : the criterion of its seeing robots.
+    only: the group that the criterion values most); ``value`` : the criterion of its seeing robots. ``links_short`` :
+    by how many links the network was smaller than the attacker's budget, which was capped at the network's.
     """
 
     poses: FloatArray
@@ -50,6 +51,7 @@ class MissionStep(ByValue):
     groups: tuple[GroupTrack, ...]
     best: int
     value: float
+    links_short: int = 0
 
     @property
     def team(self) -> GroupTrack:
@@ -155,6 +157,7 @@ class Mission(ByValue):
             "nees_band": [low, high],
             "nis": [None if np.isnan(x) else float(x) for x in self.nis],
             "value": [step.value for step in self.steps],
+            "links_short": [step.links_short for step in self.steps],
             "attacks": [step.attack.to_dict() for step in self.steps],
             "groups": [[sorted(group.robots) for group in step.groups] for step in self.steps],
         }

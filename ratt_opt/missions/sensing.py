@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.models.sensors import SensorModel
+    from ratt_opt.missions.models.sensor_model import SensorModel
     from ratt_opt.missions.world import World
 
 __all__ = ["Innovation", "Reading", "group_pieces", "simulated_readings"]
@@ -22,7 +22,7 @@ __all__ = ["Innovation", "Reading", "group_pieces", "simulated_readings"]
 ROUNDS = 4
 """Linearisations of an iterated update; on the paper's settings the estimate no longer moves visibly after three."""
 ON_TOP = 1e-9
-"""A target nearer to a robot than this [m] is not measured: its bearing has no derivative there."""
+"""Nearer to a robot than this [m] a measurement has no derivative: it is linearised at the point that it names."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +48,7 @@ def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck:
         here = poses[robots][:, None]
         apart = np.linalg.norm(truth - here[..., :2], axis=-1)
         there = np.where((apart > ON_TOP)[..., None], truth, truth + 1.0)
-        values = sensor.measure(here, there) + np.sqrt(sensor.noise(here, there)) * luck[robots, :, : sensor.size]
+        values = sensor.measure(here, there) + sensor.disturbance(here, there, luck[robots, :, : sensor.size])
         seen = sensor.sees(here, there) & (apart > ON_TOP)
         readings |= {int(i): Reading(values[k], seen[k]) for k, i in enumerate(robots)}
     return [readings[i] for i in range(len(poses))]
@@ -60,13 +60,16 @@ def group_pieces(
     poses: Mapping[int, FloatArray],
     readings: Mapping[int, Reading],
     robots: Collection[int],
+    *,
+    pose_covariances: FloatArray | None = None,
 ) -> tuple[Pieces, Innovation]:
     """The pieces of a group's seeing ``robots`` (zero for others), and how surprising they were together.
 
     Every measurement is linearised at the predicted positions, as the plan does; with an iterated linearisation at the
-    estimate that follows, again and again.
+    estimate that follows, again and again. A sighting counts wherever its target was expected, in view or not.
 
     ``poses`` : robot by robot (3,), or (M, 3) where each target was measured from another pose.
+    ``pose_covariances`` : (N, 3, 3) of the poses, whose errors are taken for further noise of every measurement.
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)
     members = set(robots)
@@ -77,7 +80,8 @@ def group_pieces(
         for sensor, owners in world.alike:
             own = [i for i in owners.tolist() if i in members]
             if own:
-                read = _linearise(sensor, _stacked(own, poses, readings), (predicted, point, spread))
+                sightings = _stacked(own, poses, readings, pose_covariances)
+                read = _linearise(sensor, sightings, (predicted, point, spread))
                 pieces.information[own, :, :2, :2], pieces.vector[own, :, :2] = read.information, read.vector
                 squared, count = squared + read.squared, count + read.count
         chosen = np.isin(np.arange(world.scenario.n_robots), sorted(members))
@@ -92,17 +96,27 @@ def group_pieces(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sightings:
-    """What K robots with the same sensor measured, from ``poses`` (K, M, 3): ``values`` (K, M, k), ``seen`` (K, M)."""
+    """What K robots with the same sensor measured, from ``poses`` (K, M, 3): ``values`` (K, M, k), ``seen`` (K, M).
+
+    ``pose_covariances`` : (K, 3, 3), or ``None`` if the poses are exact.
+    """
 
     poses: FloatArray
     values: FloatArray
     seen: BoolArray
+    pose_covariances: FloatArray | None
 
 
-def _stacked(robots: list[int], poses: Mapping[int, FloatArray], readings: Mapping[int, Reading]) -> _Sightings:
+def _stacked(
+    robots: list[int],
+    poses: Mapping[int, FloatArray],
+    readings: Mapping[int, Reading],
+    pose_covariances: FloatArray | None,
+) -> _Sightings:
     seen = np.stack([readings[i].seen for i in robots])
     places = np.stack([np.broadcast_to(poses[i], (seen.shape[1], 3)) for i in robots])
-    return _Sightings(places, np.stack([readings[i].values for i in robots]), seen)
+    unsure = None if pose_covariances is None else pose_covariances[robots]
+    return _Sightings(places, np.stack([readings[i].values for i in robots]), seen, unsure)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,14 +132,18 @@ class _Read:
 def _linearise(sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, Belief, FloatArray | None]) -> _Read:
     """Some robots' pieces, linearised at the second belief of ``about``; the first is the prediction."""
     predicted, point, spread = about
-    poses, places = sightings.poses, point.positions
-    usable = sightings.seen & sensor.sees(poses, predicted.positions)
-    usable &= np.linalg.norm(places - poses[..., :2], axis=-1) > ON_TOP
+    poses, places = sightings.poses, _places(sensor, sightings, point.positions)
+    usable = sightings.seen & (np.linalg.norm(places - poses[..., :2], axis=-1) > ON_TOP)
     i, j = np.nonzero(usable)
-    here, there = poses[i, j], places[j]
+    here, there, values = poses[i, j], places[i, j], sightings.values[i, j]
     slope = sensor.jacobian(here, there)
-    weights = np.linalg.inv(sensor.noise_covariance(here, there, None if spread is None else spread[j]))
-    surprise = sensor.surprise(sightings.values[i, j], sensor.measure(here, there))
+    added = None if spread is None else sensor.bending(here, there, spread[j])
+    if sightings.pose_covariances is not None:
+        turned = sensor.pose_jacobian(here, there)
+        of_poses = turned @ sightings.pose_covariances[i] @ np.swapaxes(turned, -1, -2)
+        added = of_poses if added is None else added + of_poses
+    weights = sensor.weights(here, there, added, values)
+    surprise = sensor.surprise(values, sensor.measure(here, there))
     # As linear in the position: the surprise at the point of linearisation, plus the slope times that point.
     linear = surprise + (slope @ there[..., None])[..., 0]
     weighted = np.swapaxes(slope, -1, -2) @ weights
@@ -140,3 +158,13 @@ def _linearise(sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, 
     read.information[i, j] = (information + np.swapaxes(information, -1, -2)) / 2
     read.vector[i, j] = (weighted @ linear[..., None])[..., 0]
     return read
+
+
+def _places(sensor: SensorModel, sightings: _Sightings, expected: FloatArray) -> FloatArray:
+    """(K, M, 2) where to linearise: as expected, or if that is on top of the robot, at the point that was sighted."""
+    places = np.array(np.broadcast_to(expected, (*sightings.values.shape[:2], 2)))
+    on_top = sightings.seen & (np.linalg.norm(places - sightings.poses[..., :2], axis=-1) <= ON_TOP)
+    if on_top.any():
+        pointed = sensor.pointed_at(sightings.poses, sightings.values)
+        places[on_top] = places[on_top] if pointed is None else pointed[on_top]
+    return places

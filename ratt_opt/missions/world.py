@@ -20,7 +20,7 @@ from ratt_opt.missions.ahead.horizon import (
     output_matrix,
 )
 from ratt_opt.missions.models.robots import robot_motion
-from ratt_opt.missions.models.sensors import SensorModel, robots_by_sensor, sensors_of
+from ratt_opt.missions.models.sensors import robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.models.robots import RobotMotion
+    from ratt_opt.missions.models.sensor_model import SensorModel
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.setfunctions.information import InformationObjective
 
@@ -48,8 +49,9 @@ class MissionModel:
         :class:`TargetMotion`
     sensor : a :class:`SensorModel` for all robots or one for each; the scenario's range and bearing where ``None``
     robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
-    linearisation : ``"first order"`` is the textbook EKF; ``"second order"`` adds the second-order term to the noise of
-        plans and filter, which the EKF is overconfident without; ``"iterated"`` also linearises again at the estimate
+    linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
+        is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
+        estimate
     objective : criterion of a plan; the log-det only where a single position is planned for
     output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``. The max-eigenvalue's mean is the
         worst axis of the errors of all steps together, over their number
@@ -61,7 +63,7 @@ class MissionModel:
     motion: str | TargetMotion = "known velocity"
     sensor: SensorModel | Sequence[SensorModel] | None = None
     robot_motion: str = "paper"
-    linearisation: Linearisation = "first order"
+    linearisation: Linearisation = "second order"
     objective: str = "trace"
     output: Literal["mean", "last"] = "mean"
     area: tuple[float, float, float, float] | None = None

@@ -18,6 +18,7 @@ from ratt_opt._files import write_json
 from ratt_opt.errors import FileFormatError, InputError
 from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.own_sensors import own_sensors
 
 if TYPE_CHECKING:
     from ratt_opt.scenario.record import Record
@@ -70,13 +71,20 @@ def load_input(path: str | Path) -> Scenario | InformationInput:
         raise FileFormatError(f"{path}: {error.argument}", error.rule, error.value) from None
 
 
-def save_scenario(scenario: Scenario, path: str | Path) -> None:
-    """Write a scenario file that :func:`load_scenario` reads back equal, whole or not at all.
+def save_scenario(scenario: Scenario | InformationInput, path: str | Path) -> None:
+    """Write a file that :func:`load_scenario` (:func:`load_input` for matrices) reads back equal, whole or not at all.
 
     Raises
     ------
-    InputError : the file cannot be written, or could not be read back.
+    InputError : the file cannot be written, or could not be read back: a file cannot name a sensor class of your own.
+        ``scenario.to_information()`` can be saved then.
     """
+    if isinstance(scenario, Scenario):
+        for field, kind in own_sensors(scenario).items():
+            rule = (
+                "must be the library's Sensor to be saved in a scenario file (save scenario.to_information() instead)"
+            )
+            raise InputError(field, rule, kind)
     document = scenario.model_dump(mode="json")
     length = len(json.dumps(document, indent=1))
     if length >= LARGEST_FILE:

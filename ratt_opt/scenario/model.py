@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
+from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.motion import move_robots, predict_targets
+from ratt_opt.scenario.own_sensors import own_sensors
 from ratt_opt.scenario.problem_record import Link, ProblemRecord, near_pairs
 from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
@@ -180,6 +182,33 @@ class Scenario(ProblemRecord):
         return tuple(f"{speed:g} m/s, {turn:g} rad/s" for speed, turn in self.controls)
 
     @property
+    def storable(self) -> Scenario | InformationInput:
+        """This scenario, or its matrices if a sensor has behaviour that no scenario file can name."""
+        return self.to_information() if own_sensors(self) else self
+
+    def to_information(self) -> InformationInput:
+        """The same one-step problem as matrices: what a sensor class of your own tells goes into a file this way."""
+        links = near_pairs(self.poses, self.communication_range) if self.communication_range else self.links
+        return InformationInput(
+            prior=_nested(self.prior),
+            information=_nested(self.information),
+            robot=tuple(self.robot.tolist()),
+            alpha_s=self.alpha_s,
+            alpha_c=self.alpha_c,
+            weights=tuple(target.weight for target in self.targets),
+            labels=self.element_labels,
+            links=links,
+            protected_robots=self.protected_robots,
+            protected_links=self.protected_links,
+            notes=self.notes,
+            robot_names=tuple(robot.name for robot in self.robots),
+            target_names=tuple(target.name for target in self.targets),
+            robot_positions=_nested(self.poses[:, :2]),
+            element_positions=_nested(self.predicted_poses[:, :2]),
+            target_positions=_nested(self.predicted_targets),
+        )
+
+    @property
     def _owners(self) -> IntArray:
         return self.robot
 
@@ -214,3 +243,8 @@ class Scenario(ProblemRecord):
                 rule,
                 tuple(self.predicted_targets[j].tolist()),
             )
+
+
+def _nested(array: FloatArray) -> Any:
+    """An array as nested tuples, the form of the fields of a record."""
+    return tuple(_nested(part) for part in array) if array.ndim > 1 else tuple(array.tolist())

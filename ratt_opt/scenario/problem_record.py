@@ -84,9 +84,15 @@ class ProblemRecord(Record):
     __str__ = __repr__
 
     @property
+    def storable(self) -> ProblemRecord:
+        """The same problem as a file can hold it: this record, unless it has what no file can name."""
+        return self
+
+    @property
     def digest(self) -> str:
-        """SHA-256 of the contents as canonical JSON (sorted fields, shortest round-trip floats, UTF-8)."""
-        text = json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        """SHA-256 of what a file holds, as canonical JSON (sorted fields, shortest round-trip floats, UTF-8)."""
+        document = self.storable.model_dump(mode="json")
+        text = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property

@@ -63,7 +63,8 @@ def test_the_last_step_is_the_kalman_filters(motion: str, horizon: int, objectiv
         F = world.motion.transition(state, world.period)
         covariance = F @ covariance @ F.swapaxes(-1, -2) + world.motion.noise(world.period)
         for i, element in enumerate(plan):
-            about = world.sensors[i].information(kept.poses[element : element + 1, h], predicted.positions)[0]
+            here = kept.poses[element : element + 1, h]
+            about = world.sensors[i].information(here, predicted.positions, predicted.position_covariance)[0]
             whole = np.zeros_like(covariance)
             whole[:, :2, :2] = about
             covariance = np.linalg.inv(np.linalg.inv(covariance) + whole)
@@ -97,10 +98,10 @@ def test_the_mean_is_that_of_the_steps() -> None:
     assert f(plan) == pytest.approx(expected)
 
 
-def test_one_step_is_todays_problem() -> None:
-    world = world_of(1)
-    problem, _ = problem_of(world)
-    today = world.scenario.problem()
+def test_one_step_of_the_first_order_is_the_scenarios_problem() -> None:
+    scenario = world_of(1).scenario
+    problem, _ = problem_of(World(scenario, MissionModel(linearisation="first order"), 1))
+    today = scenario.problem()
     assert type(problem.objective) is type(today.objective)
     assert np.array_equal(problem.objective.prior, today.objective.prior)
     assert np.array_equal(problem.objective.information, today.objective.information)
@@ -163,7 +164,8 @@ def test_one_step_of_moving_targets_takes_any_criterion(objective: str) -> None:
     predicted = world.motion.initial(scenario).predicted(world.motion, world.period, 0.0)
     information = np.zeros((3, 4, 4))
     for e in plan:
-        information[:, :2, :2] += world.sensors[0].information(kept.poses[e], predicted.positions)[0]
+        spread = predicted.position_covariance
+        information[:, :2, :2] += world.sensors[0].information(kept.poses[e], predicted.positions, spread)[0]
     after = np.linalg.inv(np.linalg.inv(predicted.covariance) + information)[:, :2, :2]
     before = predicted.position_covariance
     if objective == "logdet":

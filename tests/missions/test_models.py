@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from ratt_opt import InputError, Sensor, random_scenario
+from ratt_opt.missions.models.range_bearing import BearingOnly, RangeBearing, RangeOnly
 from ratt_opt.missions.models.robots import move_on_arcs, robot_motion
-from ratt_opt.missions.models.sensors import BearingOnly, PositionSensor, RangeBearing, RangeOnly, sensors_of
+from ratt_opt.missions.models.sensors import PositionSensor, sensors_of
 from ratt_opt.missions.models.targets import ConstantVelocity, CoordinatedTurn, KnownVelocity, target_motion
 
 SENSORS = (RangeBearing(Sensor()), RangeOnly(Sensor()), BearingOnly(Sensor()), PositionSensor(0.7))
@@ -121,3 +124,40 @@ def test_names_that_do_not_exist() -> None:
         sensors_of(scenario, SENSORS)
     with pytest.raises(InputError, match="std"):
         PositionSensor(0.0)
+
+
+@settings(max_examples=30)
+@given(
+    parts=st.lists(st.floats(0.01, 3.7), min_size=1, max_size=6),
+    begin=st.floats(0.0, 20.0),
+    period=st.sampled_from([0.5, 1.0, 2.0]),
+)
+def test_known_velocity_does_not_depend_on_how_often_it_is_predicted(parts, begin: float, period: float) -> None:
+    scenario = random_scenario(2, 4, alpha_s=0, alpha_c=0, seed=5).replace(sampling_period=period)
+    motion = KnownVelocity.of(scenario)
+    start, time = scenario.predicted_targets, begin
+    moved = start
+    for part in parts:
+        moved, time = motion.predict(moved, part, time), time + part
+    np.testing.assert_allclose(moved, motion.predict(start, sum(parts), begin), rtol=0, atol=1e-8)
+
+
+def test_known_velocity_over_whole_periods_is_the_papers() -> None:
+    scenario = random_scenario(2, 4, alpha_s=0, alpha_c=0, seed=5)
+    motion, places = KnownVelocity.of(scenario), np.array([(t.x, t.y) for t in scenario.targets])
+    assert np.array_equal(motion.predict(places, 1.0, 0.0), scenario.predicted_targets)
+    for k in range(5):
+        expected = [
+            t.speed * np.array([np.cos(t.heading + (k + 1) * t.turn_rate), np.sin(t.heading + (k + 1) * t.turn_rate)])
+            for t in scenario.targets
+        ]
+        np.testing.assert_allclose(motion.predict(places, 1.0, float(k)) - places, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("sensor", SENSORS, ids=lambda s: type(s).__name__)
+def test_derivatives_by_the_pose(sensor) -> None:
+    rng = np.random.default_rng(0)
+    poses, points = rng.uniform(-5, 5, (20, 3)), rng.uniform(8, 20, (20, 2))
+    poses[:, 2] = 0.7
+    numeric = differences(lambda x: sensor.measure(x, points), poses)
+    np.testing.assert_allclose(sensor.pose_jacobian(poses, points), numeric, atol=1e-7)

@@ -6,52 +6,54 @@ import json
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from ratt_opt import Attack, InputError, random_scenario, ratt, solve_maxmin, worst_case_attack
+from ratt_opt import Attack, InputError, Sensor, random_scenario, ratt, solve_maxmin, worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.missions.models.sensors import PositionSensor
 from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
 from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
-from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
+from tests.missions import numpy_filter
 
 
 def scenario_of(seed=3, n_robots=4, **options):
     return random_scenario(n_robots, 3, **({"alpha_s": 1, "alpha_c": 3, "seed": seed} | options))
 
 
-def test_without_attack_it_is_the_textbook_filter(monkeypatch) -> None:
-    """Robots' measurements, taken from the mission, through an EKF in covariance form, one after the other."""
+@pytest.mark.parametrize("linearisation", ["first order", "second order"])
+@pytest.mark.parametrize("view", [None, 1.5])
+def test_without_attack_it_is_an_independent_filter(monkeypatch, linearisation: str, view: float | None) -> None:
+    """Robots' measurements, taken from the mission, through a filter in plain NumPy, whatever the filter expected."""
     from ratt_opt.missions import run
 
     taken = []
     simulate = run.simulated_readings
     monkeypatch.setattr(run, "simulated_readings", lambda *a: taken.append(simulate(*a)) or taken[-1])
-    scenario = scenario_of()
-    mission = run_mission(scenario, steps=8, attacker="none")
+    scenario = scenario_of(sensor=Sensor(field_of_view=view))
+    mission = run_mission(scenario, steps=8, attacker="none", model=MissionModel(linearisation=linearisation))
     first = scenario.targets
-    mean, covariance = np.array([(t.x, t.y) for t in first]), np.array([t.covariance for t in first])
+    mean, covariance = [np.array([t.x, t.y]) for t in first], [np.array(t.covariance) for t in first]
     for k, (step, readings) in enumerate(zip(mission.steps, taken, strict=True)):
         for j, target in enumerate(first):
             angle = target.heading + (k + 1) * target.turn_rate
-            mean[j] += target.speed * np.array([np.cos(angle), np.sin(angle)])
+            mean[j] = mean[j] + target.speed * np.array([np.cos(angle), np.sin(angle)])
             covariance[j] = covariance[j] + target.process_std**2 * np.eye(2)
-            H = np.concatenate([jacobian(pose, mean[j]) for pose in step.poses])
-            expected = np.array([measure(pose, mean[j]) for pose in step.poses])
-            R = np.diag(np.stack(scenario.sensor.noise_variances(*expected.T), axis=-1).ravel())
-            surprise = np.array([reading.values[j] for reading in readings]) - expected
-            surprise[:, 1] = wrap_angle(surprise[:, 1])
-            gain = covariance[j] @ H.T @ np.linalg.inv(H @ covariance[j] @ H.T + R)
-            mean[j] += gain @ surprise.ravel()
-            covariance[j] = covariance[j] - gain @ H @ covariance[j]
-        np.testing.assert_allclose(step.team.belief.mean, mean, rtol=1e-8, atol=1e-8)
-        np.testing.assert_allclose(step.team.belief.covariance, covariance, rtol=1e-7, atol=1e-10)
+            seen = [(p, r.values[j], None) for p, r in zip(step.poses, readings, strict=True) if r.seen[j]]
+            mean[j], covariance[j] = numpy_filter.updated(
+                *(mean[j], covariance[j], seen, scenario.sensor.noise_variances),
+                second_order=linearisation == "second order",
+            )
+        np.testing.assert_allclose(step.team.belief.mean, mean, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(step.team.belief.covariance, covariance, rtol=1e-9, atol=1e-10)
+    assert view is None or not all(reading.seen.all() for readings in taken for reading in readings)
 
 
 def test_the_first_step_is_the_one_step_problem() -> None:
     scenario = scenario_of(seed=5)
-    mission = run_mission(scenario, steps=1)
+    mission = run_mission(scenario, steps=1, model=MissionModel(linearisation="first order"))
     elements, attack = mission.decisions[0]
     problem = scenario.problem()
     assert np.array_equal(elements, ratt(problem).elements)
@@ -221,13 +223,35 @@ def test_robots_stay_in_the_area() -> None:
 
 
 def test_targets_out_of_reach_stay_as_uncertain_as_their_motion_makes_them() -> None:
-    from ratt_opt import Sensor
-
     scenario = scenario_of(sensor=Sensor(max_range=1e-3))
     mission = run_mission(scenario, steps=4)
     assert np.isnan(mission.nis).all()
     np.testing.assert_allclose(mission.traces, [2 * (9 + 0.25 * (k + 1)) for k in range(4)])
     assert mission.to_dict()["nis"] == [None] * 4
+
+
+@settings(max_examples=12)
+@given(
+    seed=st.integers(0, 99),
+    attacks=st.sampled_from(["renewed", "persistent", "permanent"]),
+    attacker=st.sampled_from(["none", "greedy", "worst"]),
+    sharing=st.sampled_from(["best group", "all surviving"]),
+)
+def test_links_that_are_lost_on_the_way_cap_the_budget(seed: int, attacks: str, attacker: str, sharing: str) -> None:
+    """Robots drive apart until fewer links are left than may be cut: the mission goes on, and says so."""
+    rng = np.random.default_rng(seed)
+    scenario = random_scenario(4, 2, alpha_s=1, alpha_c=2, seed=seed)
+    robots = tuple(
+        robot.replace(x=3.0 * i, y=0.0, heading=0.0, controls=((float(rng.uniform(-4, 4)), 0.0),))
+        for i, robot in enumerate(scenario.robots)
+    )
+    team = scenario.replace(robots=robots, communication_range=6.0)
+    mission = run_mission(team, steps=8, attacker=attacker, attacks=attacks, sharing=sharing)
+    places = [mission.start, *(step.poses for step in mission.steps[:-1])]
+    links = [sum(np.linalg.norm(p[i, :2] - p[j, :2]) <= 6.0 for i in range(4) for j in range(i)) for p in places]
+    assert mission.to_dict()["links_short"] == [step.links_short for step in mission.steps]
+    if attacks == "renewed":
+        assert [step.links_short for step in mission.steps] == [max(2 - count, 0) for count in links]
 
 
 def test_own_planners_and_attackers() -> None:

@@ -12,7 +12,6 @@ from ratt_opt._validation import FloatArray, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
-from ratt_opt.scenario.motion import predict_targets
 
 if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
@@ -25,6 +24,8 @@ TURN_STD = 0.05
 """The same of its turn rate [rad/s]: half the largest of the paper's."""
 TURN_NOISE = 0.01
 """Standard deviation by which a turn rate drifts in one second [rad/s]."""
+ON_GRID = 1e-9
+"""Times within this share of a sampling period count as its end."""
 STRAIGHT = 1e-4
 """Angles turned in a step [rad] below this use the series of the coordinated turn, whose error is then below 1e-13."""
 
@@ -61,6 +62,9 @@ class KnownVelocity(ByValue, TargetMotion):
     ``motions`` : (M, 3) speed [m/s], turn rate [rad/s], heading at time 0 [rad]; ``process_std`` : (M,) standard
     deviation per axis of the noise of one ``sampling_period`` [m], [s]. The heading advances with the turn rate, so
     that a target circles; the first period is the one of :attr:`Scenario.predicted_targets`.
+
+    Within a period, counted from time 0, a target moves straight along the heading of that period. So where it is does
+    not depend on how often it is predicted.
     """
 
     motions: FloatArray
@@ -76,9 +80,12 @@ class KnownVelocity(ByValue, TargetMotion):
         return cls(readonly(motions), _process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
-        """(..., M, 2) positions one period later."""
-        turned = self.motions + time * self.motions[:, 1:2] * np.array([0.0, 0.0, 1.0])
-        return predict_targets(states, turned, period)
+        """(..., M, 2) positions ``period`` later, which need not be a whole sampling period."""
+        speed, turn, heading = self.motions.T
+        cells, spans = _cells(time, period, self.sampling_period)
+        angles = heading + (cells[:, None] + 1) * self.sampling_period * turn
+        steps = (spans[:, None] * speed)[..., None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        return np.asarray(states + steps.sum(axis=0))
 
     def transition(self, states: FloatArray, period: float) -> FloatArray:  # noqa: ARG002  (known motion)
         """Identities: the step does not depend on where a target is."""
@@ -230,6 +237,19 @@ def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, Floa
     d_along = np.where(small, -(period**2) * (rate * period / 3), (period * cosine - sine / w) / w)
     d_across = np.where(small, period**2 / 2 * (1 - square / 4), (period * sine - (1 - cosine) / w) / w)
     return along, across, d_along, d_across
+
+
+def _cells(time: float, period: float, cell: float) -> tuple[FloatArray, FloatArray]:
+    """Numbers (C,) of the sampling periods that ``[time, time + period]`` touches, and seconds (C,) spent in each."""
+    first = int(np.floor(time / cell + ON_GRID))
+    last = max(int(np.ceil((time + period) / cell - ON_GRID)), first + 1)
+    cells = np.arange(first, last, dtype=np.float64)
+    if len(cells) == 1:
+        return cells, np.array([period])
+    spans = np.full(len(cells), cell)
+    spans[0] = (first + 1) * cell - time
+    spans[-1] = period - spans[:-1].sum()
+    return cells, spans
 
 
 def _process_std(scenario: Scenario) -> FloatArray:

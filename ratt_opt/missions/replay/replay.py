@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
 from ratt_opt.missions.memory import Memory, Pieces
+from ratt_opt.missions.planning import capped
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
 from ratt_opt.missions.players.attackers import attack_of, attacker_called
 from ratt_opt.missions.replay.cameras import camera_planner
@@ -209,7 +210,7 @@ class _Replay:
         rng = np.random.default_rng([self.settings.seed, step])
         sensors, links = model.strikes(self.threatened, len(problem.communication.links), rng)
         standing = self.threatened.standing
-        limited = replace(problem, alpha_s=sensors, alpha_c=links)
+        limited = capped(problem, sensors, links)
         found = attacker(limited, plan, self.settings.seed + step) if sensors or links else Attack()
         new = attack_of(found, limited)
         self.attack = Attack(standing.sensing | new.sensing, standing.links | new.links)
