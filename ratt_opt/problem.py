@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
+import networkx as nx
 import numpy as np
 
 from ratt_opt._validation import IntArray, check_distinct, check_integer, check_link, integer_array, readonly
@@ -19,7 +20,6 @@ from ratt_opt.setfunctions.information import InformationObjective
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    import networkx as nx
     from numpy.typing import ArrayLike
 
 __all__ = ["Attack", "Plan", "Problem"]
@@ -81,7 +81,7 @@ class Problem:
     objective : set function over the elements ``0..E-1``; the solvers rely on it being
         normalised and non-decreasing (not checked here; see ``find_monotonicity_violation``)
     robot : (E,) owner of each element; every robot ``0..N-1`` owns at least one
-    graph : ``networkx.Graph`` on the robots, or ``None`` for the complete graph
+    graph : ``networkx.Graph`` on the robots, or ``None`` for the complete graph; kept as a frozen copy
     alpha_s : robots the attacker may blind, in ``[0, N]``
     alpha_c : links the attacker may cut, in ``[0, number of links]``
     protected_robots : robots that cannot be blinded
@@ -131,7 +131,7 @@ class Problem:
         fields = {
             "objective": objective,
             "robot": owners,
-            "graph": graph,
+            "graph": graph if graph is None or nx.is_frozen(graph) else nx.freeze(graph.copy()),
             "threat": Threat(communication, alpha_s, alpha_c, robots, links),
             "choices": tuple(readonly(np.flatnonzero(owners == i)) for i in range(n_robots)),
         }

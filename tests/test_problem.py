@@ -49,7 +49,8 @@ def test_attributes_are_kept() -> None:
     graph = _line(2)
     problem = Problem(MODULAR, [0, 0, 1, 1], graph, 1, 1)
     assert problem.objective is MODULAR
-    assert problem.graph is graph
+    assert problem.graph is not None
+    assert sorted(problem.graph.edges) == sorted(graph.edges)
     assert (problem.alpha_s, problem.alpha_c, problem.n_robots) == (1, 1, 2)
     assert problem.robot.tolist() == [0, 0, 1, 1]
     assert [c.tolist() for c in problem.choices] == [[0, 1], [2, 3]]
@@ -238,3 +239,27 @@ def test_a_float_that_may_be_rounded_is_no_integer(number: float) -> None:
     with pytest.raises(InputError, match="must be an integer"):
         check_integer("k", number, low=-(2**1030))
     assert integer_array([number]).dtype == object
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_problem_does_not_change_with_what_it_was_made_of(seed: int) -> None:
+    """The owner goes on writing to the graph and the arrays: every copy and every search answers as before."""
+    rng = np.random.default_rng(seed)
+    graph = nx.path_graph(5)
+    prior, information, owners = np.ones((2, 1, 1)) * 4, rng.exponential(size=(10, 2, 1, 1)), np.repeat(np.arange(5), 2)
+    problem = Problem(ro.TraceObjective(prior, information), owners, graph, 1, 1)
+    plan = [0, 2, 4, 6, 8]
+
+    def answers() -> tuple[object, ...]:
+        ranking = ro.criticality_ranking(problem, plan)
+        attack = ro.worst_case_attack(problem, plan)
+        return attack.upper, replace(problem, alpha_c=0).communication.links, ranking, ro.solve_maxmin(problem).upper
+
+    before = answers()
+    graph.add_edges_from([(0, 2), (0, 3), (0, 4), (1, 4)])
+    prior *= 100
+    information *= 0.01
+    owners[:] = 0
+    assert answers() == before
+    with pytest.raises(nx.NetworkXError, match="rozen"):
+        problem.graph.add_edge(0, 2)
