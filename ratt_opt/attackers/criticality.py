@@ -59,8 +59,8 @@ def criticality_ranking(
 ) -> tuple[Criticality, ...]:
     """Rank robots and links: largest certain gain from protection first, then largest loss, then robots by index.
 
-    Only what the worst attack uses can be worth protecting: otherwise that attack stays possible, so the
-    gain is 0 without a search.
+    What the attack in hand does not use is not searched for: that attack stays possible, so the gain is at most what is
+    open between it and the worst one, and 0 once it is proved worst.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def criticality_ranking(
             break
         after[target] = attacked(_protected(problem, target), budget=own.part(1 / (len(used) - done)))
     for target, loss in zip(targets, losses, strict=True):
-        gain_lower = gain_upper = 0.0
+        gain_lower, gain_upper = 0.0, max(base.upper - base.lower, 0.0)
         if target in after:
             certain = after[target].lower - base.upper
             gain_lower = certain if certain > noise else 0.0
@@ -139,7 +139,7 @@ class BreakingBudget:
 
 
 class BreakingBudgets(tuple[BreakingBudget, ...]):
-    """The budgets found; ``stop`` says why no more were looked for (``EXHAUSTED``: there are none)."""
+    """The budgets found; ``stop`` says why there may be more (``EXHAUSTED``: there are none)."""
 
     stop: Stop
 
@@ -174,7 +174,8 @@ def breaking_budgets(
     ----------
     value : [unit of the objective]
     max_nodes, time_limit, budget : as for :func:`criticality_ranking`; once time is up no further number of robots is
-        looked at (``stop`` of the result says so), and what is undecided is said to be so
+        looked at. ``stop`` of the result says so, or why an attack on some number of robots was left open; a budget
+        found of which the fewest links are not proved has ``is_proved`` False
 
     Raises
     ------
@@ -184,6 +185,7 @@ def breaking_budgets(
     goal = check_number("value", value)
     own = Budget.inside(budget, time_limit)
     found: list[BreakingBudget] = []
+    undecided: Stop | None = None
     most_links = len(problem.communication.links)
 
     def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
@@ -195,6 +197,8 @@ def breaking_budgets(
             break
         best = attacked(alpha_s, most_links)
         if best.upper >= goal:
+            if best.lower < goal:
+                undecided = best.stop
             continue
         low, high, proved, step = 0, most_links, True, 1
         while low < high:
@@ -216,4 +220,4 @@ def breaking_budgets(
         if high == 0:
             break
         most_links = high - 1
-    return BreakingBudgets(found, own.stop() or Stop.EXHAUSTED)
+    return BreakingBudgets(found, own.stop() or undecided or Stop.EXHAUSTED)

@@ -77,6 +77,41 @@ def test_smallest_budgets_against_every_budget(seed):
         assert asked.team_value(elements, budget.attack) == budget.value < goal
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_what_an_open_attack_supports(seed):
+    """Attacks that a limit leaves open: brackets of gains hold the truth, and nothing open counts as exhausted."""
+    rng = np.random.default_rng([seed, 7])
+    problem = random_problem(rng, int(rng.integers(2, 6)))
+    elements = random_elements(rng, problem)
+    limits = [{"max_nodes": 1}, {"max_nodes": 3}, {"time_limit": 0}][seed % 3]
+    base = brute_force_worst_case(problem, elements)
+    for row in criticality_ranking(problem, elements, **limits):
+        one = {row.target}
+        safer = (
+            replace(problem, protected_robots=problem.protected_robots | one)
+            if isinstance(row.target, int)
+            else replace(problem, protected_links=problem.protected_links | one)
+        )
+        gain = brute_force_worst_case(safer, elements) - base
+        assert row.gain_lower - 1e-9 <= gain <= row.gain_upper + 1e-9
+
+
+def test_budgets_that_were_left_open_are_not_exhausted(monkeypatch):
+    """An attack that may be worse than the one found: there may be budgets that are not in the list."""
+    problem = random_problem(np.random.default_rng(2), 4, kind="trace", complete=True, protect=False)
+    plan = random_elements(np.random.default_rng(2), problem)
+    goal = brute_force_worst_case(replace(problem, alpha_s=0, alpha_c=0), plan) * 0.5
+    assert breaking_budgets(problem, plan, goal).stop is ro.Stop.EXHAUSTED
+
+    def open_attack(asked, elements, **_):
+        found = ro.worst_case_attack(replace(asked, alpha_s=0, alpha_c=0), elements)
+        return replace(found, lower=0.0, stop=ro.Stop.NODES)
+
+    monkeypatch.setattr("ratt_opt.attackers.criticality.worst_case_attack", open_attack)
+    left_open = breaking_budgets(problem, plan, goal)
+    assert (len(left_open), left_open.stop) == (0, ro.Stop.NODES)
+
+
 def test_a_value_that_is_not_a_number_is_refused():
     problem = random_problem(np.random.default_rng(0), 3)
     with pytest.raises(InputError, match="value"):
