@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.verifier.lower_end.group_costs import robots_of
 from ratt_opt.certificates.verifier.lower_end.group_covers import priced_groups
-from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
+from ratt_opt.certificates.verifier.lower_end.partitions import Partitions, refuse_many
 from ratt_opt.certificates.verifier.reading import fields, need
 from ratt_opt.certificates.verifier.work import tell, tick
 
@@ -36,6 +36,7 @@ def check_all_groups(about: Statement, part: Any, worth: Worth) -> int:
         group = groups.group_of(inside)
         need(group is None or group.cost >= 0, "lower proof: a group costs less than nothing")
         listed.extend([group] if group and group.cost <= groups.limit else [])
+        refuse_many(listed)
     cover = Partitions(listed, groups).first()
     need(cover is None, "lower proof: groups within the budgets cover the team")
     return leaves + 1

@@ -26,7 +26,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.certificates.verifier.lower_end.group_costs import Case, Group, Groups, mask_of
-from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
+from ratt_opt.certificates.verifier.lower_end.partitions import Partitions, refuse_many
 from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
 from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need, walk
 
@@ -60,6 +60,7 @@ def check_group_covers(about: Statement, part: Any, worth: Worth) -> int:
             group = groups.group_of(inside)
             need(group is None or group.cost >= 0, "lower proof: a group costs less than nothing")
             listed.extend([group] if group and group.cost <= groups.limit else [])
+            refuse_many(listed)
         elif node == -2:
             need(groups.impossible(inside, outside), "lower proof: a leaf's group may be part of an attack")
         elif type(node) is int and node < 0:
