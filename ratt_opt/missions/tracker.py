@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_finite, check_integer, check_number, readonly
+from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.missions.planning import offered_sequences
 from ratt_opt.missions.players.planners import MaxMinPlanner, elements_of, planner_called
@@ -26,6 +27,7 @@ from ratt_opt.missions.tracker_state import Measurement, TrackerState
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Plan
 from ratt_opt.scenario.record import LARGEST
+from ratt_opt.solvers.ratt import ratt
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,6 +44,8 @@ __all__ = ["Tracker"]
 
 SEARCH_SHARE = 0.7
 """Of a step's time left, for the max-min search: it looks at the clock between nodes, which take a while themselves."""
+FALLBACK_SHARE = 0.5
+"""Of a step's time left, for RATT's plan, which takes milliseconds: what it has by then is a plan, too."""
 ON_TIME = 1e-6
 """Clocks whose steps differ by less than this share of the period count as one period."""
 MOST_PERIODS = 10_000
@@ -56,8 +60,8 @@ class Tracker:
     scenario : the team as it starts, what is believed of the targets, and the adversary's budgets
     planner : as in :func:`run_mission`; a callable's work goes on in a thread when it is late, and is thrown away
     horizon : steps that a plan looks ahead
-    time_limit : seconds for a step; ``None`` waits for the planner. A late plan counts in ``missed``, and the rest of
-        the last plan is executed instead (its last control again where nothing is left).
+    time_limit : seconds for a step; ``None`` waits for the planner. A late plan counts in ``missed``, and RATT's plan,
+        which is made first, is executed instead.
     model : motions, sensors and filter, as in :func:`run_mission`
     state : where to go on; the scenario's start by default
 
@@ -129,10 +133,7 @@ class Tracker:
         state = self._measured(list(measurements), now, poses)
         offered = offered_sequences(self.world, state.belief, state.poses, state.time)
         rest = _nearest(offered, state.controls)
-        elements = self._elements(self._problem(state, offered), rest, began)
-        late = elements is None
-        if elements is None:
-            elements = rest
+        elements, late = self._elements(self._problem(state, offered), rest, began)
         chosen = offered.only(elements)
         left = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
         self.state = replace(
@@ -221,23 +222,28 @@ class Tracker:
         budgets = Threatened(Attack(), self.scenario.alpha_s, self.scenario.alpha_c)
         return self.world.problem(objective, offered.owner, state.poses, budgets)
 
-    def _elements(self, problem: Problem, rest: IntArray, began: float) -> IntArray | None:
-        """The planner's elements, or ``None`` where they are late; a search starts from the last plan's ``rest``."""
+    def _elements(self, problem: Problem, rest: IntArray, began: float) -> tuple[IntArray, bool]:
+        """The planner's elements, or RATT's where they are late, and whether they are.
+
+        A search starts from the last plan's ``rest``.
+        """
         plan = self._plan
         if isinstance(plan, MaxMinPlanner):
             plan = partial(plan, start=rest)
         if self.time_limit is None:
-            return elements_of(plan(problem), problem)
+            return elements_of(plan(problem), problem), False
+        left = max(self.time_limit - (monotonic() - began), 0.0)
+        in_time = ratt(problem, budget=Budget(FALLBACK_SHARE * left)).elements
         if self._running is not None and not self._running.done():
-            return None  # a thread is still busy with a plan that nobody waits for
+            return in_time, True  # a thread is still busy with a plan that nobody waits for
         left = max(self.time_limit - (monotonic() - began), 0.0)
         if isinstance(self._plan, MaxMinPlanner):
             plan = partial(replace(self._plan, time_limit=SEARCH_SHARE * left, max_nodes=None), start=rest)
         self._running = _in_thread(lambda: elements_of(plan(problem), problem))
         try:
-            return self._running.result(timeout=left)
+            return self._running.result(timeout=left), False
         except LateError:
-            return None
+            return in_time, True
 
 
 def _within_reach(state: TrackerState) -> TrackerState:

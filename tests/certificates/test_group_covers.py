@@ -139,7 +139,7 @@ def test_covers_by_definition():
             return every[mask - 1] if mask in allowed else None
 
         about = SimpleNamespace(slack=budgets[0], most=budgets[1], about=SimpleNamespace(alpha_c=budgets[2] // 2))
-        about.robot, about.everyone, about.flows, about.group_of = [0] * n, (1 << n) - 1, [], last
+        about.robot, about.everyone, about.group_of, about.sets, about.flows = [0] * n, (1 << n) - 1, last, [], []
         about.need = about.impossible = lambda *_: 0
         cover = Partitions(groups, about).first()
         assert (cover is not None) == by_definition(groups, n, budgets, last)

@@ -81,14 +81,21 @@ def test_time_that_passes_makes_beliefs_uncertain() -> None:
     assert tracker.state.now == pytest.approx(3.5)
 
 
-def test_late_plans_are_counted_and_the_last_one_goes_on() -> None:
+def test_late_plans_are_counted_and_ratts_is_executed(monkeypatch) -> None:
     slow = {"seconds": 0.0}
 
     def planner(problem):
         time.sleep(slow["seconds"])
         return np.array([choice[-1] for choice in problem.choices])
 
-    controls = ((1.0, 0.0), (2.0, 0.5))
+    controls, asked = ((1.0, 0.0), (2.0, 0.5)), []
+
+    def fallback(problem, budget):
+        assert budget.seconds_left <= 0.1
+        asked.append(ratt(problem))
+        return asked[-1]
+
+    monkeypatch.setattr("ratt_opt.missions.tracker.ratt", fallback)
     tracker = Tracker(team(n_robots=2, alpha_c=1, controls=controls), planner=planner, horizon=2, time_limit=0.2)
     tracker.step()
     assert tracker.state.missed == 0
@@ -97,9 +104,10 @@ def test_late_plans_are_counted_and_the_last_one_goes_on() -> None:
     plan = tracker.step()
     assert time.monotonic() - began < 0.35
     assert tracker.state.missed == 1
-    assert tracker.controls.tolist() == [[2.0, 0.5]] * 2  # the second control of the last plan
-    tracker.step()  # the thread is still busy
+    assert plan.elements.tolist() == asked[-1].elements.tolist()
+    plan = tracker.step()  # the thread is still busy
     assert tracker.state.missed == 2
+    assert plan.elements.tolist() == asked[-1].elements.tolist()
     time.sleep(0.5)
     slow["seconds"] = 0.0
     tracker.step()
