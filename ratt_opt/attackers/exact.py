@@ -13,6 +13,7 @@ from ratt_opt.attackers.any_graph import any_graph, last_stage
 from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
 from ratt_opt.attackers.by_size.relaxed_teams import unprotected_bound
+from ratt_opt.attackers.few_attacks import try_every_attack
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
@@ -20,6 +21,7 @@ from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, A
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
+from ratt_opt.graph.few_cuts import attacks_are_few
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
 from ratt_opt.progress import Step
@@ -70,9 +72,12 @@ def worst_case_attack(
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
-    - Up to 12 robots, and up to 20 where the next two lines do not apply, on any graph and for any
+    - Up to 12 robots, and up to 20 where the next three lines do not apply, on any graph and for any
       objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
       threshold). The result relies on nothing.
+    - Larger teams on graphs on which few links are cut and few robots blinded (up to 20,000 attacks, as with one cut on
+      hundreds of robots): every attack (``few_attacks.py``; a node is a set of links). Relies on a non-decreasing
+      objective.
     - Larger teams with two-dimensional targets on a complete graph without protected links: families
       of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set), and where several groups are
       about equally good, prices of robots and links. Where there are too many vectors of sizes, it goes on with these
@@ -188,9 +193,16 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     return Stop.CLOSED if task.bracket.is_closed else _larger_team(task, is_inner=is_inner)
 
 
+def _are_tried_one_by_one(problem: Problem) -> bool:
+    """Whether attacks are few; where links are alike, sizes of groups are fewer still."""
+    return not problem.threat.links_alike and attacks_are_few(problem.threat)
+
+
 def _larger_team(task: AttackTask, *, is_inner: bool) -> Stop:
     """More robots than thresholds are decided for at once, under a criterion of information matrices."""
     problem, plan = task.problem, task.values.plan
+    if _are_tried_one_by_one(problem):
+        return try_every_attack(task)
     team = PackedTeam.of(problem.objective, plan)
     if team is not None and problem.threat.links_alike:
         from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
@@ -216,6 +228,9 @@ def _larger_team(task: AttackTask, *, is_inner: bool) -> Stop:
 def _any_function(task: AttackTask, *, is_inner: bool) -> Stop:
     """Thresholds where all sets of robots can be valued; where that is limited, and beyond, first what is quick."""
     n_robots, budget = task.problem.n_robots, task.budget
+    if n_robots > LARGEST_COMPILED and _are_tried_one_by_one(task.problem):
+        any_bound(task)
+        return Stop.CLOSED if task.bracket.is_closed else try_every_attack(task)
     is_limited = min(budget.seconds_left, budget.evaluations_left) < math.inf
     has_table = _has_table(task)
     if n_robots > LARGEST_COMPILED or is_limited:

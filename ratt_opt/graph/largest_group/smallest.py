@@ -15,8 +15,9 @@ import numpy as np
 
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.communication import CommunicationGraph
+from ratt_opt.graph.communication import CommunicationGraph, Link
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
+from ratt_opt.graph.few_cuts import attacks_are_few, partitions_by_few_cuts
 from ratt_opt.graph.largest_group.counting import (
     COUNTED,
     LargestGroup,
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
     import networkx as nx
 
-    from ratt_opt.graph.communication import Link
     from ratt_opt.graph.separable_groups import PartitionSearch
 
 __all__ = ["bound_soon", "by_search", "by_separable_groups", "by_subsets", "smallest_largest_group"]
@@ -71,7 +71,7 @@ def smallest_largest_group(
         ``"enumeration"`` (partitions into connected groups; any graph up to 14 robots, and up to 60 where a link
         budget allows few groups, as on sparse graphs), ``"milp"`` (any graph), ``"spreading"`` (hundreds of robots;
         a bracket), ``"counting"`` (any size; a bound and a heuristic cut only), or ``"auto"``: of caa, enumeration,
-        spreading and milp what applies, until one is exact
+        spreading and milp what applies, until one is exact; where few cuts are possible, all of them
     protected_links : links that cannot be cut
     time_limit, max_nodes : seconds and nodes for the enumeration beyond 14 robots, and for the integer program
     budget : an outer search's budget: its seconds and interrupts count too
@@ -109,8 +109,22 @@ def smallest_largest_group(
 def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
     if threat.links_alike or threat.graph.n_robots <= LARGEST_LATTICE:
         return by_search(threat, budget)
+    if attacks_are_few(threat):
+        return by_few_cuts(threat, budget)
     known = by_spreading(threat, budget)
     return known if known.is_exact or budget.is_over else by_search(threat, budget, known)
+
+
+def by_few_cuts(threat: Threat, budget: Budget) -> LargestGroup:
+    """Try every cut; the bracket by counting, and the best cut tried, where the budget ends before."""
+    best, smallest = frozenset[Link](), threat.graph.n_robots
+    try:
+        for cut, groups in partitions_by_few_cuts(threat, budget):
+            if (size := max(map(len, groups))) < smallest:
+                best, smallest = cut, size
+    except OutOfBudget:
+        return split_result(threat, best, counting_bound(threat), "enumeration", COUNTED)
+    return split_result(threat, best, largest_left(threat.graph, best), "enumeration", "every cut was tried")
 
 
 def by_search(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup:

@@ -1,0 +1,54 @@
+"""All partitions that a few cut links leave, one by one: where links and cuts are few, the quickest exact way.
+
+Real networks are large and hardly more than trees. With one cut there are as many cases as links, whatever the team's
+size.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from math import comb
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.communication import Link
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["attacks_are_few", "partitions_by_few_cuts"]
+
+MOST_ATTACKS = 20_000
+"""Sets of links times sets of robots that are tried one by one: a second or two of the processor at 120 robots."""
+
+
+def attacks_are_few(threat: Threat) -> bool:
+    """Whether all attacks of the whole budgets can be tried one by one."""
+    cuts = comb(len(threat.graph.links) - len(threat.protected_links), _links_cut(threat))
+    blinded = comb(threat.graph.n_robots - len(threat.protected_robots), threat.n_blinded)
+    return cuts * blinded <= MOST_ATTACKS
+
+
+def partitions_by_few_cuts(
+    threat: Threat, budget: Budget
+) -> Iterator[tuple[frozenset[Link], tuple[frozenset[int], ...]]]:
+    """Yield each partition that cutting all the links allowed can leave, once, with the links first found to leave it.
+
+    A node is a set of links.
+
+    Raises
+    ------
+    OutOfBudget : the time is up, or no node is left.
+    """
+    seen: set[tuple[frozenset[int], ...]] = set()
+    for cut in combinations(sorted(threat.graph.links - threat.protected_links), _links_cut(threat)):
+        budget.spend()
+        groups = threat.graph.groups(cut)
+        if groups not in seen:
+            seen.add(groups)
+            yield frozenset(cut), groups
+
+
+def _links_cut(threat: Threat) -> int:
+    return min(threat.alpha_c, len(threat.graph.links) - len(threat.protected_links))

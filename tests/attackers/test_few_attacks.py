@@ -1,0 +1,97 @@
+"""Few cuts on large sparse networks: every attack is tried, and equals the definition."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.attackers.few_attacks import try_every_attack
+from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
+from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.few_cuts import attacks_are_few
+from ratt_opt.graph.threat import Threat
+from tests.oracles import brute_force_worst_case
+from tests.strategies import random_elements, random_problem
+
+
+def tried(problem, elements, max_nodes=None):
+    first = bounded_rational_attack(problem, elements)
+    bracket = AttackBracket(first.attack, first.upper, 0.0)
+    try:
+        task = AttackTask(problem, PlanValues(problem, elements), bracket, Budget(max_nodes=max_nodes))
+        try_every_attack(task)
+    except OutOfBudget:
+        pass
+    return bracket
+
+
+@pytest.mark.parametrize("seed", range(80))
+def test_every_attack_against_the_definition(seed):
+    """Any graph, connected or not, protected robots and links, any of the set functions; also where nodes run out."""
+    rng = np.random.default_rng([seed, 37])
+    problem = random_problem(rng, int(rng.integers(1, 6)))
+    elements = random_elements(rng, problem)
+    worst = brute_force_worst_case(problem, elements)
+    whole = tried(problem, elements)
+    assert whole.lower == whole.upper == pytest.approx(worst, abs=1e-9)
+    assert problem.team_value(elements, whole.attack) == pytest.approx(whole.upper, abs=1e-12)
+    part = tried(problem, elements, max_nodes=2)
+    assert part.lower <= worst + 1e-9
+    assert part.upper >= worst - 1e-9
+
+
+def sparse_network(rng, n_robots, more_links):
+    graph = nx.random_labeled_tree(n_robots, seed=int(rng.integers(2**31)))
+    while graph.number_of_edges() < n_robots - 1 + more_links:
+        i, j = rng.integers(n_robots, size=2)
+        if i != j:
+            graph.add_edge(int(i), int(j))
+    return graph
+
+
+@pytest.mark.parametrize(("seed", "n_robots", "alpha_s"), [(0, 25, 0), (1, 40, 0), (2, 60, 0), (3, 30, 1), (4, 127, 0)])
+@pytest.mark.parametrize("kind", ["trace", "own"])
+def test_one_cut_on_a_sparse_network(seed, n_robots, alpha_s, kind):
+    rng = np.random.default_rng([seed, 370])
+    graph = sparse_network(rng, n_robots, 3)
+    worths = rng.exponential(size=(n_robots, 3, 1, 1)) * np.eye(2) * 0.02
+    weights = worths[:, :, 0, 0].sum(axis=1)
+    trace, own = ro.TraceObjective(np.stack([np.eye(2)] * 3), worths), ro.Modular(weights)
+    problem = ro.Problem(trace if kind == "trace" else own, np.arange(n_robots), graph, alpha_s, 1)
+
+    def groups_after(link):
+        left = graph.copy()
+        left.remove_edge(*link)
+        return [frozenset(group) for group in nx.connected_components(left)]
+
+    outcomes = [groups_after(link) for link in graph.edges]
+    values = {group: problem.objective(group) for groups in outcomes for group in groups}
+    if alpha_s:
+        values |= {g - {i}: problem.objective(g - {i}) for groups in outcomes for g in groups for i in g}
+    blinded = [frozenset(chosen) for chosen in combinations(range(n_robots), alpha_s)]
+    truth = min(max(values[group - blind] for group in groups) for groups in outcomes for blind in blinded)
+    found = ro.worst_case_attack(problem, np.arange(n_robots))
+    assert found.stop is ro.Stop.CLOSED
+    assert found.lower == found.upper == pytest.approx(truth, rel=1e-12)
+    largest = ro.smallest_largest_group(graph, 1)
+    assert (largest.lower, largest.upper) == (min(max(map(len, groups)) for groups in outcomes),) * 2
+
+
+def test_two_cuts_and_a_limit():
+    rng = np.random.default_rng(371)
+    graph = sparse_network(rng, 60, 3)
+    threat = Threat(ro.Problem(ro.Modular(np.ones(60)), np.arange(60), graph, 0, 2).communication, 0, 2)
+    assert attacks_are_few(threat)
+    truth = min(
+        max(len(group) for group in threat.graph.groups(cut)) for cut in combinations(sorted(threat.graph.links), 2)
+    )
+    found = ro.smallest_largest_group(graph, 2)
+    assert (found.lower, found.upper) == (truth, truth)
+    soon = ro.smallest_largest_group(graph, 2, max_nodes=5)
+    assert soon.lower <= truth <= soon.upper
+    assert ro.smallest_largest_group(graph, 2, time_limit=0).upper >= truth
