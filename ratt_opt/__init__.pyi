@@ -81,8 +81,8 @@ from .missions.replay.replay import (
 )
 from .missions.result import Mission as Mission, MissionStep as MissionStep
 from .missions.run import run_mission as run_mission
-from .missions.tracker import Tracker as Tracker
-from .missions.tracker_state import Measurement as Measurement, TrackerState as TrackerState
+from .missions.live.tracker import Tracker as Tracker
+from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
 
 # == Guarantees and bounds

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import Threatened, World
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Part", "TeamPlan", "capped", "offered_sequences", "plan_team"]
+__all__ = ["Part", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,11 +121,11 @@ def _apart(
     parts = []
     for (group, _), objective in zip(groups, own, strict=True):
         elements = np.flatnonzero(np.isin(joined.owner, sorted(group)))
-        parts.append(Part(readonly(elements), _part_problem(team, objective, sorted(group), elements, threatened)))
+        parts.append(Part(readonly(elements), part_problem(team, objective, sorted(group), elements, threatened)))
     return TeamPlan(memory, joined, team, tuple(parts), threatened.alpha_c - team.alpha_c)
 
 
-def _part_problem(
+def part_problem(
     team: Problem, objective: InformationObjective, members: list[int], elements: IntArray, threatened: Threatened
 ) -> Problem:
     """The problem of some robots, numbered anew, with what of the budgets can hit them."""

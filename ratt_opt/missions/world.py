@@ -23,6 +23,7 @@ from ratt_opt.missions.models.robots import robot_motion
 from ratt_opt.missions.models.sensors import robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, target_motion
 from ratt_opt.problem import Attack, Problem
+from ratt_opt.scenario.model import Scenario
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.models.robots import RobotMotion
     from ratt_opt.missions.models.sensor_model import SensorModel
-    from ratt_opt.scenario.model import Scenario
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["Linearisation", "MissionModel", "Threatened", "World"]
@@ -108,6 +108,10 @@ class World:
     """Every different sensor with the robots that have it: what they measure is worked out together."""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.scenario, Scenario):
+            raise InputError(
+                "scenario", "must be a Scenario: missions need robots that move", type(self.scenario).__name__
+            )
         if not isinstance(self.model, MissionModel):
             raise InputError("model", "must be a MissionModel", type(self.model).__name__)
         check_integer("horizon", self.horizon, low=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -17,12 +17,24 @@ from ratt_opt.stopping import uninterrupted
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ratt_opt.budget import Budget
     from ratt_opt.problem import Plan, Problem
     from ratt_opt.solvers.result import MaxMinResult
 
     Planner = Callable[[Problem], Plan | MaxMinResult | IntArray]
 
-__all__ = ["PLANNERS", "MaxMinPlanner", "RandomPlanner", "planner_called"]
+__all__ = ["PLANNERS", "AnytimePlanner", "MaxMinPlanner", "RandomPlanner", "planner_called"]
+
+
+@runtime_checkable
+class AnytimePlanner(Protocol):
+    """A planner that improves a known plan ``start`` until a budget is spent: a tracker gives it the time it has."""
+
+    def __call__(self, problem: Problem, start: IntArray | None = None) -> Plan | MaxMinResult:
+        """Plan within limits of its own."""
+
+    def within(self, problem: Problem, budget: Budget, start: IntArray) -> Plan | MaxMinResult:
+        """Plan within this budget instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +48,10 @@ class MaxMinPlanner:
     def __call__(self, problem: Problem, start: IntArray | None = None) -> MaxMinResult:
         """Search until closed to the gap or out of limits, from a plan ``start`` where one is known."""
         return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes, start=start)
+
+    def within(self, problem: Problem, budget: Budget, start: IntArray) -> MaxMinResult:
+        """Search until closed to the gap or the budget is spent, whatever the limits are."""
+        return solve_maxmin(problem, gap=self.gap, budget=budget, start=start)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,115 @@
+"""What arrives at a step, checked: the clock, the poses, and every measurement with the time it was made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, check_finite, check_integer, check_number, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.missions.live.history import ON_TIME, Made
+from ratt_opt.missions.live.state import Measurement
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.missions.live.state import TrackerState
+    from ratt_opt.missions.world import World
+
+__all__ = ["Arrivals"]
+
+MOST_PERIODS = 10_000
+"""That may pass between two steps: each is predicted on its own; after so many nothing is known of a target."""
+ROUNDING = 1e-9
+"""Largest asymmetry and most negative eigenvalue of a pose's covariance, relative to its largest entry."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arrivals:
+    """Checks of what a tracker in this state is given; every error is an ``InputError``."""
+
+    world: World
+    state: TrackerState
+
+    def passed(self, now: float | None) -> tuple[float, float | None]:
+        """Seconds since the last step, none before the first, and the caller's clock."""
+        before, period = self.state.now, self.world.period
+        if now is not None:
+            now = check_number("now", now)
+        if self.state.steps == 0:
+            return 0.0, now
+        if now is None or before is None:
+            return period, now if before is None else before + period
+        if now < before:
+            raise InputError("now", f"must not be before the last step's {before:.6g} s", now)
+        latest = before + MOST_PERIODS * period
+        if now > latest:
+            rule = f"must be within {MOST_PERIODS} sampling periods of the last step's, by {latest:.6g} s"
+            raise InputError("now", rule, now)
+        return now - before, now
+
+    def poses(self, poses: ArrayLike | None, covariances: ArrayLike | None) -> tuple[FloatArray, FloatArray]:
+        """(N, 3) poses, where the last plan led by default, and (N, 3, 3) their covariances, zero by default."""
+        shape = self.state.poses.shape
+        places = self.state.poses if poses is None else check_finite("poses", poses, ndim=2)
+        if places.shape != shape:
+            raise InputError("poses", f"must have shape {shape}", f"shape {places.shape}")
+        if covariances is None:
+            return readonly(places), readonly(np.zeros((shape[0], 3, 3)))
+        unsure = check_finite("pose_covariances", covariances, ndim=3)
+        if unsure.shape != (shape[0], 3, 3):
+            raise InputError("pose_covariances", f"must have shape {(shape[0], 3, 3)}", f"shape {unsure.shape}")
+        for i, matrix in enumerate(unsure):
+            allowed = ROUNDING * np.abs(matrix).max()
+            if np.abs(matrix - matrix.T).max() > allowed or np.linalg.eigvalsh(matrix)[0] < -allowed:
+                rule = "must be symmetric positive semidefinite"
+                raise InputError(f"pose_covariances[{i}]", rule, matrix.tolist())
+        return readonly(places), readonly((unsure + np.swapaxes(unsure, -1, -2)) / 2)
+
+    def made(self, measurements: list[Measurement], time: float, now: float | None) -> list[Made]:
+        """Every measurement with its time since the start; ``time`` and ``now`` are those of this step."""
+        return [self._made(f"measurements[{k}]", one, time, now) for k, one in enumerate(measurements)]
+
+    def _made(self, name: str, given: Measurement, time: float, now: float | None) -> Made:
+        if not isinstance(given, Measurement):
+            raise InputError(name, "must be a Measurement", type(given).__name__)
+        robot = check_integer(f"{name}.robot", given.robot, low=0, high=self.world.scenario.n_robots - 1)
+        target = check_integer(f"{name}.target", given.target, low=0)
+        if target not in self.state.targets:
+            raise InputError(f"{name}.target", f"must be one of the targets {list(self.state.targets)}", target)
+        when = self._time(name, given.time, time, now)
+        self._check_known(name, robot, target, when)
+        size = self.world.sensors[robot].size
+        values = check_finite(f"{name}.values", given.values, ndim=1)
+        if len(values) != size:
+            raise InputError(f"{name}.values", f"must have {size} numbers", len(values))
+        fault = self.world.sensors[robot].fault(values)
+        if fault is not None:
+            raise InputError(f"{name}.values", fault, values.tolist())
+        stored = Measurement(robot, target, tuple(values.tolist()))
+        return Made(name, when, stored, stamped=given.time is not None)
+
+    def _time(self, name: str, stamp: float | None, time: float, now: float | None) -> float:
+        """When a measurement was made [s since the start]. Its stamp is on the caller's clock, if there is one."""
+        if stamp is None:
+            return time
+        clock = time if now is None else now
+        made = check_number(f"{name}.time", stamp) - clock + time
+        near, oldest = ON_TIME * self.world.period, self.state.moments[0].time
+        if made > time + near:
+            raise InputError(f"{name}.time", f"must not be after this step's {clock:.6g} s", stamp)
+        if made < oldest - near:
+            rule = f"must not be before {oldest - time + clock:.6g} s, the oldest time that is kept (lag)"
+            raise InputError(f"{name}.time", rule, stamp)
+        return min(max(made, oldest), time)
+
+    def _check_known(self, name: str, robot: int, target: int, made: float) -> None:
+        near = ON_TIME * self.world.period
+        lost = dict(self.state.lost)
+        if robot in lost and made > lost[robot] + near:
+            raise InputError(f"{name}.robot", "must not be lost when it measured", robot)
+        born = self.state.born[self.state.targets.index(target)]
+        if made < born - near:
+            raise InputError(f"{name}.time", f"must not be before target {target} was added, {born:.6g} s", made)

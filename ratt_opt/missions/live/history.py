@@ -1,0 +1,152 @@
+"""Measurements taken in at the time they were made, in whatever order they arrive.
+
+The tracker keeps the moments of the last seconds: beliefs, poses, and what was measured. A measurement of an earlier
+time goes into its moment, or into a new one between two that are known, and the filter runs again from there. So the
+belief is that of a filter that got everything in order, to the last digit if every time was known before.
+
+Robots are taken to drive straight and at one speed between two moments. Between two uncertain poses the interpolated
+covariance is that of the ends, which is an upper bound whatever their correlation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, readonly
+from ratt_opt.errors import InputError
+from ratt_opt.missions.belief import Belief
+from ratt_opt.missions.live.state import Measurement, Moment
+from ratt_opt.missions.sensing import Reading, group_pieces
+from ratt_opt.scenario.sensor import wrap_angle
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt.missions.world import World
+
+__all__ = ["ON_TIME", "Filter", "Made"]
+
+ON_TIME = 1e-6
+"""Times that differ by less than this share of the sampling period count as one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A measurement that was made at ``time`` [s since the start]; ``name`` is for errors.
+
+    ``stamped`` : whether the caller said when. Then a repeated delivery is found.
+    """
+
+    name: str
+    time: float
+    measurement: Measurement
+    stamped: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Filter:
+    """The filter over moments: ``targets`` (M,) numbers of the targets, ``born`` (M,) when each appeared [s]."""
+
+    world: World
+    targets: tuple[int, ...]
+    born: FloatArray
+
+    def taken_in(self, moments: Sequence[Moment], made: Sequence[Made]) -> tuple[tuple[Moment, ...], list[Measurement]]:
+        """The moments with new measurements, and those of them that told nothing.
+
+        The last moment is new: its belief and all after the first change are worked out anew.
+        """
+        kept = list(moments)
+        first = len(kept) - 1
+        for new in made:
+            k = self._placed(kept, new.time)
+            if k is None:
+                k = self._inserted(kept, new.time)
+                first += k <= first
+            self._refuse_repeats(kept, k, new)
+            kept[k] = replace(kept[k], measurements=(*kept[k].measurements, new.measurement))
+            first = min(first, k)
+        unused: list[Measurement] = []
+        for k in range(first, len(kept)):
+            kept[k], silent = self._updated(kept[k - 1], kept[k])
+            unused += silent
+        given = {id(new.measurement) for new in made}
+        return tuple(kept), [measurement for measurement in unused if id(measurement) in given]
+
+    def predicted(self, belief: Belief, begin: float, end: float) -> Belief:
+        """The belief at ``end``; targets that had not appeared before are left as they are."""
+        ahead, time = belief, begin
+        for step in _parts(end - begin, self.world.period):
+            ahead = ahead.predicted(self.world.motion, step, time)
+            time += step
+        unborn = self.born >= end
+        if not unborn.any():
+            return ahead
+        mean = np.where(unborn[:, None], belief.mean, ahead.mean)
+        return Belief(readonly(mean), readonly(np.where(unborn[:, None, None], belief.covariance, ahead.covariance)))
+
+    def _placed(self, moments: Sequence[Moment], time: float) -> int | None:
+        """The moment of this time, if there is one; the first is not: what was measured before it is forgotten."""
+        near = ON_TIME * self.world.period
+        return next((k for k in range(len(moments) - 1, 0, -1) if abs(moments[k].time - time) <= near), None)
+
+    @staticmethod
+    def _inserted(moments: list[Moment], time: float) -> int:
+        """A new moment of this time between two known ones: its place."""
+        k = next(k for k in range(1, len(moments)) if moments[k].time > time)
+        before, after = moments[k - 1], moments[k]
+        share = (time - before.time) / (after.time - before.time)
+        turn = wrap_angle(after.poses[:, 2] - before.poses[:, 2])
+        poses = (1 - share) * before.poses + share * after.poses
+        poses[:, 2] = before.poses[:, 2] + share * turn
+        unsure = (1 - share) * before.pose_covariances + share * after.pose_covariances
+        moment = Moment(time=time, poses=readonly(poses), pose_covariances=readonly(unsure), belief=before.belief)
+        moments.insert(k, moment)
+        return k
+
+    def _refuse_repeats(self, moments: Sequence[Moment], k: int, new: Made) -> None:
+        near, time = ON_TIME * self.world.period, moments[k].time
+        own = [m for m in moments if abs(m.time - time) <= near] if new.stamped else [moments[k]]
+        pair = new.measurement.robot, new.measurement.target
+        if any((old.robot, old.target) == pair for moment in own for old in moment.measurements):
+            raise InputError(new.name, f"must not repeat robot {pair[0]} and target {pair[1]} at one time", pair)
+
+    def _updated(self, before: Moment, moment: Moment) -> tuple[Moment, list[Measurement]]:
+        """The moment after the one before it, and which of its measurements told nothing."""
+        belief = self.predicted(before.belief, before.time, moment.time)
+        unused: list[Measurement] = []
+        if moment.measurements:
+            readings = self._readings(moment.measurements)
+            unsure = moment.pose_covariances if moment.pose_covariances.any() else None
+            poses = dict(enumerate(moment.poses))
+            pieces, _ = group_pieces(self.world, belief, poses, readings, readings, pose_covariances=unsure)
+            belief = belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
+            row = self._rows()
+            unused = [m for m in moment.measurements if not pieces.information[m.robot, row[m.target]].any()]
+        return replace(moment, belief=belief), unused
+
+    def _readings(self, measurements: Sequence[Measurement]) -> dict[int, Reading]:
+        row, count = self._rows(), len(self.targets)
+        readings: dict[int, Reading] = {}
+        for m in measurements:
+            if m.robot not in readings:
+                size = self.world.sensors[m.robot].size
+                readings[m.robot] = Reading(np.zeros((count, size)), np.zeros(count, dtype=np.bool_))
+            readings[m.robot].values[row[m.target]] = m.values
+            readings[m.robot].seen[row[m.target]] = True
+        return readings
+
+    def _rows(self) -> dict[int, int]:
+        return {number: row for row, number in enumerate(self.targets)}
+
+
+def _parts(passed: float, period: float) -> list[float]:
+    """Whole periods, and what is left: the motion noise is that of periods."""
+    whole = int(passed / period * (1 + ON_TIME))
+    rest = passed - whole * period
+    if whole and abs(rest) <= ON_TIME * period:
+        return [*[period] * (whole - 1), period + rest]
+    return [period] * whole + ([rest] if rest > 0 else [])
