@@ -25,6 +25,7 @@ from .scenario.files import (
 from .scenario.networks import network_scenario as network_scenario
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.mrclam import from_mrclam as from_mrclam
+from .scenario.mrclam_reader import MrclamData as MrclamData, read_mrclam as read_mrclam
 from .scenario.simulation import simulate_tracking as simulate_tracking, Tracking as Tracking
 
 # == Planners

@@ -91,6 +91,7 @@ NO_SEARCH = {
     "ratt",
     "realise",
     "reference",
+    "read_mrclam",
     "replay_mrclam",
     "remark1_bound",
     "run_mission",

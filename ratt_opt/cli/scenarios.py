@@ -43,8 +43,12 @@ def new(
         float | None, typer.Option("--time", help="Instant of the dataset: seconds since its start, or Unix time.")
     ] = None,
     label_correction: Annotated[
-        bool, typer.Option(help="Exchange the labels 11 and 17, as dataset 1 needs and its sightings confirm.")
+        bool, typer.Option(help="Exchange labels where the dataset's sightings say so, or keep all.")
     ] = True,
+    corrections: Annotated[
+        str | None,
+        typer.Option("--corrections", help="Labels to exchange whatever the sightings say, as 11=17,17=11."),
+    ] = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time)."""
@@ -55,13 +59,16 @@ def new(
     budgets = (sensing_attacks, link_attacks)
     drawn = {"robots": robots, "targets": targets, "seed": seed}
     if mrclam is None:
-        _refuse({"time": time}, wants="--mrclam")
+        _refuse({"time": time, "corrections": corrections}, wants="--mrclam")
         if graph is not None:
             _refuse({"range": communication_range}, wants="no --graph")
         scenario = _random(drawn, budgets, graph)
     else:
         _refuse({**drawn, "graph": graph}, wants="no --mrclam")
-        scenario = _from_mrclam(mrclam, time, budgets, label_correction=label_correction)
+        if not label_correction:
+            _refuse({"corrections": corrections}, wants="no --no-label-correction")
+        given = _corrections(corrections) if label_correction else {}
+        scenario = _from_mrclam(mrclam, time, budgets, given)
     if communication_range is not None:
         scenario = scenario.replace(communication_range=communication_range)
     save_scenario(scenario, out)
@@ -94,14 +101,24 @@ def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int], graph: 
     return draw(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
 
 
-def _from_mrclam(folder: Path, time: float | None, budgets: tuple[int, int], *, label_correction: bool) -> "Scenario":
+def _from_mrclam(
+    folder: Path, time: float | None, budgets: tuple[int, int], corrections: "Mapping[int, int] | None"
+) -> "Scenario":
     from ratt_opt.scenario.mrclam import from_mrclam
-    from ratt_opt.scenario.mrclam_reader import DATASET_1_CORRECTIONS
 
     if time is None:
         raise InputError("--time", "must be given with --mrclam", "nothing")
-    corrections = DATASET_1_CORRECTIONS if label_correction else {}
     return from_mrclam(folder, time, alpha_s=budgets[0], alpha_c=budgets[1], corrections=corrections)
+
+
+def _corrections(text: str | None) -> dict[int, int] | None:
+    """Pairs of numbers as in ``11=17,17=11``; ``None`` if nothing is given."""
+    if text is None:
+        return None
+    try:
+        return {int(named): int(meant) for named, meant in (pair.split("=") for pair in text.split(","))}
+    except ValueError:
+        raise InputError("--corrections", "must be pairs of subjects, as 11=17,17=11", text) from None
 
 
 def _refuse(given: "Mapping[str, float | str | None]", wants: str) -> None:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.model import Robot, Scenario, Target
-from ratt_opt.scenario.mrclam_reader import DATASET_1_CORRECTIONS, MrclamData, read_mrclam
-from ratt_opt.scenario.sensor import Sensor, measure, wrap_angle
+from ratt_opt.scenario.mrclam_labels import pose_at
+from ratt_opt.scenario.mrclam_reader import MrclamData, opened_mrclam
+from ratt_opt.scenario.sensor import Sensor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["CREATE_CONTROLS", "MRCLAM_SENSOR", "LabelEvidence", "from_mrclam", "label_evidence"]
+__all__ = ["CREATE_CONTROLS", "MRCLAM_SENSOR", "from_mrclam"]
 
 MRCLAM_SENSOR = Sensor(
     law="std",
@@ -40,26 +40,15 @@ LONGEST_GAP = 2.0
 """Poses are interpolated between rows at most this far apart [s]."""
 RELATIVE_TIME = 1e8
 """Times below this are seconds since the start, others are Unix times (the dataset is from 2009)."""
-FIT_RANGE, FIT_BEARING = 1.0, 0.3
-"""A sighting fits a landmark when its range and bearing agree to within these [m], [rad]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LabelEvidence:
-    """How many sightings with a corrected label fit the landmark as labelled, and as corrected."""
-
-    sightings: int
-    fit_as_labelled: int
-    fit_as_corrected: int
 
 
 def from_mrclam(
-    directory: str | Path,
+    directory: str | Path | MrclamData,
     time: float,
     *,
     alpha_s: int,
     alpha_c: int,
-    corrections: Mapping[int, int] = DATASET_1_CORRECTIONS,
+    corrections: Mapping[int, int] | None = None,
     sensor: Sensor = MRCLAM_SENSOR,
     controls: Sequence[tuple[float, float]] = CREATE_CONTROLS,
     prior_std: float = 0.3,
@@ -73,20 +62,21 @@ def from_mrclam(
 
     Parameters
     ----------
-    directory : dataset folder, see :func:`read_mrclam`
+    directory : dataset folder, see :func:`read_mrclam`, or the dataset
     time : Unix time, or seconds since every robot's poses have begun [s]
     alpha_s, alpha_c : robots that may be blinded, links that may be cut
-    corrections : label errors to correct, recorded in the scenario's notes; empty for none
+    corrections : label errors to correct, empty for none; by default the sightings decide, see :func:`read_mrclam`.
+        The scenario's notes say which labelling is used, and how many sightings fit.
     sensor, controls, prior_std [m], sampling_period [s] : parameters of the scenario
 
     Raises
     ------
     FileFormatError : a file is missing or malformed.
-    InputError : the time is outside the poses or in a gap, or the measurements contradict the corrections.
+    InputError : the time is outside the poses or in a gap, or the corrections are no permutation.
     """
     if not prior_std > 0:
         raise InputError("prior_std", "must be positive", prior_std)
-    data = read_mrclam(directory, corrections)
+    data = opened_mrclam(directory, corrections)
     instant = _instant(data, time)
     variance = prior_std**2
     landmarks = sorted(data.landmarks.items())
@@ -102,34 +92,6 @@ def from_mrclam(
         alpha_c=alpha_c,
         notes=_notes(data, instant),
     )
-
-
-def label_evidence(data: MrclamData) -> LabelEvidence:
-    """Count the sightings of corrected labels that fit the poses, as labelled and as corrected."""
-    back = {meant: named for named, meant in data.corrections.items()}
-    counts = np.zeros(3, dtype=int)
-    for poses, rows in zip(data.poses, data.measurements, strict=True):
-        subjects = np.array([data.subject_of.get(int(code), -1) for code in rows[:, 1]])
-        inside = (rows[:, 0] >= poses[0, 0]) & (rows[:, 0] <= poses[-1, 0])
-        for meant, named in back.items():
-            chosen = rows[(subjects == meant) & inside]
-            fits = [_fits(poses, chosen, data.landmarks[subject]) for subject in (named, meant)]
-            counts += [len(chosen), int(fits[0].sum()), int(fits[1].sum())]
-    total, labelled, corrected = (int(count) for count in counts)
-    return LabelEvidence(sightings=total, fit_as_labelled=labelled, fit_as_corrected=corrected)
-
-
-def pose_at(poses: FloatArray, times: FloatArray) -> FloatArray:
-    """Poses (K, 3) interpolated at ``times`` (K,) [s]; angles take the short way round."""
-    x, y = (np.interp(times, poses[:, 0], poses[:, c]) for c in (1, 2))
-    heading = np.interp(times, poses[:, 0], np.unwrap(poses[:, 3]))
-    return np.stack([x, y, wrap_angle(heading)], axis=-1)
-
-
-def _fits(poses: FloatArray, rows: FloatArray, landmark: tuple[float, float]) -> FloatArray:
-    expected = measure(pose_at(poses, rows[:, 0]), np.array(landmark))
-    near = np.abs(expected[:, 0] - rows[:, 2]) < FIT_RANGE
-    return np.asarray(near & (np.abs(wrap_angle(expected[:, 1] - rows[:, 3])) < FIT_BEARING))
 
 
 def _instant(data: MrclamData, time: float) -> float:
@@ -155,18 +117,7 @@ def _robot(number: int, poses: FloatArray, instant: float, controls: tuple[tuple
 def _notes(data: MrclamData, instant: float) -> tuple[str, ...]:
     codes = np.concatenate([rows[:, 1] for rows in data.measurements]).astype(int)
     unlisted = [int(code) for code in codes if int(code) not in data.subject_of]
-    notes = [f"MRCLAM poses at Unix time {instant:.3f} s from {', '.join(data.pose_files)}"]
-    if data.corrections:
-        evidence = label_evidence(data)
-        if evidence.fit_as_corrected < evidence.fit_as_labelled:
-            found = f"{evidence.fit_as_labelled} as labelled, {evidence.fit_as_corrected} as corrected"
-            rule = "must be confirmed by the measurements (give none for this dataset)"
-            raise InputError("corrections", rule, f"of {evidence.sightings} sightings, {found} fit")
-        table = ", ".join(f"{named} means {meant}" for named, meant in sorted(data.corrections.items()))
-        notes.append(
-            f"labels corrected: {table}; of {evidence.sightings} such sightings "
-            f"{evidence.fit_as_labelled} fit as labelled and {evidence.fit_as_corrected} as corrected"
-        )
+    notes = [f"MRCLAM poses at Unix time {instant:.3f} s from {', '.join(data.pose_files)}", data.labels]
     if data.inapplicable:
         table = ", ".join(f"{named} means {meant}" for named, meant in sorted(data.inapplicable.items()))
         notes.append(f"label corrections not applied, their subjects are not in this set: {table}")

@@ -14,18 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.errors import FileFormatError, InputError
+from ratt_opt.scenario.mrclam_labels import Sightings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["DATASET_1_CORRECTIONS", "MrclamData", "read_mrclam"]
-
-DATASET_1_CORRECTIONS: Mapping[int, int] = {11: 17, 17: 11}
-"""Label errors of dataset 1: what the barcode table calls subject 11 is the tube at subject 17's position,
-and the other way round. None of the 3670 sightings of the two fits as labelled, all fit exchanged. Whether the
-barcode or the landmark table is wrong cannot be told and makes no difference; the barcodes are what is corrected."""
+__all__ = ["MrclamData", "opened_mrclam", "read_mrclam"]
 
 LARGEST_IDENTIFIER = 10**9
 """Far above any subject or barcode, and exact as a float."""
@@ -40,6 +36,7 @@ class MrclamData:
 
     ``landmarks`` : subject -> (x, y) [m]; ``subject_of`` : barcode -> subject, after corrections;
     ``corrections`` : those applied; ``inapplicable`` : those that name a subject this set does not have;
+    ``labels`` : in one line which labelling is used, who decided that, and how many sightings fit;
     ``poses`` : per robot (K, 4) time [s], x [m], y [m], heading [rad];
     ``measurements`` : per robot (L, 4) time [s], barcode, range [m], bearing [rad]; ``pose_files`` : names read.
     """
@@ -48,20 +45,31 @@ class MrclamData:
     subject_of: Mapping[int, int]
     corrections: Mapping[int, int]
     inapplicable: Mapping[int, int]
+    labels: str
     poses: tuple[FloatArray, ...]
     measurements: tuple[FloatArray, ...]
     pose_files: tuple[str, ...]
 
 
-def read_mrclam(directory: str | Path, corrections: Mapping[int, int] = DATASET_1_CORRECTIONS) -> MrclamData:
+def opened_mrclam(data: str | Path | MrclamData, corrections: Mapping[int, int] | None) -> MrclamData:
+    """The dataset, read if it is a folder. InputError : corrections are given to one that is read already."""
+    if not isinstance(data, MrclamData):
+        return read_mrclam(data, corrections)
+    if corrections is not None:
+        raise InputError("corrections", "must be given where the folder is read (read_mrclam)", dict(corrections))
+    return data
+
+
+def read_mrclam(directory: str | Path, corrections: Mapping[int, int] | None = None) -> MrclamData:
     """Read a dataset folder: landmark and barcode tables, and each robot's poses and measurements.
 
     Parameters
     ----------
     directory : folder with ``Barcodes.dat``, ``Landmark_Groundtruth.dat``, ``RobotN_Measurement.dat`` and
         ``RobotN_Groundtruth.dat`` or ``RobotN_Pose_estimated.dat``, N = 1, 2, ...
-    corrections : subject named in the barcode table -> subject meant, a permutation; empty for none.
-        One that names a subject this set does not have is set aside in ``inapplicable``.
+    corrections : subject named in the barcode table -> subject meant, a permutation; empty for none. One that names a
+        subject this set does not have is set aside in ``inapplicable``. By default the sightings decide: labels are
+        exchanged if that makes many more of them fit. In dataset 1, 11 and 17 are.
 
     Raises
     ------
@@ -73,21 +81,24 @@ def read_mrclam(directory: str | Path, corrections: Mapping[int, int] = DATASET_
     landmarks = {int(row[0]): (float(row[1]), float(row[2])) for row in table}
     barcodes = _table(folder / "Barcodes.dat", 2, identifiers=(0, 1))
     known = landmarks.keys() & set(barcodes[:, 0].astype(int).tolist())
-    applied = {a: b for a, b in corrections.items() if {a, b} <= known}
+    applied = {a: b for a, b in (corrections or {}).items() if {a, b} <= known}
     if set(applied) != set(applied.values()):
-        raise InputError("corrections", "must exchange labels: every subject named is meant once", dict(corrections))
+        rule = "must exchange labels: every subject named is meant once"
+        raise InputError("corrections", rule, dict(corrections or {}))
     pose_files = _pose_files(folder)
-    measurements = [
-        _table(folder / f"Robot{k + 1}_Measurement.dat", 4, identifiers=(1,), unique=False)
-        for k in range(len(pose_files))
-    ]
+    measurements = tuple(_log(folder / f"Robot{k + 1}_Measurement.dat") for k in range(len(pose_files)))
+    poses = tuple(_increasing(file, _table(file, 4)) for file in pose_files)
+    sightings = Sightings.of(landmarks, {int(code): int(subject) for subject, code in barcodes}, poses, measurements)
+    if corrections is None:
+        applied = sightings.corrections()
     return MrclamData(
         landmarks=landmarks,
         subject_of={int(code): applied.get(int(subject), int(subject)) for subject, code in barcodes},
         corrections=applied,
-        inapplicable={a: b for a, b in corrections.items() if a not in applied},
-        poses=tuple(_increasing(file, _table(file, 4)) for file in pose_files),
-        measurements=tuple(measurements),
+        inapplicable={a: b for a, b in (corrections or {}).items() if a not in applied},
+        labels=sightings.told(applied, decided=corrections is None),
+        poses=poses,
+        measurements=measurements,
         pose_files=tuple(file.name for file in pose_files),
     )
 
@@ -112,13 +123,20 @@ def _pose_file(folder: Path, number: int) -> Path | None:
     return next((file for file in files if file.exists()), None)
 
 
-def _table(path: Path, columns: int, *, identifiers: tuple[int, ...] = (), unique: bool = True) -> FloatArray:
-    """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment.
+def _log(path: Path) -> FloatArray:
+    """What a robot measured; a robot may have seen nothing."""
+    return _table(path, 4, identifiers=(1,), unique=False, empty=True)
+
+
+def _table(
+    path: Path, columns: int, *, identifiers: tuple[int, ...] = (), unique: bool = True, empty: bool = False
+) -> FloatArray:
+    """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment. ``empty`` : it may have none.
 
     The columns ``identifiers`` hold whole numbers, in each column all different where ``unique``.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = path.read_text(encoding="utf-8-sig").splitlines()  # some loggers write a byte-order mark
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "not UTF-8 text"
         raise FileFormatError(str(path), "must be a text file that can be read", reason) from None
@@ -136,9 +154,9 @@ def _table(path: Path, columns: int, *, identifiers: tuple[int, ...] = (), uniqu
         for c in identifiers:
             _check_identifier(f"{path} line {number}", row[c], [other[c] for other in rows] if unique else ())
         rows.append(row[:columns])
-    if not rows:
+    if not rows and not empty:
         raise FileFormatError(str(path), "must hold at least one line of numbers", "none")
-    return np.array(rows)
+    return np.array(rows).reshape(-1, columns)
 
 
 def _check_identifier(where: str, value: float, others: Sequence[float]) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import check_distinct, check_integer, readonly
 from ratt_opt.errors import InputError
+from ratt_opt.scenario.own_sensors import tells_itself
 from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def simulate_tracking(
     The truth comes from the predicted distribution of every target. Robot ``i`` of ``robots`` moves by
     its chosen control and measures range and bearing with the sensor's noise at the true geometry; the
     filter assumes the noise and the Jacobian at the predicted position, as the plan does. A measurement
-    exists where the sensor sees both the predicted and the true position. The random numbers of a robot
+    exists if the sensor sees the true position, wherever the target was expected. The random numbers of a robot
     depend on ``seed`` only: plans and groups are compared on the same luck.
 
     Parameters
@@ -68,7 +69,8 @@ def simulate_tracking(
 
     Raises
     ------
-    InputError : ``elements`` is not a plan, a robot does not exist, or ``seed`` or ``draws`` is out of range.
+    InputError : ``elements`` is not a plan, a robot does not exist, ``seed`` or ``draws`` is out of range, or a sensor
+        states its own information, from which no measurement can be drawn here (:func:`run_mission` can).
 
     Source: ratt.tex, Section VI, sensor model and MSE; Joseph form of the covariance update.
     """
@@ -84,6 +86,8 @@ def simulate_tracking(
     estimates, covariances = np.broadcast_to(predicted, truth.shape), np.broadcast_to(prior, (draws, *prior.shape))
     for i in group:
         sensor = scenario.robots[i].sensor or scenario.sensor
+        if tells_itself(sensor):
+            raise InputError(f"sensor of robots[{i}]", "must not state its own information", type(sensor).__name__)
         expected, actual = measure(poses[i], predicted), measure(poses[i], truth)
         surprise = actual + np.sqrt(_variances(sensor, actual)) * luck[i] - expected
         surprise[..., 1] = wrap_angle(surprise[..., 1])
@@ -91,7 +95,7 @@ def simulate_tracking(
         slope = jacobian(poses[i], predicted)
         surprise -= np.einsum("mij,dmj->dmi", slope, estimates - predicted)
         noise = _variances(sensor, expected)[:, None, :] * np.eye(2)
-        seen = sensor.sees(*np.moveaxis(expected, -1, 0)) & sensor.sees(*np.moveaxis(actual, -1, 0))
+        seen = sensor.sees(*np.moveaxis(actual, -1, 0))
         gain = _gain(covariances, slope, noise) * seen[..., None, None]
         estimates = estimates + np.einsum("dmij,dmj->dmi", gain, surprise)
         covariances = _joseph(covariances, gain, slope, noise)

@@ -38,6 +38,12 @@ BAD = [
     ),
     ([*NEW, "--graph", "hubs", "--mrclam", "OUT", "--time", "0"], "--graph must come with no --mrclam; got hubs"),
     ([*NEW, "--mrclam", "OUT"], "--time must be given with --mrclam"),
+    ([*NEW, "--corrections", "1=2,2=1"], "--corrections must come with --mrclam; got 1=2,2=1"),
+    ([*NEW, "--mrclam", "OUT", "--time", "0", "--corrections", "1-2"], "--corrections must be pairs of subjects"),
+    (
+        [*NEW, "--mrclam", "OUT", "--time", "0", "--corrections", "1=2,2=1", "--no-label-correction"],
+        "--corrections must come with no --no-label-correction",
+    ),
     ([*NEW, "--mrclam", "OUT", "--time", "0"], "Landmark_Groundtruth.dat"),
     (
         [*NEW, "--time", "3", "--robots", "2", "--targets", "2", "--seed", "1"],

@@ -9,7 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratt_opt import Attack, InputError, Sensor, random_scenario, ratt, solve_maxmin, worst_case_attack
+from ratt_opt import (
+    Attack,
+    InputError,
+    Robot,
+    Scenario,
+    Sensor,
+    Target,
+    random_scenario,
+    ratt,
+    solve_maxmin,
+    worst_case_attack,
+)
 from ratt_opt.budget import Budget
 from ratt_opt.missions.models.sensors import PositionSensor
 from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
@@ -207,6 +218,36 @@ def test_a_consistent_filter_stays_within_its_bands() -> None:
     assert np.mean((low <= mission.nees) & (mission.nees <= high)) > 0.85
     band = mission.nis_band()
     assert np.mean((band[:, 0] <= mission.nis) & (mission.nis <= band[:, 1])) > 0.9
+
+
+@pytest.mark.parametrize("motion", ["known velocity", "constant velocity"])
+def test_the_default_filter_is_as_uncertain_as_its_errors_are_large(motion: str) -> None:
+    """Mean NEES over d of twelve missions: some 1 by default, and far above it with the textbook filter."""
+    teams = [random_scenario(5, 4, alpha_s=1, alpha_c=4, seed=seed) for seed in range(12)]
+
+    def ratio(**options) -> float:
+        model = MissionModel(motion=motion, **options)
+        flown = [run_mission(t, steps=20, attacker="greedy", seed=s, model=model) for s, t in enumerate(teams)]
+        return float(np.mean([mission.nees.mean() / mission.dimension for mission in flown]))
+
+    honest = ratio()
+    assert 0.75 < honest < 1.25
+    assert ratio(linearisation="first order") > honest + 0.15
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.3])
+def test_driving_over_a_target_leaves_the_filter_honest(aside: float) -> None:
+    """A robot passes a target that stands still: the median NEES is that of chi-square with two degrees, 1.39."""
+    precise = Sensor(bearing_noise=1e-4, bearing_noise_slope=0.0, range_noise=0.1, range_noise_slope=0.0)
+    team = Scenario(
+        robots=[Robot(x=-10.3, y=aside, controls=((1.0, 0.0),))],
+        targets=[Target(x=0.0, y=0.0, process_std=0.0)],
+        sensor=precise,
+        alpha_s=0,
+        alpha_c=0,
+    )
+    last = [run_mission(team, steps=20, attacker="none", seed=seed).nees[-1] for seed in range(40)]
+    assert 0.8 < np.median(last) < 2.2
 
 
 def test_robots_stay_in_the_area() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, random_scenario, ratt
+from ratt_opt import InputError, Sensor, random_scenario, ratt
 from ratt_opt.scenario.simulation import simulate_tracking
 
 
@@ -40,6 +40,30 @@ def test_the_same_luck_for_every_group_and_plan() -> None:
     again = simulate_tracking(scenario, plan, [0], seed=5, draws=4)
     assert np.array_equal(first.estimates, again.estimates)
     assert not np.array_equal(first.truth, simulate_tracking(scenario, plan, [0], seed=6, draws=4).truth)
+
+
+def test_a_sighting_counts_wherever_the_target_was_expected() -> None:
+    """The edge of the reach is where targets are expected: what is seen of the nearer half is not thrown away."""
+    scenario = random_scenario(1, 1, alpha_s=0, alpha_c=0, seed=4)
+    plan = ratt(scenario.problem()).elements
+    reach = float(np.linalg.norm(scenario.predicted_poses[plan[0], :2] - scenario.predicted_targets[0])) - 0.5
+    short = scenario.replace(sensor=scenario.sensor.replace(max_range=reach))
+    whole, part = (simulate_tracking(s, plan, [0], seed=0, draws=400) for s in (scenario, short))
+    places = whole.truth[:, 0] - scenario.predicted_poses[plan[0], :2]
+    seen = np.linalg.norm(places, axis=-1) <= reach
+    assert 0.2 < seen.mean() < 0.8
+    assert np.array_equal(part.estimates[seen], whole.estimates[seen])
+    assert np.array_equal(part.estimates[~seen, 0], np.broadcast_to(scenario.predicted_targets[0], ((~seen).sum(), 2)))
+
+
+def test_a_sensor_that_states_its_information_is_refused_by_name() -> None:
+    class Vague(Sensor):
+        def information(self, poses, targets):
+            return 0.1 * super().information(poses, targets)
+
+    scenario = random_scenario(2, 2, alpha_s=0, alpha_c=0, seed=4, sensor=Vague())
+    with pytest.raises(InputError, match=r"sensor of robots\[1\] must not state its own information; got Vague"):
+        simulate_tracking(scenario, ratt(scenario.problem()).elements, [1], seed=0)
 
 
 @pytest.mark.parametrize(

@@ -15,12 +15,15 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite
 from ratt_opt.errors import InputError
-from ratt_opt.scenario.mrclam import LONGEST_GAP, pose_at
-from ratt_opt.scenario.mrclam_reader import MrclamData, read_mrclam
-from ratt_opt.scenario.record import Positive
+from ratt_opt.scenario.mrclam import LONGEST_GAP
+from ratt_opt.scenario.mrclam_labels import pose_at
+from ratt_opt.scenario.mrclam_reader import MrclamData, opened_mrclam
+from ratt_opt.scenario.record import Positive, Text
 from ratt_opt.scenario.sensor import Sensor, measure, wrap_angle
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike
 
 __all__ = ["FittedSensor", "Residuals", "fit_sensor", "mrclam_residuals"]
@@ -36,11 +39,13 @@ class FittedSensor(Sensor):
     """A sensor with what else the data said.
 
     ``outliers`` : share of measurements that are none of the Gaussian; ``gate`` : normalised squared error of range
-    and bearing together, above which a measurement is more likely an outlier.
+    and bearing together, above which a measurement is more likely an outlier. ``labels`` : which labelling of a
+    dataset's landmarks it was fitted with, and who decided that.
     """
 
     outliers: float = 0.0
     gate: Positive = 1e12
+    labels: Text = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +88,8 @@ def fit_sensor(
     bearing: ArrayLike | None = None,
     range_error: ArrayLike | None = None,
     bearing_error: ArrayLike | None = None,
+    *,
+    corrections: Mapping[int, int] | None = None,
 ) -> FittedSensor:
     """Estimate the noise law, its coefficients, the share of outliers and the gate.
 
@@ -92,14 +99,22 @@ def fit_sensor(
         are taken
     bearing : (L,) true bearings [rad]
     range_error, bearing_error : (L,) measured minus true [m], [rad]
+    corrections : of a folder's labels, see :func:`read_mrclam`; by default the sightings decide, and ``labels`` of the
+        result says what
 
     The reach is not estimated: what was never seen may have been out of reach or not there.
 
     Raises
     ------
-    InputError : fewer than 20 residuals, lengths that differ, or a number that is not finite.
+    InputError : fewer than 20 residuals, lengths that differ, a number that is not finite, or corrections without a
+        folder.
     FileFormatError : a file of the folder is missing or malformed.
     """
+    data = None
+    if isinstance(distance, (str, Path, MrclamData)):
+        data = distance = opened_mrclam(distance, corrections)
+    elif corrections is not None:
+        raise InputError("corrections", "must come with a dataset's folder", dict(corrections))
     given = _residuals(distance, bearing, range_error, bearing_error)
     fits = [_Fit.of(given, law) for law in ("std", "variance")]
     best = max(fits, key=lambda fit: fit.likelihood)
@@ -112,14 +127,13 @@ def fit_sensor(
         bearing_noise_slope=d,
         outliers=best.outliers,
         gate=best.gate(given),
+        labels="" if data is None else data.labels,
     )
 
 
 def _residuals(
-    first: ArrayLike | Residuals | MrclamData | str | Path, bearing: object, range_error: object, bearing_error: object
+    first: ArrayLike | Residuals | MrclamData, bearing: object, range_error: object, bearing_error: object
 ) -> Residuals:
-    if isinstance(first, (str, Path)):
-        first = read_mrclam(first)
     if isinstance(first, Residuals):
         found = first
     elif isinstance(first, MrclamData):

@@ -20,12 +20,14 @@ from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack, Problem
-from ratt_opt.scenario.mrclam import MRCLAM_SENSOR, from_mrclam, pose_at
-from ratt_opt.scenario.mrclam_reader import read_mrclam
+from ratt_opt.scenario.mrclam import MRCLAM_SENSOR, from_mrclam
+from ratt_opt.scenario.mrclam_labels import pose_at
+from ratt_opt.scenario.mrclam_reader import opened_mrclam
 from ratt_opt.scenario.record import LARGEST
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
@@ -53,14 +55,15 @@ class ReplayStep(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Replay(ByValue):
-    """A replayed mission; ``sensor`` as fitted."""
+    """A replayed mission; ``sensor`` as fitted; ``labels`` : which labelling of the landmarks, and who decided that."""
 
     sensor: FittedSensor
     steps: tuple[ReplayStep, ...]
+    labels: str = ""
 
     def __repr__(self) -> str:
         ends = f"RMSE {self.rmse[-1]:.3g} m at the end, NEES {self.nees[-1]:.3g} of 2"
-        return f"Replay({len(self.steps)} steps, {ends})"
+        return f"Replay({len(self.steps)} steps, {ends}; {self.labels})"
 
     @property
     def rmse(self) -> FloatArray:
@@ -109,7 +112,7 @@ class ReplaySettings:
 
 
 def replay_mrclam(
-    directory: str | Path,
+    directory: str | Path | MrclamData,
     *,
     steps: int,
     planner: str = "ratt",
@@ -117,6 +120,7 @@ def replay_mrclam(
     attacks: str | AttackModel = "renewed",
     sensor: FittedSensor | None = None,
     settings: ReplaySettings | None = None,
+    corrections: Mapping[int, int] | None = None,
 ) -> Replay:
     """Track the landmarks with the dataset's own measurements, under attack.
 
@@ -125,12 +129,14 @@ def replay_mrclam(
 
     Parameters
     ----------
-    directory : dataset folder, see :func:`read_mrclam`
+    directory : dataset folder, see :func:`read_mrclam`, or the dataset
     steps : T >= 1
     planner : of the cameras: ``"ratt"``, ``"maxmin"`` (exact), ``"greedy"``, ``"myopic"`` or ``"random"``
     attacker, attacks : as in :func:`run_mission`
     sensor : noise law and gate; by default fitted to all sightings of the dataset
     settings : when, how many cameras, which budgets
+    corrections : of a folder's labels, see :func:`read_mrclam`; by default the sightings decide, and ``labels`` of the
+        result says what
 
     Raises
     ------
@@ -143,9 +149,9 @@ def replay_mrclam(
     if sensor is not None and not isinstance(sensor, FittedSensor):
         raise InputError("sensor", "must be a FittedSensor, as fit_sensor returns", type(sensor).__name__)
     check_integer("steps", steps, low=1)
-    data = read_mrclam(directory)
+    data = opened_mrclam(directory, corrections)
     check_integer("cameras", s.cameras, low=0, high=len(data.poses))
-    flight = _Replay(data, directory, s, sensor)
+    flight = _Replay(data, s, sensor)
     if steps > float(min(poses[-1, 0] for poses in data.poses) - flight.begin) / s.period:
         raise InputError("steps", "must end before the poses do", steps)
     choose, attack, model = camera_planner(planner), attacker_called(attacker), attack_model(attacks)
@@ -154,22 +160,20 @@ def replay_mrclam(
         running = problem.check_plan(choose(problem, s.cameras, s.seed + step))
         flight.attacked(step, problem, running, (attack, model))
         flight.measure(step, running)
-    return Replay(sensor=flight.sensor, steps=tuple(flight.steps))
+    return Replay(sensor=flight.sensor, steps=tuple(flight.steps), labels=data.labels)
 
 
 class _Replay:
     """The state of a replay under way."""
 
-    def __init__(
-        self, data: MrclamData, directory: str | Path, settings: ReplaySettings, sensor: FittedSensor | None
-    ) -> None:
+    def __init__(self, data: MrclamData, settings: ReplaySettings, sensor: FittedSensor | None) -> None:
         self.data, self.settings = data, settings
         self.begin = max(poses[0, 0] for poses in data.poses) + settings.start
         fitted = fit_sensor(data) if sensor is None else sensor
         reach = {"max_range": MRCLAM_SENSOR.max_range, "field_of_view": MRCLAM_SENSOR.field_of_view}
         self.sensor: FittedSensor = fitted.replace(**reach)
         scenario = from_mrclam(
-            directory,
+            data,
             settings.start,
             alpha_s=settings.alpha_s,
             alpha_c=settings.alpha_c,
