@@ -25,6 +25,7 @@ from ratt_opt.missions.models.targets import TargetMotion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
+from ratt_opt.setfunctions.information import WIDEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -78,6 +79,18 @@ class MissionModel:
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
         if self.beam is not None:
             check_integer("beam", self.beam, low=1)
+
+
+def _beside(prior: FloatArray, information: FloatArray) -> FloatArray:
+    """The information (E, M, d, d), scaled down if a prior (M, d, d) would lose its digits beside it.
+
+    Where nothing is known of a target yet, a sighting that is worth 1e14 times as much leaves it as well known as one
+    that is worth more: the value changes in its last digits.
+    """
+    sizes = np.trace(information, axis1=-2, axis2=-1) * np.trace(prior, axis1=-2, axis2=-1)  # at least the largest axes
+    if sizes.max() <= WIDEST / 2:
+        return information
+    return np.asarray(information * np.minimum(1.0, WIDEST / 2 / np.maximum(sizes, 1.0))[..., None, None])
 
 
 def _is_rectangle(area: object) -> bool:
@@ -158,6 +171,7 @@ class World:
         for h in range(self.horizon):
             information[:, :, 2 * h : 2 * h + 2, 2 * h : 2 * h + 2] = blocks[:, :, h]
         prior = joint_position_covariance(predicted, self.motion, self.period)
+        information = _beside(prior, information)
         weights = np.array([target.weight for target in self.scenario.targets])
         output = output_matrix(self.model.output, self.horizon)
         if output is None:

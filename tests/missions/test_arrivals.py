@@ -331,5 +331,6 @@ def test_a_wide_covariance_beside_a_near_robot_is_planned(scale: float, order: s
     state = tracker.state.to_dict()
     state["moments"][-1] |= {"mean": [[wide.x, wide.y]], "covariance": [np.diag([scale, scale]).tolist()]}
     heir = Tracker(tracker.scenario, model=MissionModel(linearisation=order), state=TrackerState.from_dict(state))
-    heir.step([Measurement(0, 0, (3.0, 0.0))], now=1.0)
+    heir.step(now=1.0)  # a plan while nothing is known
+    heir.step([Measurement(0, 0, (3.0, 0.0))], now=2.0)
     assert np.linalg.norm(heir.beliefs.mean[0] - [3.0, 0.0]) < 1e-6
