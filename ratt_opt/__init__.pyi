@@ -22,6 +22,7 @@ from .scenario.files import (
     save_scenario as save_scenario,
     scenario_schema as scenario_schema,
 )
+from .scenario.limited_view import limited_view_scenario as limited_view_scenario
 from .scenario.networks import network_scenario as network_scenario
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.mrclam import from_mrclam as from_mrclam

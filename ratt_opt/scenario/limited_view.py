@@ -1,0 +1,146 @@
+"""Random teams of cameras or radars that turn: each robot must choose what to look at."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+from ratt_opt.scenario.model import Robot, Scenario, Target
+from ratt_opt.scenario.problem_record import MOST_ENTRIES, MOST_ROBOTS
+from ratt_opt.scenario.sensor import Sensor
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["DRIVING_SPEEDS", "SENSORS", "limited_view_scenario"]
+
+SENSORS = {
+    "camera": Sensor(law="std", range_noise=0.3, range_noise_slope=0.02, bearing_noise=0.01, bearing_noise_slope=0.0),
+    "radar": Sensor(law="std", range_noise=0.2, range_noise_slope=0.0, bearing_noise=0.03, bearing_noise_slope=0.0),
+}
+"""A stereo camera (0.6 degrees; depth to 2 % and 0.3 m) and a small radar (0.2 m; 1.7 degrees)."""
+
+DRIVING_SPEEDS = (0.0, 2.0)
+"""[m/s]: a robot stands or drives, and turns to one of its headings."""
+
+TARGET_SPEED = 0.5
+"""Targets move at up to this speed [m/s]: much slower than robots drive, so that views matter more than ways."""
+
+SIDE, CROWD = 60.0, 10
+"""Side of the square [m] of up to this many robots; more robots have as much area each."""
+
+
+def limited_view_scenario(
+    n_robots: int,
+    n_targets: int,
+    *,
+    alpha_s: int,
+    alpha_c: int,
+    seed: int,
+    view: float = 60,
+    reach: float | None = None,
+    headings: int = 8,
+    communication_range: float | None = None,
+    sensor: str | Sensor = "camera",
+    prior_std: float = 3.0,
+    process_std: float = 0.5,
+) -> Scenario:
+    """Draw a team whose robots see only a part of what is around them, so that each must choose what to look at.
+
+    A control is a speed, 0 or 2 m/s, and one of ``headings`` equal turns of the full circle; the robot drives along
+    its old heading and looks along the new one. Robots and slow targets stand uniformly in a square: 60 m for up to 10
+    robots, then growing so that each robot has as much area. They come from two child streams of
+    ``SeedSequence(seed)``, one number after the other.
+
+    Parameters
+    ----------
+    n_robots, n_targets : N, M >= 1
+    alpha_s, alpha_c : robots that may be blinded, links that may be cut
+    seed : integer >= 0
+    view : full angle that a sensor sees about its robot's heading [degrees], in (0, 360]
+    reach : distance up to which a sensor sees [m]; no limit where ``None``
+    headings : directions in which a robot can look after a step
+    communication_range : robots within this distance are linked [m]; all are where ``None``
+    sensor : ``"camera"`` (precise bearing), ``"radar"`` (precise range), or a :class:`Sensor` whose noise is taken
+    prior_std, process_std : standard deviation per axis of each target's estimate and motion noise [m]
+
+    Raises
+    ------
+    InputError : a number is out of range, or no robot can see any target.
+    """
+    n_robots = check_integer("n_robots", n_robots, low=1, high=MOST_ROBOTS)
+    n_targets = check_integer("n_targets", n_targets, low=1)
+    headings = check_integer("headings", headings, low=1)
+    if 4 * n_robots * len(DRIVING_SPEEDS) * headings * n_targets > MOST_ENTRIES:
+        rule = f"must have at most {MOST_ENTRIES} entries in all information matrices with {n_robots} robots"
+        raise InputError("n_targets", rule, n_targets)
+    limited = _limited(sensor, _checked_view(view), reach)
+    robots_seed, targets_seed = np.random.SeedSequence(check_integer("seed", seed, low=0)).spawn(2)
+    robots, targets = np.random.default_rng(robots_seed), np.random.default_rng(targets_seed)
+    side = SIDE * math.sqrt(max(1.0, n_robots / CROWD))
+    controls = tuple((speed, turn) for speed in DRIVING_SPEEDS for turn in _turns(headings))
+    scenario = Scenario(
+        robots=tuple(_robot(robots, side, controls) for _ in range(n_robots)),
+        targets=tuple(_target(targets, side, prior_std, process_std) for _ in range(n_targets)),
+        sensor=limited,
+        alpha_s=alpha_s,
+        alpha_c=alpha_c,
+        communication_range=communication_range,
+    )
+    if not scenario.information.any():
+        raise InputError("view and reach", "must let a robot see a target", f"{view} degrees, {_told(reach)}")
+    return scenario
+
+
+def _checked_view(view: float) -> float:
+    """The view in radians."""
+    if not (_is_number(view) and 0 < view <= 360):
+        raise InputError("view", "must be in (0, 360] degrees", view)
+    return min(math.radians(view), 2 * math.pi)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+def _limited(sensor: str | Sensor, view: float, reach: float | None) -> Sensor:
+    if isinstance(sensor, str) and sensor not in SENSORS:
+        raise InputError("sensor", f"must be {', '.join(SENSORS)} or a Sensor", sensor)
+    noise = SENSORS[sensor] if isinstance(sensor, str) else sensor
+    if reach is not None and not (_is_number(reach) and reach > 0):
+        raise InputError("reach", "must be > 0 m, or None", reach)
+    return noise.replace(field_of_view=view, max_range=None if reach is None else float(reach))
+
+
+def _turns(headings: int) -> list[float]:
+    """Turn rates [rad/s] that end in ``headings`` equally spaced directions after a period of 1 s: none, then left and
+    right, ever further."""
+    steps = [0, *(sign * k for k in range(1, headings // 2 + 1) for sign in (1, -1))][:headings]
+    return [2 * math.pi * k / headings for k in steps]
+
+
+def _robot(rng: np.random.Generator, side: float, controls: Sequence[tuple[float, float]]) -> Robot:
+    x, y, heading = side * float(rng.random()), side * float(rng.random()), 2 * math.pi * float(rng.random())
+    return Robot(x=x, y=y, heading=heading, controls=tuple(controls))
+
+
+def _target(rng: np.random.Generator, side: float, prior_std: float, process_std: float) -> Target:
+    if not prior_std > 0:
+        raise InputError("prior_std", "must be positive", prior_std)
+    variance = float(prior_std) ** 2
+    return Target(
+        x=side * float(rng.random()),
+        y=side * float(rng.random()),
+        covariance=((variance, 0.0), (0.0, variance)),
+        speed=TARGET_SPEED * float(rng.random()),
+        heading=2 * math.pi * float(rng.random()),
+        process_std=process_std,
+    )
+
+
+def _told(reach: float | None) -> str:
+    return "no limit" if reach is None else f"{reach} m"
