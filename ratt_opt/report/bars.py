@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, up
-from ratt_opt.report.labels import halo
 from ratt_opt.report.palette import INK, look_of
 from ratt_opt.report.tables import share_text
 
@@ -52,7 +51,8 @@ def draw_bars(axes: Axes, report: BoundReport) -> None:
         kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper, digits=6)
         text = f"{kept}, {share_text(plan.worst_case.lower, report.upper)}"
         at, weight = high + 0.02 * ROOM * longest, "bold" if chosen else "normal"
-        axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight, path_effects=halo())
+        room = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}  # no line runs through the words
+        axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight, bbox=room)
     axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
     axes.set_title(f"no plan can keep more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
     axes.set_yticks(range(len(plans)), [plan.name for plan in plans])

@@ -14,7 +14,15 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Problem
 
-__all__ = ["Description", "describe"]
+__all__ = ["Description", "View", "describe"]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A sensor's field of view: full ``angle`` about the heading [rad] and ``reach`` [m]; ``None`` for no limit."""
+
+    angle: float | None
+    reach: float | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +32,7 @@ class Description:
     ``robot_names`` : (N,); ``target_names`` : (M,); ``weights`` : (M,) importance of the targets.
     ``labels`` : (E,) what each element is ("3 m/s, 1 rad/s"); ``controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
     ``poses`` : (N, 2 or 3) x, y [m] (and heading [rad]) now; ``poses_after`` : (E, 2 or 3) after each element.
-    ``targets`` : (M, 2) predicted positions [m].
+    ``targets`` : (M, 2) predicted positions [m]; ``views`` : (N,) what each robot's sensor can see at most.
     """
 
     robot_names: tuple[str, ...]
@@ -35,6 +43,7 @@ class Description:
     poses: FloatArray | None = None
     poses_after: FloatArray | None = None
     targets: FloatArray | None = None
+    views: tuple[View, ...] | None = None
 
     def robot(self, i: int) -> str:
         """Robot ``i`` for people: its number, and its name where it has one."""
@@ -62,6 +71,7 @@ def describe(problem: Problem, source: object = None) -> Description:
             poses=source.poses,
             poses_after=source.predicted_poses,
             targets=source.predicted_targets,
+            views=_views(source),
         )
     n_targets = getattr(problem.objective, "n_targets", None)
     unnamed = (("",) * problem.n_robots, None if n_targets is None else ("",) * n_targets)
@@ -76,6 +86,11 @@ def describe(problem: Problem, source: object = None) -> Description:
         poses_after=_array(source.element_positions),
         targets=_array(source.target_positions),
     )
+
+
+def _views(scenario: Scenario) -> tuple[View, ...]:
+    sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
+    return tuple(View(sensor.field_of_view, sensor.max_range) for sensor in sensors)
 
 
 def _array(places: tuple[tuple[float, float], ...] | None) -> FloatArray | None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.report.fields import draw_fields, draw_watching
 from ratt_opt.report.labels import Label, place_labels
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 
@@ -29,6 +30,8 @@ SPARSE, MOST_DRAWN = 4, 60
 def draw_map(axes: Axes, picture: Picture) -> None:
     """Draw the picture into ``axes`` with its own legend below."""
     _draw_links(axes, picture)
+    draw_fields(axes, picture, _drawn_robots(picture))
+    draw_watching(axes, picture, _drawn_robots(picture))
     if picture.targets is not None:
         _draw_targets(axes, picture)
     _draw_robots(axes, picture)
@@ -105,8 +108,13 @@ def _draw_targets(axes: Axes, picture: Picture) -> None:
         axes.plot([], [], color=TARGET, linestyle=":", label="95 % before measuring")
         axes.scatter([], [], marker="o", s=90, color=TARGET, alpha=0.3, label="95 % after, best group")
     label = "target (predicted), T: its number" + (", ×: its weight" if picture.is_weighted else "")
-    x, y = picture.targets.T
+    seen = [j for j in range(len(picture.targets)) if j not in picture.unseen]
+    x, y = picture.targets[seen].T
     axes.scatter(x, y, marker="*", s=70, color=TARGET, zorder=4, label=label)
+    if picture.unseen:
+        x, y = picture.targets[sorted(picture.unseen)].T
+        hollow: dict[str, Any] = {"facecolors": "white", "edgecolors": TARGET}
+        axes.scatter(x, y, marker="*", s=70, zorder=4, label="target left unseen", **hollow)
 
 
 def _draw_robots(axes: Axes, picture: Picture) -> None:
@@ -150,7 +158,8 @@ def _number(axes: Axes, picture: Picture, i: int) -> None:
     hit = i in picture.attack.sensing
     colour = BLINDED if hit else "white" if i in picture.best else INK
     style: dict[str, Any] = {"fontsize": 7, "weight": "bold", "zorder": 8, "color": colour}
-    shift = (-11, 5) if hit else (0, 0)
+    from_left = picture.before is not None and picture.before[i, 0] < picture.places[i, 0]
+    shift = (11 if from_left else -11, 5) if hit else (0, 0)
     axes.annotate(str(i), picture.places[i], shift, textcoords="offset points", ha="center", va="center", **style)
 
 
@@ -177,8 +186,12 @@ def _draw_moves(axes: Axes, picture: Picture, robots: list[int]) -> None:
 
 
 def _draw_headings(axes: Axes, picture: Picture, robots: list[int]) -> None:
-    """A short arrow from each robot along its heading, of the same length on paper for any map."""
-    if picture.headings is None:
+    """A short arrow from each robot along its heading, of the same length on paper for any map.
+
+    A field of view says the same.
+    """
+    robots = [i for i in robots if picture.views is None or picture.views[i].angle is None]
+    if picture.headings is None or not robots:
         return
     heading = picture.headings[robots]
     length: dict[str, Any] = {"units": "inches", "scale_units": "inches", "scale": 1 / 0.2, "width": 0.014}

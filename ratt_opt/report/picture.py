@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.report.description import describe
+from ratt_opt.report.description import View, describe
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
+    from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.main_job.result import BoundReport, PlanAssessment
-    from ratt_opt.problem import Attack
+    from ratt_opt.problem import Attack, Problem
     from ratt_opt.report.description import Description
 
 __all__ = ["Picture", "picture_of"]
@@ -26,6 +26,8 @@ class Picture:
     ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty where none.
     ``targets`` : (M, 2) predicted means; ``target_names`` and ``weights`` : (M,); ``prior``, ``posterior`` :
     (M, 2, 2) covariances, the latter with the best surviving group's measurements.
+    ``views`` : (N,) fields of view after the controls, where a sensor is limited; ``watched`` : (N, M) whether a robot
+    measures a target, where not every robot measures all.
     ``groups`` : connected groups left by the attack; ``best`` : the one that performs best.
     """
 
@@ -39,6 +41,8 @@ class Picture:
     weights: FloatArray | None
     prior: FloatArray | None
     posterior: FloatArray | None
+    views: tuple[View, ...] | None
+    watched: BoolArray | None
     links: frozenset[tuple[int, int]]
     protected_robots: frozenset[int]
     protected_links: frozenset[tuple[int, int]]
@@ -56,6 +60,18 @@ class Picture:
         name = self.target_names[j] if self.target_names else ""
         weight = f" ×{self.weights[j]:g}" if self.weights is not None and self.is_weighted else ""
         return f"T{j} {name}".rstrip() + weight
+
+    @property
+    def seeing(self) -> frozenset[int]:
+        """Robots of the best group that the attack leaves their sight."""
+        return self.best - self.attack.sensing
+
+    @property
+    def unseen(self) -> frozenset[int]:
+        """Targets that no robot of the best group measures; none where all robots measure all."""
+        if self.watched is None:
+            return frozenset()
+        return frozenset(np.flatnonzero(~self.watched[sorted(self.seeing)].any(axis=0)).tolist())
 
 
 def picture_of(source: object, report: BoundReport, view: PlanAssessment | None = None) -> Picture:
@@ -76,6 +92,8 @@ def picture_of(source: object, report: BoundReport, view: PlanAssessment | None 
         weights=known.weights,
         prior=problem.information_objective.prior if flat else None,
         posterior=plan.posterior if flat else None,
+        views=_views(known) if after is not None and after.shape[1] == 3 else None,
+        watched=_watched(problem, plan) if after is not None and known.targets is not None else None,
         links=problem.communication.links,
         protected_robots=problem.protected_robots,
         protected_links=problem.protected_links,
@@ -83,6 +101,16 @@ def picture_of(source: object, report: BoundReport, view: PlanAssessment | None 
         groups=plan.groups,
         best=next((group for group in plan.groups if plan.best_group and plan.best_group <= group), plan.groups[0]),
     )
+
+
+def _views(known: Description) -> tuple[View, ...] | None:
+    limited = known.views is not None and any(view != View(None, None) for view in known.views)
+    return known.views if limited else None
+
+
+def _watched(problem: Problem, plan: PlanAssessment) -> BoolArray | None:
+    told = np.asarray(problem.information_objective.information[plan.elements].any(axis=(2, 3)))
+    return None if told.all() else told
 
 
 def _places(report: BoundReport, plan: PlanAssessment, known: Description) -> FloatArray:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.report.description import describe
+from ratt_opt.report.fields import FIELD_WORDS, LOST_WORDS, WATCH_WORDS, field_of, watched_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -29,7 +30,13 @@ def map_svg(picture: Picture, report: BoundReport, view: PlanAssessment) -> str:
     """Return one drawing; lengths are in proportion, north is up."""
     place = _frame(picture)
     at = [place(x) for x in picture.places]
-    parts = [*_links(picture, at), *_targets(picture, place), *_robots(picture, at, report, view)]
+    parts = [
+        *_fields(picture, at, place),
+        *_links(picture, at),
+        *_watching(picture, at, place),
+        *_targets(picture, place),
+        *_robots(picture, at, report, view),
+    ]
     label = escape(f"Map of {len(at)} robots under attack; tab through robots and targets for their details")
     return (
         f'<svg class="map" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="group" aria-label="{label}">{"".join(parts)}</svg>'
@@ -43,11 +50,15 @@ def legend_html(pictures: Sequence[Picture]) -> str:
         ("<rect x='3' y='3' width='14' height='14' class='lost'/>", "robot of another group", _has_lost),
         ("<path d='M3 3L17 17M17 3L3 17' class='cross'/>", "blinded robot", lambda p: p.attack.sensing),
         ("<circle cx='10' cy='10' r='8' class='guard'/>", "protected robot", lambda p: p.protected_robots),
-        ("<path d='M0 10H20' class='heading'/>", "heading", lambda p: p.headings is not None),
+        ("<path d='M0 10H20' class='heading'/>", "heading", _has_arrows),
+        ("<path d='M1 10L19 2A20 20 0 0 1 19 18Z' class='field seeing'/>", FIELD_WORDS, lambda p: p.views),
+        ("<path d='M0 10H20' class='watch'/>", WATCH_WORDS, lambda p: watched_pairs(p, p.seeing)),
+        ("<path d='M0 10H20' class='watch vain'/>", LOST_WORDS, lambda p: watched_pairs(p, _in_vain(p))),
         ("<path d='M0 10H20' class='link'/>", "link", lambda p: p.links),
         ("<path d='M0 10H20' class='link guarded'/>", "protected link", lambda p: p.protected_links),
         ("<path d='M0 10H20' class='cut'/>", "cut link", lambda p: p.attack.links),
         ("<path d='M10 2L18 17H2Z' class='target'/>", _target_words(pictures), lambda p: p.targets is not None),
+        ("<path d='M10 2L18 17H2Z' class='target unseen'/>", "target left unseen", lambda p: p.unseen),
     )
     items = (
         f"<li><svg width='20' height='20' aria-hidden='true'>{mark}</svg> {text}</li>"
@@ -55,6 +66,15 @@ def legend_html(pictures: Sequence[Picture]) -> str:
         if any(map(is_on, pictures))
     )
     return f'<ul class="legend">{"".join(items)}</ul>'
+
+
+def _in_vain(picture: Picture) -> frozenset[int]:
+    return frozenset(range(len(picture.places))) - picture.seeing
+
+
+def _has_arrows(picture: Picture) -> bool:
+    """Some heading is drawn as an arrow, not as a field of view."""
+    return picture.headings is not None and (picture.views is None or any(view.angle is None for view in picture.views))
 
 
 def _has_lost(picture: Picture) -> bool:
@@ -85,8 +105,39 @@ class _Frame:
 
 
 def _frame(picture: Picture) -> _Frame:
-    points = picture.places if picture.targets is None else np.vstack([picture.places, picture.targets])
-    return _Frame(points)
+    """Around all places, and around the ellipses of targets."""
+    points = [picture.places]
+    if picture.targets is not None:
+        prior = picture.prior if picture.prior is not None else np.zeros((len(picture.targets), 2, 2))
+        half = SIGMAS * np.sqrt(np.diagonal(prior, axis1=1, axis2=2))
+        points += [picture.targets - half, picture.targets + half]
+    return _Frame(np.vstack(points))
+
+
+def _fields(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> Iterator[str]:
+    """A sector for each robot of limited view."""
+    for i, (x, y) in enumerate(at if picture.views is not None else ()):
+        heading, angle, reach = field_of(picture, i)
+        kind = "blinded" if i in picture.attack.sensing else "seeing" if i in picture.best else "lost"
+        r = reach * place.scale
+        if angle >= 2 * np.pi:
+            yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r:.1f}" class="field {kind}"/>'
+            continue
+        ends = [heading - angle / 2, heading + angle / 2]
+        (u, v), (s, t) = ((x + r * float(np.cos(a)), y - r * float(np.sin(a))) for a in ends)
+        large = int(angle > np.pi)
+        arc = f"A{r:.1f} {r:.1f} 0 {large} 0 {s:.1f} {t:.1f}"
+        yield f'<path d="M{x:.1f} {y:.1f}L{u:.1f} {v:.1f}{arc}Z" class="field {kind}"/>'
+
+
+def _watching(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> Iterator[str]:
+    """A thin line from each robot to each target that it measures."""
+    if picture.targets is None:
+        return
+    for kind, robots in (("watch", picture.seeing), ("watch vain", _in_vain(picture))):
+        for i, j in watched_pairs(picture, robots):
+            (x, y), (u, v) = at[i], place(picture.targets[j])
+            yield f'<line x1="{x:.1f}" y1="{y:.1f}" x2="{u:.1f}" y2="{v:.1f}" class="{kind}"/>'
 
 
 def _links(picture: Picture, at: list[tuple[float, float]]) -> Iterator[str]:
@@ -112,7 +163,9 @@ def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
                 yield _ellipse(x, y, covariance, place.scale, kind)
             deviation = np.sqrt(np.trace(picture.posterior[j]))
             text += f", root of the trace left after measuring {deviation:.3g} m"
-        mark = f'<path d="M{x:.1f} {y - 8:.1f}l8 14h-16Z" class="target"/>'
+        text += ", left unseen" if j in picture.unseen else ""
+        kind = "target unseen" if j in picture.unseen else "target"
+        mark = f'<path d="M{x:.1f} {y - 8:.1f}l8 14h-16Z" class="{kind}"/>'
         yield f'<g tabindex="0" role="img" aria-label="{escape(text)}"><title>{escape(text)}</title>{mark}</g>'
         yield f'<text x="{x + 9:.1f}" y="{y + 12:.1f}" class="small">{escape(picture.target_label(j))}</text>'
 
@@ -131,9 +184,11 @@ def _robots(
     known = describe(report.problem, report.source)
     for i, (x, y) in enumerate(at):
         hit, best = i in picture.attack.sensing, i in picture.best
+        watches = ", ".join(f"T{j}" for _, j in watched_pairs(picture, [i]))
         role = "blinded" if hit else "sees, in the best group" if best else "cut off from the best group"
         guarded = ", protected" if i in picture.protected_robots else ""
         text = f"robot {known.robot(i)}: {known.label(int(view.elements[i]))}; {role}{guarded}"
+        text += f"; measures {watches or 'no target'}" if picture.watched is not None else ""
         if hit:
             mark = f'<path d="M{x - 9:.1f} {y - 9:.1f}l18 18m0 -18l-18 18" class="cross"/>'
         elif best:
@@ -141,7 +196,7 @@ def _robots(
         else:
             mark = f'<rect x="{x - 9:.1f}" y="{y - 9:.1f}" width="18" height="18" class="lost"/>'
         mark += f'<circle cx="{x:.1f}" cy="{y:.1f}" r="14" class="guard"/>' if guarded else ""
-        if picture.headings is not None:
+        if picture.headings is not None and (picture.views is None or picture.views[i].angle is None):
             u, v = np.cos(picture.headings[i]), -np.sin(picture.headings[i])
             mark += f'<path d="M{x + 10 * u:.1f} {y + 10 * v:.1f}l{12 * u:.1f} {12 * v:.1f}" class="heading"/>'
         yield f'<g tabindex="0" role="img" aria-label="{escape(text)}"><title>{escape(text)}</title>{mark}</g>'
