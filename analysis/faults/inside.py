@@ -63,7 +63,8 @@ def _flags(campaign: Campaign, rng: np.random.Generator, place: Path) -> str:
         ["attack", file, "--plan", plan, "--rank", "1", "--seed", "1", "--below", "1", "--time-limit", "1"],
         ["verify", file, "--problem", file, "--objective", "trace", "--time-limit", "1"],
         ["new", "--robots", "2", "--targets", "1", "--seed", "1", "--sensing-attacks", "0", "--link-attacks", "0",
-         "--range", "10", "--out", str(rng.choice([str(kept), str(place), "/dev/null", str(place / "n.json")]))],
+         "--communication-range", "10", "--out",
+         str(rng.choice([str(kept), str(place), "/dev/null", str(place / "n.json")]))],
         ["schema", "scenario"],
     ]  # fmt: skip
     words = commands[int(rng.integers(len(commands)))]

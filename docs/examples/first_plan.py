@@ -2,13 +2,13 @@
 A plan, its worst attack, and the proof
 =======================================
 
-The paper's small scenario in six lines: what to do now, the worst that can follow, and how far any plan could be from
-that.
+Six cameras that turn, in six lines: what each should look at, the worst that can follow, and how far any plan could be
+from that.
 """
 
 import ratt_opt as ro
 
-scenario = ro.random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=14)
+scenario = ro.limited_view_scenario(6, 6, alpha_s=2, alpha_c=4, seed=0, view=60, reach=40, communication_range=45)
 report = ro.bound(scenario)
 figure = report.plot()
 

@@ -19,22 +19,33 @@ if TYPE_CHECKING:
 
 __all__ = ["bound", "demo"]
 
-DEMO_SEED = 14
-"""A scenario on which the planners differ; on many others RATT and greedy find the same plan."""
+PAPER_SEED = 14
+"""A scenario of the paper's kind on which the planners differ; on many others RATT and greedy find the same plan."""
 PROOF, EARLIER_PROOF = "certificate.json", "certificate.earlier.json"
 """The certificate of a folder's report, and that of an earlier report when a later one has none."""
 NOT_DRAWN = "without plan.png and plan.svg, which the same command draws once it ends; report.html has the map"
 """After an interrupt: drawing takes a second or two, most of them to load what draws."""
 
 
-def demo(out: OutFolder = Path("demo"), certificate: CertificateFlag = True, as_json: JsonFlag = False) -> None:
-    """Plan, attack and bound the paper's small scenario (4 robots, 4 targets), end to end."""
+def demo(
+    out: OutFolder = Path("demo"),
+    paper: Annotated[
+        bool, typer.Option("--paper", help="The paper's small scenario instead: 4 robots that see all 4 targets.")
+    ] = False,
+    certificate: CertificateFlag = True,
+    as_json: JsonFlag = False,
+) -> None:
+    """Plan, attack and bound a team of six turning cameras and six targets, end to end.
+
+    Its seed is the first from 0 on whose network is connected and whose targets can all be seen.
+    """
     from ratt_opt._files import output_directory
     from ratt_opt.report.write import FILES
     from ratt_opt.scenario.files import save_scenario
     from ratt_opt.scenario.generator import random_scenario
+    from ratt_opt.scenario.limited_view import demo_scenario
 
-    scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=DEMO_SEED)
+    scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=PAPER_SEED) if paper else demo_scenario()
     save_scenario(scenario, output_directory(out, PROOF, EARLIER_PROOF, *FILES) / "scenario.json")
     _bound(scenario, out, certificate=certificate, as_json=as_json)
 

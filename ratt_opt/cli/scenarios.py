@@ -2,7 +2,7 @@
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -31,8 +31,21 @@ def new(
     robots: Annotated[int | None, typer.Option("--robots", help="Number of robots of a random scenario.")] = None,
     targets: Annotated[int | None, typer.Option("--targets", help="Number of targets of a random scenario.")] = None,
     seed: Annotated[int | None, typer.Option("--seed", help="Seed of a random scenario.")] = None,
+    view: Annotated[
+        float | None,
+        typer.Option("--view", help="Cameras that turn, with this field of view [degrees]; else all see everything."),
+    ] = None,
+    reach: Annotated[
+        float | None, typer.Option("--range", help="With --view: how far a camera sees [m]; no limit where absent.")
+    ] = None,
+    headings: Annotated[
+        int | None,
+        typer.Option("--headings", help="With --view: directions that a camera can turn to; 8 where absent."),
+    ] = None,
+    sensor: Annotated[str | None, typer.Option("--sensor", help="With --view: camera (the default) or radar.")] = None,
     communication_range: Annotated[
-        float | None, typer.Option("--range", help="Link robots within this distance [m]; all where absent.")
+        float | None,
+        typer.Option("--communication-range", help="Link robots within this distance [m]; all where absent."),
     ] = None,
     graph: Annotated[
         str | None,
@@ -51,24 +64,30 @@ def new(
     ] = None,
     as_json: JsonFlag = False,
 ) -> None:
-    """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time)."""
+    """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time).
+
+    With --view the robots see only a part of what is around them, and a plan says what each looks at.
+    """
     from ratt_opt._files import output_file
     from ratt_opt.scenario.files import save_scenario
 
     output_file(out)
     budgets = (sensing_attacks, link_attacks)
     drawn = {"robots": robots, "targets": targets, "seed": seed}
-    if mrclam is None:
-        _refuse({"time": time, "corrections": corrections}, wants="--mrclam")
-        if graph is not None:
-            _refuse({"range": communication_range}, wants="no --graph")
-        scenario = _random(drawn, budgets, graph)
-    else:
-        _refuse({**drawn, "graph": graph}, wants="no --mrclam")
+    limits = {"range": reach, "headings": headings, "sensor": sensor}
+    if mrclam is not None:
+        _refuse({**drawn, "graph": graph, "view": view, **limits}, wants="no --mrclam")
         if not label_correction:
             _refuse({"corrections": corrections}, wants="no --no-label-correction")
         given = _corrections(corrections) if label_correction else {}
         scenario = _from_mrclam(mrclam, time, budgets, given)
+    else:
+        _refuse({"time": time, "corrections": corrections}, wants="--mrclam")
+        if graph is not None:
+            _refuse({"range": reach, "view": view, "communication-range": communication_range}, wants="no --graph")
+        if view is None:
+            _refuse(limits, wants="--view")
+        scenario = _random(drawn, budgets, graph) if view is None else _limited(drawn, budgets, view, limits)
     if communication_range is not None:
         scenario = scenario.replace(communication_range=communication_range)
     save_scenario(scenario, out)
@@ -93,12 +112,29 @@ def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int], graph: 
     from ratt_opt.scenario.generator import random_scenario
     from ratt_opt.scenario.networks import network_scenario
 
+    robots, targets, seed = _given(drawn)
+    draw = random_scenario if graph is None else partial(network_scenario, graph)
+    return draw(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
+
+
+def _limited(
+    drawn: "Mapping[str, int | None]", budgets: tuple[int, int], view: float, limits: "Mapping[str, Any]"
+) -> "Scenario":
+    from ratt_opt.scenario.limited_view import limited_view_scenario
+
+    robots, targets, seed = _given(drawn)
+    names = {"range": "reach"}
+    given = {names.get(name, name): value for name, value in limits.items() if value is not None}
+    alpha_s, alpha_c = budgets
+    return limited_view_scenario(robots, targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed, view=view, **given)
+
+
+def _given(drawn: "Mapping[str, int | None]") -> list[int]:
+    """Robots, targets and seed, all of which a random scenario needs."""
     for name, value in drawn.items():
         if value is None:
             raise InputError(f"--{name}", "must be given for a random scenario (or give --mrclam)", "nothing")
-    robots, targets, seed = (int(value) for value in drawn.values() if value is not None)
-    draw = random_scenario if graph is None else partial(network_scenario, graph)
-    return draw(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
+    return [int(value) for value in drawn.values() if value is not None]
 
 
 def _from_mrclam(

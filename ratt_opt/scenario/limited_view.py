@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from itertools import count
 from typing import TYPE_CHECKING
 
+import networkx as nx
 import numpy as np
 
 from ratt_opt._validation import check_integer
@@ -16,7 +18,7 @@ from ratt_opt.scenario.sensor import Sensor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["DRIVING_SPEEDS", "SENSORS", "limited_view_scenario"]
+__all__ = ["DRIVING_SPEEDS", "SENSORS", "demo_scenario", "limited_view_scenario"]
 
 SENSORS = {
     "camera": Sensor(law="std", range_noise=0.3, range_noise_slope=0.02, bearing_noise=0.01, bearing_noise_slope=0.0),
@@ -94,6 +96,23 @@ def limited_view_scenario(
     if not scenario.information.any():
         raise InputError("view and reach", "must let a robot see a target", f"{view} degrees, {_told(reach)}")
     return scenario
+
+
+def demo_scenario() -> Scenario:
+    """Six cameras that turn, six targets; two robots may be blinded and four links cut.
+
+    The seed is the first from 0 on whose network is connected and whose targets can all be seen by some robot.
+    """
+    return next(scenario for seed in count() if _is_whole(scenario := _demo(seed)))
+
+
+def _demo(seed: int) -> Scenario:
+    return limited_view_scenario(6, 6, alpha_s=2, alpha_c=4, seed=seed, view=60, reach=40, communication_range=45)
+
+
+def _is_whole(scenario: Scenario) -> bool:
+    connected = scenario.graph is None or nx.is_connected(scenario.graph)
+    return connected and bool(scenario.information.any(axis=(0, 2, 3)).all())
 
 
 def _checked_view(view: float) -> float:

@@ -179,7 +179,7 @@ class Scenario(ProblemRecord):
     @cached_property
     def element_labels(self) -> tuple[str, ...]:
         """(E,) what each element is, for people."""
-        return tuple(f"{speed:g} m/s, {turn:g} rad/s" for speed, turn in self.controls)
+        return tuple(f"{speed:g} m/s, {turn:.4g} rad/s" for speed, turn in self.controls)
 
     @property
     def storable(self) -> Scenario | InformationInput:

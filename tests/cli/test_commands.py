@@ -10,8 +10,10 @@ import pytest
 
 from ratt_opt import (
     InformationInput,
+    Scenario,
     breaking_budgets,
     criticality_ranking,
+    limited_view_scenario,
     links_to_add,
     links_to_protect,
     load_scenario,
@@ -47,7 +49,9 @@ def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFi
     assert sorted(os.listdir(tmp_path / "demo")) == written
     report = _strict((tmp_path / "demo" / "report.json").read_text())
     assert report.keys() >= REPORT_FIELDS
-    assert (report["n_robots"], report["n_targets"], report["alpha_s"], report["alpha_c"]) == (4, 4, 1, 3)
+    assert (report["n_robots"], report["n_targets"], report["alpha_s"], report["alpha_c"]) == (6, 6, 2, 4)
+    assert report["certificate"]["verified"]
+    assert report["optimum"]["upper"] - report["optimum"]["lower"] <= 1e-9 * report["optimum"]["upper"]
     assert report["optimum"]["lower"] <= report["optimum"]["upper"]
     assert report["ratt"]["worst_case"]["lower"] / report["optimum"]["upper"] == report["certified_ratio"] <= 1
     assert report["total_curvature"]["domain"] == "feasible"
@@ -56,6 +60,38 @@ def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFi
     assert "certified ratio of RATT" in printed
     assert (tmp_path / "demo" / "plan.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "demo" / "plan.svg").read_text().startswith("<?xml")
+
+
+def test_the_demo_s_scenario_is_the_first_by_its_rule_and_the_paper_s_is_an_option(tmp_path: Path) -> None:
+    """By the rule that the help states, with its own words for it: connected, and every target in some view."""
+    assert run(["demo", "--out", str(tmp_path / "demo"), "--no-certificate"]) == 0
+
+    def drawn(seed: int) -> Scenario:
+        return limited_view_scenario(6, 6, alpha_s=2, alpha_c=4, seed=seed, reach=40, communication_range=45)
+
+    def fits(scenario: Scenario) -> bool:
+        graph = scenario.problem().communication
+        told = scenario.problem().objective.information.any(axis=(2, 3)).any(axis=0)
+        return len(graph.groups()) == 1 and bool(told.all())
+
+    first = next(scenario for seed in range(100) if fits(scenario := drawn(seed)))
+    assert load_scenario(tmp_path / "demo" / "scenario.json") == first
+    assert run(["demo", "--paper", "--out", str(tmp_path / "paper"), "--no-certificate"]) == 0
+    paper = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=14)
+    assert load_scenario(tmp_path / "paper" / "scenario.json") == paper
+
+
+def test_new_writes_teams_that_turn(tmp_path: Path) -> None:
+    words = "--robots 6 --targets 4 --sensing-attacks 2 --link-attacks 3 --seed 5 --view 75 --range 33"
+    more = "--headings 6 --communication-range 40 --sensor radar"
+    assert run(["new", *words.split(), *more.split(), "--out", str(tmp_path / "turn.json")]) == 0
+    expected = limited_view_scenario(
+        6, 4, alpha_s=2, alpha_c=3, seed=5, view=75, reach=33, headings=6, communication_range=40, sensor="radar"
+    )
+    assert load_scenario(tmp_path / "turn.json") == expected
+    assert run(["new", *words.split(), "--out", str(tmp_path / "plain.json")]) == 0
+    plain = limited_view_scenario(6, 4, alpha_s=2, alpha_c=3, seed=5, view=75, reach=33)
+    assert load_scenario(tmp_path / "plain.json") == plain
 
 
 @pytest.mark.parametrize("objective", ["trace", "logdet", "maxeig"])

@@ -36,6 +36,25 @@ BAD = [
         [*NEW, "--graph", "hubs", "--range", "9", "--robots", "4", "--targets", "2", "--seed", "1"],
         "--range must come with no --graph; got 9.0",
     ),
+    *(
+        ([*NEW, "--robots", "4", "--targets", "2", "--seed", "1", *words.split()], text)
+        for words, text in (
+            ("--view 361", "view must be in (0, 360] degrees; got 361"),
+            ("--view 0", "view must be in (0, 360] degrees; got 0"),
+            ("--view nan", "view must be in (0, 360] degrees; got nan"),
+            ("--view 60 --range 0", "reach must be > 0 m, or None; got 0"),
+            ("--view 60 --range 1e-6", "view and reach must let a robot see a target"),
+            ("--view 60 --headings 0", "headings must be an integer >= 1"),
+            ("--view 60 --sensor sonar", "sensor must be camera, radar"),
+            ("--view 60 --graph hubs", "--view must come with no --graph"),
+            ("--view 60 --communication-range -1", "communication_range must be"),
+            ("--range 9", "--range must come with --view"),
+            ("--headings 4", "--headings must come with --view"),
+            ("--sensor radar", "--sensor must come with --view"),
+        )
+    ),
+    ([*NEW, "--view", "60"], "--robots must be given for a random scenario"),
+    ([*NEW, "--view", "60", "--mrclam", "OUT", "--time", "0"], "--view must come with no --mrclam; got 60"),
     ([*NEW, "--graph", "hubs", "--mrclam", "OUT", "--time", "0"], "--graph must come with no --mrclam; got hubs"),
     ([*NEW, "--mrclam", "OUT"], "--time must be given with --mrclam"),
     ([*NEW, "--corrections", "1=2,2=1"], "--corrections must come with --mrclam; got 1=2,2=1"),
