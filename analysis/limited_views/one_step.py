@@ -1,0 +1,42 @@
+"""Single plans under the exact worst attack, against what any plan could keep: by view and network."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from analysis.limited_views.flights import PLANNERS, case_of, scenario_of
+from analysis.studies.command import Entry
+from analysis.studies.study import Study
+from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.missions.players.planners import elements_of, planner_called
+from ratt_opt.solvers.maxmin.solve import solve_maxmin
+
+if TYPE_CHECKING:
+    from analysis.studies.study import Case, Cell, Seeds
+
+__all__ = ["ENTRY", "STUDY", "measured"]
+
+GAP, NODES = 1e-3, 3_000
+"""Where the search for the best plan stops; counted in nodes, so that rows are the same on every machine."""
+
+
+def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """What each plan keeps in the first step of the mission, and the bracket of what any could keep."""
+    problem = scenario_of(case, seeds).problem(case.objective)
+    row: dict[str, Cell] = {}
+    for planner in study.planner_names:
+        plan = elements_of(planner_called(planner)(problem), problem)
+        row[f"{planner}/worst/value"] = worst_case_attack(problem, plan).lower
+    best = solve_maxmin(problem, gap=GAP, max_nodes=NODES)
+    return row | {"optimum/lower": best.lower, "optimum/upper": best.upper, "optimum/stop": best.stop.value}
+
+
+STUDY = Study(
+    name="limited_views_one_step",
+    cases=tuple(case_of(view=view, links=links) for links in ("complete", 45) for view in (30, 60, 120, 360)),
+    planners=tuple(name for name in PLANNERS if name != "maxmin"),
+    attackers=("worst",),
+    metrics=("value",),
+    measure=measured,
+)
+ENTRY = Entry(STUDY)
