@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["Label", "place_labels"]
+__all__ = ["Label", "halo", "place_labels"]
 
 SPOTS = (
     *((x, y, side) for x, side in ((8, "left"), (-8, "right")) for y in (-9, 9, -3)),
@@ -45,7 +45,7 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
     for label in labels:
         style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
-        style["path_effects"] = _halo()
+        style["path_effects"] = halo()
         word = axes.annotate(
             label.text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
         )
@@ -58,7 +58,7 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         taken.append(word.get_window_extent())
 
 
-def _halo() -> list[Any]:
+def halo() -> list[Any]:
     """The path effects of words behind which lines may run."""
     from matplotlib.patheffects import withStroke
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.report.fields import draw_fields, draw_watching
-from ratt_opt.report.labels import Label, place_labels
+from ratt_opt.report.labels import Label, halo, place_labels
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 
 if TYPE_CHECKING:
@@ -160,6 +160,7 @@ def _number(axes: Axes, picture: Picture, i: int) -> None:
     style: dict[str, Any] = {"fontsize": 7, "weight": "bold", "zorder": 8, "color": colour}
     from_left = picture.before is not None and picture.before[i, 0] < picture.places[i, 0]
     shift = (11 if from_left else -11, 5) if hit else (0, 0)
+    style["path_effects"] = halo() if hit else []
     axes.annotate(str(i), picture.places[i], shift, textcoords="offset points", ha="center", va="center", **style)
 
 

@@ -130,8 +130,8 @@ def _limited(sensor: str | Sensor, view: float, reach: float | None) -> Sensor:
     if isinstance(sensor, str) and sensor not in SENSORS:
         raise InputError("sensor", f"must be {', '.join(SENSORS)} or a Sensor", sensor)
     noise = SENSORS[sensor] if isinstance(sensor, str) else sensor
-    if reach is not None and not (_is_number(reach) and reach > 0):
-        raise InputError("reach", "must be > 0 m, or None", reach)
+    if reach is not None and not (_is_number(reach) and 0 < reach < math.inf):
+        raise InputError("reach", "must be a finite number > 0 [m], or None", reach)
     return noise.replace(field_of_view=view, max_range=None if reach is None else float(reach))
 
 

@@ -42,7 +42,7 @@ BAD = [
             ("--view 361", "view must be in (0, 360] degrees; got 361"),
             ("--view 0", "view must be in (0, 360] degrees; got 0"),
             ("--view nan", "view must be in (0, 360] degrees; got nan"),
-            ("--view 60 --range 0", "reach must be > 0 m, or None; got 0"),
+            ("--view 60 --range 0", "reach must be a finite number > 0 [m], or None; got 0"),
             ("--view 60 --range 1e-6", "view and reach must let a robot see a target"),
             ("--view 60 --headings 0", "headings must be an integer >= 1"),
             ("--view 60 --sensor sonar", "sensor must be camera, radar"),
