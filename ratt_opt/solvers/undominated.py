@@ -1,0 +1,96 @@
+"""A problem without elements that no plan needs: equal ones merged, dominated ones dropped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, readonly
+from ratt_opt.problem import Problem, check_problem
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import networkx as nx
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.setfunctions.base import SetFunction
+
+__all__ = ["UndominatedProblem", "undominated"]
+
+ROUNDING = 1e-12
+"""A negative eigenvalue of a difference counts as 0 up to this share of the two matrices' traces."""
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class UndominatedProblem(Problem):
+    """A problem over some elements of another: ``kept`` (K,) are their indices there, ascending.
+
+    A plan ``elements`` of this problem is the plan ``kept[elements]`` of the other one, with the same values.
+    """
+
+    kept: IntArray = field(kw_only=True)
+
+    def __init__(  # noqa: PLR0917  (as Problem)
+        self,
+        objective: SetFunction,
+        robot: ArrayLike,
+        graph: nx.Graph | None,
+        alpha_s: int,
+        alpha_c: int,
+        protected_robots: Iterable[int] = (),
+        protected_links: Iterable[tuple[int, int]] = (),
+        *,
+        kept: ArrayLike,
+    ) -> None:
+        super().__init__(objective, robot, graph, alpha_s, alpha_c, protected_robots, protected_links)
+        object.__setattr__(self, "kept", readonly(np.asarray(kept, dtype=np.int64)))
+
+
+def undominated(problem: Problem) -> UndominatedProblem:
+    """Drop every element that another element of the same robot dominates; of equal ones keep the first.
+
+    An element dominates another if it tells at least as much about every target in the Loewner order: the difference of
+    their information matrices is positive semidefinite, up to rounding. The best worst case stays the same: exchange a
+    dominated element of a plan for the one that dominates it. Every group's information grows or stays, so does its
+    value, which is non-decreasing in the information, and so does the best group's under every attack. Dominance is
+    transitive, so a chain of exchanges ends at an element that is kept.
+
+    Parameters
+    ----------
+    problem : E elements, whose objective is a criterion of information matrices
+
+    Raises
+    ------
+    InputError : ``problem`` is no Problem, or its objective is another set function.
+    """
+    information = check_problem(problem).information_objective.information
+    kept = np.concatenate([choice[_kept(information[choice])] for choice in problem.choices])
+    kept.sort()
+    return UndominatedProblem(
+        problem.information_objective.restricted_to(kept),
+        problem.robot[kept],
+        problem.graph,
+        problem.alpha_s,
+        problem.alpha_c,
+        problem.protected_robots,
+        problem.protected_links,
+        kept=kept,
+    )
+
+
+def _kept(information: FloatArray) -> BoolArray:
+    """(K,) which elements of one robot (K, M, d, d) no other one dominates; of equal ones the first."""
+    traces = np.trace(information, axis1=-2, axis2=-1)
+    slack = ROUNDING * traces
+    stays = np.ones(len(information), dtype=np.bool_)
+    for e in reversed(range(len(information))):
+        others = np.flatnonzero(stays & (traces >= traces[e] - slack[e]).all(axis=1))
+        others = others[others != e]
+        if not len(others):
+            continue
+        lowest = np.linalg.eigvalsh(information[others] - information[e])[..., 0]
+        stays[e] = not (lowest >= -ROUNDING * (traces[others] + traces[e])).all(axis=1).any()
+    return stays
