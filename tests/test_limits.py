@@ -77,6 +77,7 @@ NO_SEARCH = {
     "greedy_attack",
     "group_size_bound",
     "inapplicable_guarantees",
+    "limited_view_scenario",
     "load_input",
     "load_plan",
     "load_scenario",
@@ -89,11 +90,11 @@ NO_SEARCH = {
     "random_plan",
     "random_scenario",
     "ratt",
+    "read_mrclam",
     "realise",
     "reference",
-    "read_mrclam",
-    "replay_mrclam",
     "remark1_bound",
+    "replay_mrclam",
     "run_mission",
     "save_scenario",
     "scenario_schema",
@@ -101,6 +102,7 @@ NO_SEARCH = {
     "simulate_tracking",
     "survivor_bound",
     "theorem1_bound",
+    "undominated",
 }
 """Formulas, files, planners and heuristics of polynomial time, flights and fits as long as their arguments say, and
 generators that their caller may leave."""
