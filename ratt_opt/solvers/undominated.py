@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,12 +11,7 @@ from ratt_opt._validation import BoolArray, FloatArray, IntArray, readonly
 from ratt_opt.problem import Problem, check_problem
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    import networkx as nx
     from numpy.typing import ArrayLike
-
-    from ratt_opt.setfunctions.base import SetFunction
 
 __all__ = ["UndominatedProblem", "undominated"]
 
@@ -28,24 +23,14 @@ ROUNDING = 1e-12
 class UndominatedProblem(Problem):
     """A problem over some elements of another: ``kept`` (K,) are their indices there, ascending.
 
-    A plan ``elements`` of this problem is the plan ``kept[elements]`` of the other one, with the same values.
+    A plan ``elements`` of this problem is the plan ``kept[elements]`` of the other one, with the same values. The other
+    fields are those of a :class:`Problem`.
     """
 
     kept: IntArray = field(kw_only=True)
 
-    def __init__(  # noqa: PLR0917  (as Problem)
-        self,
-        objective: SetFunction,
-        robot: ArrayLike,
-        graph: nx.Graph | None,
-        alpha_s: int,
-        alpha_c: int,
-        protected_robots: Iterable[int] = (),
-        protected_links: Iterable[tuple[int, int]] = (),
-        *,
-        kept: ArrayLike,
-    ) -> None:
-        super().__init__(objective, robot, graph, alpha_s, alpha_c, protected_robots, protected_links)
+    def __init__(self, *, kept: ArrayLike, **fields: Any) -> None:
+        super().__init__(**fields)
         object.__setattr__(self, "kept", readonly(np.asarray(kept, dtype=np.int64)))
 
 
@@ -70,13 +55,13 @@ def undominated(problem: Problem) -> UndominatedProblem:
     kept = np.concatenate([choice[_kept(information[choice])] for choice in problem.choices])
     kept.sort()
     return UndominatedProblem(
-        problem.information_objective.restricted_to(kept),
-        problem.robot[kept],
-        problem.graph,
-        problem.alpha_s,
-        problem.alpha_c,
-        problem.protected_robots,
-        problem.protected_links,
+        objective=problem.information_objective.restricted_to(kept),
+        robot=problem.robot[kept],
+        graph=problem.graph,
+        alpha_s=problem.alpha_s,
+        alpha_c=problem.alpha_c,
+        protected_robots=problem.protected_robots,
+        protected_links=problem.protected_links,
         kept=kept,
     )
 

@@ -124,7 +124,7 @@ def by_few_cuts(threat: Threat, budget: Budget) -> LargestGroup:
                 best, smallest = cut, size
     except OutOfBudget:
         return split_result(threat, best, counting_bound(threat), "enumeration", COUNTED)
-    return split_result(threat, best, largest_left(threat.graph, best), "enumeration", "every cut was tried")
+    return split_result(threat, best, smallest, "enumeration", "every cut was tried")
 
 
 def by_search(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup:

@@ -54,7 +54,7 @@ def with_target(world: World, state: TrackerState, target: Target) -> tuple[Worl
     fresh = Belief(known.mean[-1:], known.covariance[-1:])
     return _world(world, (*others, began)), replace(
         state,
-        moments=tuple(_with_rows(moment, _joined(moment.belief, fresh)) for moment in state.moments),
+        moments=tuple(replace(moment, belief=_joined(moment.belief, fresh)) for moment in state.moments),
         targets=(*state.targets, state.next_target),
         born=(*state.born, state.time),
         next_target=state.next_target + 1,
@@ -88,10 +88,6 @@ def _world(world: World, targets: tuple[Target, ...]) -> World:
 def _joined(belief: Belief, more: Belief) -> Belief:
     mean = np.concatenate([belief.mean, more.mean])
     return Belief(readonly(mean), readonly(np.concatenate([belief.covariance, more.covariance])))
-
-
-def _with_rows(moment: Moment, belief: Belief) -> Moment:
-    return replace(moment, belief=belief)
 
 
 def _without_row(moment: Moment, row: int, target: int) -> Moment:
