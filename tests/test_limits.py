@@ -81,6 +81,7 @@ NO_SEARCH = {
     "load_input",
     "load_plan",
     "load_scenario",
+    "measured_coordinates",
     "myopic",
     "network_scenario",
     "non_dominated_outcomes",

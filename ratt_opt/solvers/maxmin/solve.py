@@ -27,6 +27,7 @@ from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
+from ratt_opt.solvers.measured_coordinates import measured_coordinates
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
 from ratt_opt.stopping import Stop
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Plan, Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
-__all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "solve_maxmin"]
+__all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "search_in_all_coordinates", "solve_maxmin"]
 
 ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
@@ -63,9 +64,10 @@ def solve_maxmin(
     """Find the plan with the largest worst-case value, and prove how good it is.
 
     Relies on a non-decreasing objective (not checked). For the information criteria: outer approximation
-    and branch and bound. Every bound is derived from the problem's matrices by the leaf
-    formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only the multipliers are used. Other set
-    functions are enumerated where that is possible, and bracketed where it is not (``solvers/by_values``).
+    and branch and bound, in the coordinates that are measured (:func:`measured_coordinates`). Every bound is derived
+    from the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
+    the multipliers are used. Other set functions are enumerated where that is possible, and bracketed where it is not
+    (``solvers/by_values``).
 
     Parameters
     ----------
@@ -96,6 +98,23 @@ def solve_maxmin(
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap, alpha_cs)
+    measured = measured_coordinates(problem)
+    earlier = measured.lowered(start) if isinstance(start, MaxMinResult) else start
+    smaller = measured if measured.is_smaller else problem
+    found = search_in_all_coordinates(smaller, budget, gap, progress, alpha_cs, earlier, workers)
+    return measured.lifted(found)
+
+
+def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
+    problem: Problem,
+    budget: Budget,
+    gap: float = 1e-9,
+    progress: Progress = None,
+    alpha_cs: int | None = None,
+    start: ArrayLike | Plan | MaxMinResult | None = None,
+    workers: int | Executor | None = None,
+) -> MaxMinResult:
+    """The same for an information criterion in the coordinates given, measured or not."""
     warm = WarmStart.of(problem, start)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
