@@ -149,6 +149,10 @@ class LinearProgram:
         """Change the bounds of one column."""
         self._highs.changeColBounds(column, lower, upper)
 
+    def bound_columns(self, lower: FloatArray, upper: FloatArray) -> None:
+        """Change the bounds of the first columns: (k,), k <= n."""
+        self._highs.changeColsBounds(len(lower), np.arange(len(lower), dtype=np.int32), lower, upper)
+
     def change_cost(self, cost: FloatArray) -> None:
         """Change the cost of the first columns: (k,), k <= n."""
         self._highs.changeColsCost(len(cost), np.arange(len(cost), dtype=np.int32), np.ascontiguousarray(cost))

@@ -16,7 +16,7 @@ import numpy as np
 from analysis.tables import print_table
 from ratt_opt import random_scenario, solve_maxmin
 from ratt_opt.bounds.cuts import combined_bound, tangent_cut
-from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf
+from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, WinnerBranch
 from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
@@ -89,6 +89,7 @@ def leaves_that_close(problem: Problem, proof: UpperProof, level: float, gap: fl
         elif isinstance(node, ElementBranch):
             places += [with_choice(choices, node.robot, np.array(part)) for part in reversed(node.parts)]
         else:
+            assert isinstance(node, WinnerBranch)  # robots see every target: no covers
             places += [choices] * len(node.parts)
     return (np.array(bounds) - level) / abs(level) - gap
 

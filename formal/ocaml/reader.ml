@@ -229,6 +229,9 @@ let cut value =
 let rec int_of_nat = function O -> 0 | S k -> 1 + int_of_nat k
 
 let proofs pb prior_range upper lower =
+  (match upper with
+  | Record pairs when List.mem_assoc "covers" pairs -> format "upper proof" "by covers is decided by ratt-opt verify alone"
+  | _ -> ());
   match fields "upper proof" [ "attacks"; "points"; "cuts"; "tree" ] upper with
   | [ attacks; points; cuts; tree ] ->
       let listed = List.map attack (array "attacks" attacks) in

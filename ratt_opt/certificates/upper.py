@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, UpperProof
 
 if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.maxmin.proof import Node
+    from ratt_opt.solvers.maxmin.covers.cover import Cover
+    from ratt_opt.solvers.maxmin.proof import Node, TangentCut
 
 __all__ = ["upper_record"]
 
@@ -21,57 +23,98 @@ LARGEST_CONDITION = 1e6
 
 
 def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
-    """Return the record; attacks, points and cuts that no leaf weighs are left out, and equal points pooled.
+    """Return the record; attacks, points, cuts and covers that no leaf weighs are left out, and equal ones pooled.
 
     Raises
     ------
     InputError : the objective is no information criterion, or one whose tangents the verifier does not know.
     """
-    objective = problem.information_objective
-    used = sorted({k for node in proof.tree if isinstance(node, Leaf) for k, _ in _weighed(node)})
-    branched = {node.attack for node in proof.tree if isinstance(node, WinnerBranch)}
-    attacks = sorted(branched | {proof.cuts[k].attack for k in used})
-    groups = {a: _groups(problem, proof.attacks[a]) for a in attacks}
-    cut_number = {k: number for number, k in enumerate(used)}
-    attack_number = {a: number for number, a in enumerate(attacks)}
-    points: dict[tuple[bytes, int | None], tuple[int, Any]] = {}
-    cuts = []
-    for k in used:
-        cut = proof.cuts[k]
-        if (key := (cut.point.tobytes(), cut.target)) not in points:
-            point = objective.fenchel_point(cut.point, cut.target)
-            kept = point if np.linalg.cond(cut.point).max() > LARGEST_CONDITION else _short(point)
-            points[key] = len(points), kept
-        cuts.append([attack_number[cut.attack], groups[cut.attack].index(tuple(sorted(cut.group))), points[key][0]])
-    return {
-        "attacks": [
-            {"robots": sorted(a.sensing), "links": [list(link) for link in sorted(a.links)]}
-            for a in (proof.attacks[k] for k in attacks)
-        ],
-        "points": [point for _, point in points.values()],
-        "cuts": cuts,
-        "tree": [_node(node, cut_number, attack_number, groups) for node in proof.tree],
-    }
+    used = sorted({k for node in proof.tree if isinstance(node, Leaf) for k, _ in _weighed(node.cuts, node.weights)})
+    covers = sorted(
+        {k for node in proof.tree if isinstance(node, CoverLeaf) for k, _ in _weighed(node.covers, node.weights)}
+    )
+    pool = _Pool(problem)
+    writer = _Nodes(
+        pool,
+        proof,
+        cuts={k: number for number, k in enumerate(used)},
+        covers={k: number for number, k in enumerate(covers)},
+    )
+    tree = [writer.node(node) for node in proof.tree]
+    cuts = [pool.cut(proof.attacks[proof.cuts[k].attack], proof.cuts[k]) for k in used]
+    stated = {"covers": [pool.cover(proof.covers[k]) for k in covers]} if covers else {}
+    return {"attacks": pool.attacks(), "points": pool.points(), "cuts": cuts, **stated, "tree": tree}
 
 
-def _weighed(leaf: Leaf) -> list[tuple[int, float]]:
-    """The cuts of a leaf that count, and their weights."""
-    return [(k, float(w)) for k, w in zip(leaf.cuts, leaf.weights, strict=True) if w > 0]
+def _weighed(numbers: tuple[int, ...], weights: tuple[float, ...]) -> list[tuple[int, float]]:
+    """The cuts or covers of a leaf that count, and their weights."""
+    return [(k, float(w)) for k, w in zip(numbers, weights, strict=True) if w > 0]
 
 
-def _groups(problem: Problem, attack: Attack) -> list[tuple[int, ...]]:
-    """Groups that an attack leaves, ascending."""
-    return sorted(tuple(sorted(group)) for group in problem.groups_left(attack) if group) or [()]
+class _Pool:
+    """Attacks and Fenchel points, each stated once and counted as they are met."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem, self._objective = problem, problem.information_objective
+        self._attacks: dict[Attack, int] = {}
+        self._groups: dict[Attack, list[tuple[int, ...]]] = {}
+        self._points: dict[tuple[bytes, int | None], tuple[int, Any]] = {}
+
+    def attack(self, attack: Attack) -> int:
+        return self._attacks.setdefault(attack, len(self._attacks))
+
+    def groups(self, attack: Attack) -> list[tuple[int, ...]]:
+        """Groups that an attack leaves, ascending."""
+        if attack not in self._groups:
+            left = sorted(tuple(sorted(group)) for group in self._problem.groups_left(attack) if group)
+            self._groups[attack] = left or [()]
+        return self._groups[attack]
+
+    def point(self, point: FloatArray, target: int | None = None) -> int:
+        key = point.tobytes(), target
+        if key not in self._points:
+            fenchel = self._objective.fenchel_point(point, target)
+            kept = fenchel if np.linalg.cond(point).max() > LARGEST_CONDITION else _short(fenchel)
+            self._points[key] = len(self._points), kept
+        return self._points[key][0]
+
+    def cut(self, attack: Attack, cut: TangentCut) -> list[int]:
+        group = self.groups(attack).index(tuple(sorted(cut.group)))
+        return [self.attack(attack), group, self.point(cut.point, cut.target)]
+
+    def cover(self, cover: Cover) -> dict[str, Any]:
+        return {
+            "attack": self.attack(cover.attack),
+            "left_out": list(cover.left_out),
+            "points": [self.point(point) for point in cover.points],
+        }
+
+    def attacks(self) -> list[dict[str, Any]]:
+        return [{"robots": sorted(a.sensing), "links": [list(link) for link in sorted(a.links)]} for a in self._attacks]
+
+    def points(self) -> list[Any]:
+        return [point for _, point in self._points.values()]
 
 
-def _node(node: Node, cut_number: dict[int, int], attack_number: dict[int, int], groups: dict[int, Any]) -> Any:
-    if isinstance(node, Leaf):
-        pairs = _weighed(node)
-        return {"cuts": [cut_number[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
-    if isinstance(node, ElementBranch):
-        return {"robot": node.robot, "parts": [list(part) for part in node.parts]}
-    assert list(node.parts) == groups[node.attack]
-    return {"attack": attack_number[node.attack]}
+class _Nodes:
+    """Nodes as the record has them; ``cuts``, ``covers`` : the numbers there of those that the proof has."""
+
+    def __init__(self, pool: _Pool, proof: UpperProof, *, cuts: dict[int, int], covers: dict[int, int]) -> None:
+        self._pool, self._proof, self._cuts, self._covers = pool, proof, cuts, covers
+
+    def node(self, node: Node) -> dict[str, Any]:
+        if isinstance(node, Leaf):
+            pairs = _weighed(node.cuts, node.weights)
+            return {"cuts": [self._cuts[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
+        if isinstance(node, CoverLeaf):
+            pairs = _weighed(node.covers, node.weights)
+            return {"covers": [self._covers[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
+        if isinstance(node, ElementBranch):
+            listed = node.parts[:-1] if self._covers else node.parts  # the last part is what is left
+            return {"robot": node.robot, "parts": [list(part) for part in listed]}
+        attack = self._proof.attacks[node.attack]
+        assert list(node.parts) == self._pool.groups(attack)
+        return {"attack": self._pool.attack(attack)}
 
 
 def _short(value: Any) -> Any:

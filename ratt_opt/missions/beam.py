@@ -18,7 +18,7 @@ from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.budget import Budget
 from ratt_opt.missions.ahead.horizon import Sequences, extended
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
-from ratt_opt.solvers.maxmin.solve import check_limits, solve_maxmin
+from ratt_opt.solvers.maxmin.solve import check_limits, search_in_all_coordinates
 from ratt_opt.solvers.result import MaxMinResult
 from ratt_opt.stopping import Stop
 
@@ -80,7 +80,8 @@ def solve_by_columns(
     upper, nodes, evaluations = np.inf, 0, 0
     while True:
         part = replace(problem, objective=objective.restricted_to(kept), robot=problem.robot[kept])
-        found = solve_maxmin(part, gap=INNER_SHARE * gap, time_limit=time_limit and budget.seconds_left, budget=budget)
+        within = Budget.inside(budget, time_limit and budget.seconds_left)
+        found = search_in_all_coordinates(part, within, INNER_SHARE * gap, by_covers=False)  # a cover has no prices
         nodes, evaluations = nodes + found.nodes, evaluations + found.evaluations
         fresh: IntArray = np.zeros(0, dtype=np.int64)
         if found.proof is not None:

@@ -84,7 +84,7 @@ class MeasuredProblem(Problem):
         if before is not None and before > result.lower:
             gap = float((result.upper - result.lower) / (before - result.lower))
         if proof is not None:
-            proof = replace(proof, cuts=tuple(replace(cut, point=self._lifted(cut.point)) for cut in proof.cuts))
+            proof = proof.moved(self._lifted)
         return replace(result, posterior_gap=gap, proof=proof)
 
     def lowered(self, result: MaxMinResult) -> MaxMinResult:
@@ -94,8 +94,7 @@ class MeasuredProblem(Problem):
             return result
         if any(cut.point.shape != shape for cut in proof.cuts):
             return replace(result, proof=None)
-        cuts = tuple(replace(cut, point=self._lowered(cut.point)) for cut in proof.cuts)
-        return replace(result, proof=replace(proof, cuts=cuts))
+        return replace(result, proof=proof.moved(self._lowered))
 
     def _lifted(self, point: FloatArray) -> FloatArray:
         added = self.basis @ (point - self.information_objective.prior_information) @ np.swapaxes(self.basis, -1, -2)

@@ -13,7 +13,7 @@ from ratt_opt.problem import Problem, check_problem
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["UndominatedProblem", "undominated"]
+__all__ = ["UndominatedProblem", "dominators", "undominated"]
 
 ROUNDING = 1e-12
 """A negative eigenvalue of a difference counts as 0 up to this share of the two matrices' traces."""
@@ -64,6 +64,21 @@ def undominated(problem: Problem) -> UndominatedProblem:
         protected_links=problem.protected_links,
         kept=kept,
     )
+
+
+def dominators(problem: Problem, kept: IntArray) -> IntArray:
+    """(E,) for each element the number, among ``kept`` (K,), of one of the same robot that equals or dominates it."""
+    information = problem.information_objective.information
+    traces = np.trace(information, axis1=-2, axis2=-1)
+    found = np.empty(len(information), dtype=np.int64)
+    for choice in problem.choices:
+        own = np.flatnonzero(np.isin(kept, choice))
+        for e in choice.tolist():
+            lowest = np.linalg.eigvalsh(information[kept[own]] - information[e])[..., 0]
+            missing = (lowest + ROUNDING * (traces[kept[own]] + traces[e])).min(axis=1)
+            found[e] = own[missing.argmax()]
+    found[kept] = np.arange(len(kept))
+    return found
 
 
 def _kept(information: FloatArray) -> BoolArray:

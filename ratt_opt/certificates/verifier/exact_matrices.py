@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from flint import ctx, fmpq, fmpq_mat, fmpz, fmpz_mat
+from flint import arb, ctx, fmpq, fmpq_mat, fmpz, fmpz_mat
 
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import ProofError
@@ -16,6 +17,7 @@ __all__ = [
     "defect_of",
     "definite",
     "is_positive",
+    "largest",
     "largest_of_inverse",
     "output_trace",
     "total",
@@ -27,6 +29,13 @@ __all__ = [
 def total(terms: Iterable[Any]) -> Any:
     """Sum that starts from the exact zero."""
     return sum(terms, fmpq(0))
+
+
+def largest(values: list[Any]) -> Any:
+    """The largest of exact numbers, or a ball around the largest of balls."""
+    if all(isinstance(value, fmpq) for value in values):
+        return max(values)
+    return reduce(lambda a, b: a.max(b), map(arb, values))
 
 
 def trace(a: fmpq_mat) -> Any:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flint import arb, ctx, fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier import reading
-from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
+from ratt_opt.certificates.verifier.exact_matrices import definite, largest, total, trace
 from ratt_opt.certificates.verifier.reading import (
     array,
     exact,
@@ -39,6 +39,13 @@ BLOCK = 16
 """Points whose scores are computed between two looks at the clock."""
 
 
+class _Point(NamedTuple):
+    """``phi(S) <= constant + sum of scores[e] over e in S`` for every set of elements."""
+
+    scores: list[fmpq]
+    constant: Any
+
+
 class _Cut(NamedTuple):
     """``phi(plan restricted to group) <= constant + sum of scores[element] over the robots of the group``."""
 
@@ -46,6 +53,13 @@ class _Cut(NamedTuple):
     group: frozenset[int]
     constant: Any
     scores: list[fmpq]
+
+
+class _Cover(NamedTuple):
+    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`UpperCheck._covers`)."""
+
+    left_out: frozenset[int]
+    bound: Any
 
 
 class UpperCheck:
@@ -73,15 +87,21 @@ class UpperCheck:
         winner. So the worst case is at most any weighted average of usable cuts, and that is at most its
         constant plus, robot by robot, the largest score among the elements left.
         """
-        attacks, points, cut_list, tree = fields("upper proof", part, "attacks points cuts tree")
+        has_covers = isinstance(part, dict) and "covers" in part
+        names = "attacks points cuts tree covers" if has_covers else "attacks points cuts tree"
+        attacks, given, cut_list, tree, *cover_list = fields("upper proof", part, names)
         families = array("attacks", attacks)
         reading.check_size("attacks", len(families) * self.about.n, reading.MOST_CELLS)
         groups = [self._groups(attack) for attack in families]
+        points = self._points(given)
         cuts, bounds = self._cuts(groups, points, cut_list), []
+        covers = self._covers(groups, points, cover_list[0]) if has_covers else []
 
         def expand(node: Any, case: Any) -> Iterator[Any]:
             left, winners = case
-            if isinstance(node, dict) and "weights" in node:
+            if isinstance(node, dict) and "covers" in node:
+                bounds.append(self._cover_leaf(node, covers, left))
+            elif isinstance(node, dict) and "weights" in node:
                 bounds.append(self._leaf(node, cuts, groups, left, winners))
                 if isinstance(bounds[-1], fmpq):
                     hold(bounds[-1])
@@ -93,8 +113,11 @@ class UpperCheck:
                 robot, parts = fields("element branch", node, "robot parts")
                 i = index("element branch robot", robot, self.about.n)
                 blocks = [indices("element branch", block, len(self.about.owner)) for block in array("parts", parts)]
-                exact_cover = all(blocks) and sorted(chain(*blocks)) == list(left[i])
+                named = sorted(chain(*blocks))
+                rest = tuple(sorted(set(left[i]) - set(named))) if has_covers else ()
+                exact_cover = all(blocks) and sorted([*named, *rest]) == list(left[i])
                 need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
+                blocks += [rest] if rest else []
                 yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
 
         walk("upper", tree, (self.about.choices, {}), expand)
@@ -141,7 +164,49 @@ class UpperCheck:
             groups += [group] if not stack else []
         return sorted((frozenset(g) for group in groups if (g := group - blinded)), key=min) or [frozenset()]
 
-    def _cuts(self, groups: list[list[frozenset[int]]], points: object, cut_list: object) -> list[_Cut]:
+    def _covers(self, groups: list[list[frozenset[int]]], points: list[_Point], given: object) -> list[_Cover]:
+        """Check covers: under an attack on links, what the elements beside ``left_out`` are worth in each group.
+
+        Where the robots with an element in ``left_out`` can be blinded all at once, an attack leaves nothing else.
+        So a plan that is worth more has ``alpha_s + 1`` of them, or a protected one, whose elements therefore count
+        ``alpha_s + 1`` times.
+        """
+        covers = []
+        for item in array("covers", given):
+            a, out, numbers = fields("cover", item, "attack left_out points")
+            family = groups[index("cover attack", a, len(groups))]
+            need(sum(map(len, family)) == self.about.n, "upper proof: the attack of a cover blinds robots")
+            left_out = frozenset(indices("cover left_out", out, len(self.about.owner)))
+            bounds = []
+            for group, p in zip(family, array("cover points", numbers, len(family)), strict=True):
+                scores, constant = points[index("cover point", p, len(points))]
+                bounds.append(constant + total(self._most(i, left_out, scores) for i in group))
+            covers.append(_Cover(left_out, largest(bounds)))
+        return covers
+
+    def _most(self, robot: int, left_out: frozenset[int], scores: list[fmpq]) -> fmpq:
+        """The largest score of what is kept of a robot's elements; 0 if it is blinded."""
+        tick()
+        return max([fmpq(0), *(scores[e] for e in self.about.choices[robot] if e not in left_out)])
+
+    def _cover_leaf(self, node: Any, covers: list[_Cover], left: Any) -> Any:
+        """The largest bound of covers, one of which each plan fails: none counts their weighted sum."""
+        chosen, given = fields("cover leaf", node, "covers weights")
+        used = [covers[index("leaf cover", k, len(covers))] for k in array("leaf covers", chosen)]
+        weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
+        need(used and all(w > 0 for w in weights), "upper proof: a leaf's weights are not positive")
+        needed = min(self.about.alpha_s, self.about.n - len(self.about.safe_robots)) + 1
+        most = fmpq(0)
+        for i, elements in enumerate(left):
+            tick()
+            count = needed if i in self.about.safe_robots else 1
+            pairs = list(zip(weights, used, strict=True))
+            most += count * max(total(w for w, cover in pairs if e in cover.left_out) for e in elements)
+        need(most < needed * total(weights), "upper proof: a plan of a leaf may meet all its covers")
+        return largest([cover.bound for cover in used])
+
+    def _points(self, points: object) -> list[_Point]:
+        """Return for each Fenchel point the score of every element, and the constant of its bound."""
         width = len(self.about.prior) * self.about.d**2
         given = array("points", points)
         reading.check_size("points", len(given) * max(width, len(self.about.owner)), reading.MOST_CELLS)
@@ -156,12 +221,16 @@ class UpperCheck:
             for row in block:
                 hold(max(row, key=lambda x: int(x.q)), len(row))
             scores += block
+        return [_Point(own, constant) for own, (_, constant) in zip(scores, fenchel, strict=True)]
+
+    def _cuts(self, groups: list[list[frozenset[int]]], points: list[_Point], cut_list: object) -> list[_Cut]:
         cuts = []
         for item in array("cuts", cut_list):
             a, g, p = array("cut", item, 3)
             family = groups[index("cut attack", a, len(groups))]
             group = family[index("cut group", g, len(family))]
-            cuts.append(_Cut(a, group, fenchel[index("cut point", p, len(fenchel))][1], scores[p]))
+            point = points[index("cut point", p, len(points))]
+            cuts.append(_Cut(a, group, point.constant, point.scores))
         return cuts
 
     def _fenchel(self, point: object) -> tuple[list[fmpq], Any]:

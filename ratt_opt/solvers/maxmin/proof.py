@@ -4,7 +4,8 @@ A node stands for the plans whose elements remain allowed on its path and for wh
 groups win. Children of an :class:`ElementBranch` partition one robot's remaining elements; those of a
 :class:`WinnerBranch` say which group of one attack attains the team value, one child a group. At a leaf, a cut
 on the only group of an attack, or on the group declared to win, bounds the team value under that attack and so the
-worst case; the leaf's convex combination of such cuts bounds every plan that remains.
+worst case; the leaf's convex combination of such cuts bounds every plan that remains. A :class:`CoverLeaf` combines
+conditions on plans that are worth more (``covers/cover.py``); no plan that remains meets the combination.
 """
 
 from __future__ import annotations
@@ -19,9 +20,11 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack
+    from ratt_opt.solvers.maxmin.covers.cover import Cover
     from ratt_opt.solvers.maxmin.task import Choices, Task
 
 __all__ = [
+    "CoverLeaf",
     "ElementBranch",
     "Leaf",
     "Node",
@@ -57,6 +60,17 @@ class Leaf:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CoverLeaf:
+    """Covers by index, and their non-negative weights: no plan of the leaf counts as much as their combination asks.
+
+    So each plan fails one of them, and is worth no more than the largest of their bounds.
+    """
+
+    covers: tuple[int, ...]
+    weights: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ElementBranch:
     """``parts`` : the elements that remain for ``robot`` in each child, ascending; a partition of what remained."""
 
@@ -72,16 +86,23 @@ class WinnerBranch:
     parts: tuple[tuple[int, ...], ...]
 
 
-Node = Leaf | ElementBranch | WinnerBranch
+Node = Leaf | CoverLeaf | ElementBranch | WinnerBranch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class UpperProof(ByValue):
-    """Attacks and cuts that the ``tree`` refers to by index; its nodes are in preorder."""
+    """Attacks, cuts and covers that the ``tree`` refers to by index; its nodes are in preorder."""
 
     attacks: tuple[Attack, ...]
     cuts: tuple[TangentCut, ...]
     tree: tuple[Node, ...]
+    covers: tuple[Cover, ...] = ()
+
+    def moved(self, to: Callable[[FloatArray], FloatArray]) -> UpperProof:
+        """The proof whose tangents touch elsewhere, ``to`` (M, d, d) -> (M, d', d'): in other coordinates."""
+        cuts = tuple(replace(cut, point=to(cut.point)) for cut in self.cuts)
+        covers = tuple(replace(cover, points=tuple(map(to, cover.points))) for cover in self.covers)
+        return replace(self, cuts=cuts, covers=covers)
 
     def __repr__(self) -> str:
         return f"UpperProof({len(self.attacks)} attacks, {len(self.cuts)} cuts, {len(self.tree)} nodes)"

@@ -17,7 +17,7 @@ from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin.descent import Descent
+from ratt_opt.solvers.maxmin.both_searches import BothSearches
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
@@ -113,14 +113,19 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     alpha_cs: int | None = None,
     start: ArrayLike | Plan | MaxMinResult | None = None,
     workers: int | Executor | None = None,
+    *,
+    by_covers: bool = True,
 ) -> MaxMinResult:
-    """The same for an information criterion in the coordinates given, measured or not."""
+    """The same for an information criterion, in the coordinates given.
+
+    ``by_covers`` : whether the proof may have covers
+    """
     warm = WarmStart.of(problem, start)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
-    search: Descent | None = None
+    search: BothSearches | None = None
     try:
         pool.list_all()
         outcomes = warm.add_outcomes(pool)
@@ -129,8 +134,8 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
         incumbent.start(_first_plans(problem, first, warm, pairs, budget))
         with open_crew(workers) as crew:
             # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-            search = Descent(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew)
-            search.first.use(warm.add_cuts(search.first.cuts, outcomes))
+            search = BothSearches(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew, by_covers=by_covers)
+            search.concave.first.use(warm.add_cuts(search.concave.first.cuts, outcomes))
             stop = _search_and_prove(search, Turns(budget, incumbent), progress)
     except OutOfBudget as out:
         stop = out.stop
@@ -149,7 +154,7 @@ def _first_plans(
     return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
 
 
-def _search_and_prove(search: Descent, turns: Turns, progress: Progress) -> Stop:
+def _search_and_prove(search: BothSearches, turns: Turns, progress: Progress) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
@@ -159,7 +164,9 @@ def _search_and_prove(search: Descent, turns: Turns, progress: Progress) -> Stop
             return stop
 
 
-def _result(problem: Problem, incumbent: Incumbent, search: Descent | None, stop: Stop, gap: float) -> MaxMinResult:
+def _result(
+    problem: Problem, incumbent: Incumbent, search: BothSearches | None, stop: Stop, gap: float
+) -> MaxMinResult:
     before, proved = problem.information_objective.prior_criterion, incumbent.proved
     lower = proved.lower
     if search is not None and np.isfinite(search.upper):

@@ -28,13 +28,44 @@ from ratt_opt import (
 )
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
-from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_problem
 
 if TYPE_CHECKING:
     from ratt_opt import AttackResult
+
+
+def cover_leaf_bound(problem: Problem, proof: UpperProof, leaf: CoverLeaf, choices) -> float:
+    """The largest bound of the leaf's covers; assert that no plan of it counts as much as all of them together ask."""
+    can_be_blinded = problem.n_robots - len(problem.protected_robots)
+    needed = min(problem.alpha_s, can_be_blinded) + 1
+    assert min(leaf.weights) > 0
+    most = 0.0
+    for i, elements in enumerate(choices):
+        count = needed if i in problem.protected_robots else 1
+        left_out = [[e in proof.covers[k].left_out for k in leaf.covers] for e in elements]
+        most += count * max(np.dot(leaf.weights, out) for out in left_out)
+    assert most < needed * sum(leaf.weights)
+    return max(kept_bound(problem, proof.covers[k]) for k in leaf.covers)
+
+
+def kept_bound(problem: Problem, cover) -> float:
+    """What the elements that a cover keeps are worth in any group, from the tangents."""
+    problem.check_attack(cover.attack)
+    assert not cover.attack.sensing
+    f, bounds = problem.objective, []
+    groups = sorted(sorted(group) for group in groups_left(problem, cover.attack.links))
+    for group, point in zip(groups, cover.points, strict=True):
+        value, slope = tangent(f, point, None)
+        bound = value + sum(np.vdot(slope[j], f.prior_information[j] - point[j]) for j in range(f.n_targets))
+        for i in group:
+            kept = [e for e in problem.choices[i].tolist() if e not in cover.left_out]
+            scores = [sum(np.vdot(slope[j], f.information[e, j]) for j in range(f.n_targets)) for e in kept]
+            bound += max([0.0, *scores])
+        bounds.append(bound)
+    return max(bounds)
 
 
 def proved_upper(problem: Problem, proof: UpperProof) -> float:
@@ -63,6 +94,8 @@ def proved_upper(problem: Problem, proof: UpperProof) -> float:
             share = np.array(node.weights) / sum(node.weights)
             total = share @ np.array([b[1] for b in bounds])
             return share @ np.array([b[0] for b in bounds]) + sum(max(total[e] for e in c) for c in choices)
+        if isinstance(node, CoverLeaf):
+            return cover_leaf_bound(problem, proof, node, choices)
         if isinstance(node, ElementBranch):
             assert set().union(*node.parts) == set(choices[node.robot])
             assert sum(map(len, node.parts)) == len(choices[node.robot])

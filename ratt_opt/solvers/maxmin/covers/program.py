@@ -1,0 +1,108 @@
+"""The linear program of the covers known: is there a relaxed plan that meets them all?
+
+Minimise ``v``, where every cover counts at least ``enough - v`` and each robot's shares of its elements sum to 1. If
+``v > 0``, no plan of the node is worth more than the level. Of the program only the multipliers are used: normalised,
+they combine covers into one condition, of which a plan counts at most the sum of its robots' largest terms.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.highs import LinearProgram, rows_of
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.covers.pool import CoverPool
+
+__all__ = ["CoverProgram", "Relaxed"]
+
+LOWEST = -50.0
+"""Of ``v``: how far conditions may be met beyond what is asked counts no further."""
+NEGLIGIBLE = 1e-9
+"""Multipliers that count as none."""
+MOST_ROWS = 400
+"""Rows of the program; beyond it, half of the covers go that no multiplier used for longest."""
+
+
+class Relaxed:
+    """A relaxed plan ``x`` (E,), its ``v``, and the covers with multipliers: numbers, and weights that sum to 1."""
+
+    __slots__ = ("covers", "v", "weights", "x")
+
+    def __init__(self, x: FloatArray, v: float, covers: IntArray, weights: FloatArray) -> None:
+        self.x, self.v, self.covers, self.weights = x, v, covers, weights
+
+
+class CoverProgram:
+    """The program over some covers of a pool."""
+
+    def __init__(self, problem: Problem, pool: CoverPool, count: FloatArray, enough: float) -> None:
+        self.enough, self._count, self._n, self._pool = enough, count, len(count), pool
+        cost = np.zeros(self._n + 1)
+        cost[-1] = 1.0
+        lower = np.zeros(self._n + 1)
+        lower[-1] = LOWEST
+        upper = np.ones(self._n + 1)
+        upper[-1] = np.inf
+        one_each = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in problem.choices], 1.0, 1.0)
+        self._program = LinearProgram(cost, lower, upper, rows=one_each, presolve="off", simplex_strategy=1)
+        self._first, self._robot = problem.n_robots, problem.robot
+        self._rows: list[int] = []
+        self._used: dict[int, int] = {}
+        self._solves = 0
+
+    def add(self, covers: list[int]) -> int:
+        """Add covers that are not in the program yet; how many."""
+        known = set(self._rows)
+        fresh = [k for k in dict.fromkeys(covers) if k not in known]
+        entries = []
+        for k in fresh:
+            self._used[k] = self._solves
+            counted = self._counted(k)
+            columns = np.flatnonzero(counted)
+            entries.append(([*columns.tolist(), self._n], [*counted[columns].tolist(), 1.0]))
+        if fresh:
+            self._program.add_rows(rows_of(entries, self.enough))
+            self._rows.extend(fresh)
+        return len(fresh)
+
+    def solve(self, allowed: BoolArray, seconds: float) -> Relaxed | None:
+        """The program over the elements allowed (E,); ``None`` where HiGHS claims no optimum in time."""
+        self._forget()
+        self._program.bound_columns(np.zeros(self._n), allowed.astype(np.float64))
+        answer = self._program.solve(seconds)
+        self._solves += 1
+        if not answer.is_optimal:
+            return None
+        duals = answer.duals[self._first :]
+        active = np.flatnonzero(duals > NEGLIGIBLE)
+        covers = np.array(self._rows, dtype=np.int64)[active]
+        for k in covers.tolist():
+            self._used[k] = self._solves
+        weights = duals[active] / duals[active].sum() if len(active) else duals[active]
+        return Relaxed(answer.x[: self._n], float(answer.x[self._n]), covers, weights)
+
+    def lacking(self, relaxed: Relaxed, allowed: BoolArray) -> tuple[float, FloatArray]:
+        """By how much all plans of allowed elements fail the combined condition, and what each element counts (E,)."""
+        if not len(relaxed.covers):
+            return -np.inf, np.zeros(self._n)
+        terms = relaxed.weights @ np.array([self._counted(k) for k in relaxed.covers.tolist()])
+        largest = np.zeros(self._first)
+        np.maximum.at(largest, self._robot[allowed], terms[allowed])
+        return self.enough - float(largest.sum()), terms
+
+    def _counted(self, cover: int) -> FloatArray:
+        """(E,) what each element counts in a cover."""
+        return self._pool.left_out(cover) * self._count
+
+    def _forget(self) -> None:
+        if len(self._rows) <= MOST_ROWS:
+            return
+        order = sorted(range(len(self._rows)), key=lambda r: self._used[self._rows[r]])
+        gone = np.array(sorted(order[: len(order) // 2]))
+        self._program.delete_rows(gone + self._first)
+        self._rows = [k for r, k in enumerate(self._rows) if r not in set(gone.tolist())]

@@ -1,0 +1,156 @@
+"""Covers that a relaxed plan violates, or that an attack on a plan shows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.information import from_triangles, triangles
+from ratt_opt.solvers.maxmin.covers.cover import Cover
+from ratt_opt.solvers.maxmin.covers.partitions import Partitions
+from ratt_opt.solvers.maxmin.covers.pool import CoverPool
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.covers.diving import Ways
+    from ratt_opt.solvers.maxmin.covers.elements import Elements
+    from ratt_opt.solvers.maxmin.covers.keeping import Team
+
+__all__ = ["Separation"]
+
+GROWN, ADDED = 16, 8
+"""Partitions of lowest price whose kept elements are completed in a round, and covers that a round adds at most."""
+NOISE = 0.2
+"""Relative noise on the order in which targets are lost, so that rounds on the same relaxed plan differ."""
+NEGLIGIBLE = 1e-6
+"""Violations that count as none."""
+
+
+class Separation:
+    """Finds covers of one problem for any level, and puts them into its ``pool``."""
+
+    def __init__(self, problem: Problem) -> None:
+        from ratt_opt.solvers.maxmin.covers import keeping  # compiles
+
+        self._loops, self.problem = keeping, problem
+        self.partitions = Partitions(problem)
+        self._rng = np.random.default_rng(0)
+        prior = triangles(problem.information_objective.prior_information)
+        self.pool = CoverPool(problem, prior.shape)
+        self.team = self._team(prior)
+        self.enough = self.team.enough
+        self.count = self.team.count[self.team.owner]
+        """(E,) what an element counts in a cover that leaves it out; ``enough`` have to be counted."""
+        self._strongest = keeping.strongest_of(self.team)
+        self._inside = np.zeros((0, problem.objective.n), dtype=np.bool_)
+        self._values = np.zeros((0, len(prior)))
+        self._order = np.zeros(0, dtype=np.int64)
+
+    def _team(self, prior: FloatArray) -> Team:
+        objective = self.problem.information_objective
+        safe = np.isin(np.arange(self.problem.n_robots), list(self.problem.protected_robots))
+        enough = float(min(self.problem.alpha_s, self.problem.threat.n_blinded) + 1)
+        assert objective.compiled_code is not None
+        return self._loops.Team(
+            code=objective.compiled_code,
+            weights=np.array(objective.weights),
+            baseline=objective.criterion(objective.prior_information),
+            prior=prior,
+            information=triangles(objective.information),
+            sees=np.trace(objective.information, axis1=-2, axis2=-1) > 0,
+            owner=self.pool.places.owner,
+            bit=self.pool.places.bit,
+            element=self.pool.places.element,
+            count=np.where(safe, enough, 1.0),
+            safe=safe,
+            enough=enough,
+        )
+
+    def ways(self) -> Ways:
+        """Ways to cut links as the loops of a dive read them; their order is kept from one to the next."""
+        from ratt_opt.solvers.maxmin.covers.diving import Ways  # compiles
+
+        of = self.partitions.of
+        if len(self._order) < len(of):
+            self._update()
+            self._order = np.concatenate([np.arange(len(self._order), len(of)), self._order])
+            padded = np.full((len(of), max(map(len, of))), -1, dtype=np.int64)
+            for row, own in zip(padded, of, strict=True):
+                row[: len(own)] = own
+            self._ways = Ways(self.partitions.members(), self._inside, padded, self._order)
+            if padded.shape[1] > self.pool.covers.sums.shape[1]:
+                self.pool.grow(padded.shape[1])
+        return self._ways
+
+    def _update(self) -> None:
+        """Value the groups that are new."""
+        known = len(self._inside)
+        if known == len(self.partitions.groups):
+            return
+        members = self.partitions.members()[known:]
+        values = self._loops.group_values(self.team, self._strongest, members)
+        self._inside = np.concatenate([self._inside, members[:, self.team.owner]])
+        self._values = np.concatenate([self._values, values])
+
+    def violated(self, x: FloatArray, level: float, most: float) -> list[int]:
+        """Covers for a level of which a relaxed plan ``x`` (E,) counts less than ``most``, the worst first."""
+        self._update()
+        price = x * self.count
+        kept = np.empty_like(self._inside)
+        noise = self._rng.uniform(1 - NOISE, 1 + NOISE, self._values.shape)
+        paid = self._loops.lose_all(self.team.sees, self._inside, price, self._values, level, noise, kept)
+        totals = np.array([paid[own].sum() for own in self.partitions.of])
+        completed: dict[int, FloatArray] = {}
+        found = []
+        for p in np.argsort(totals, kind="stable")[:GROWN].tolist():
+            if totals[p] == np.inf:
+                break
+            own = self.partitions.of[p].tolist()
+            for g in own:
+                if g not in completed:
+                    paid[g], completed[g] = self._complete(g, kept[g], price, level)
+            if (counted := float(paid[own].sum())) < most - NEGLIGIBLE:
+                found.append((counted, p))
+        found.sort()
+        return [self._cover(p, kept, completed, level) for _, p in found[:ADDED]]
+
+    def from_attack(self, plan: IntArray, attack: Attack, level: float) -> int:
+        """The number of a cover for a level, by an attack that leaves a plan no more: it keeps what the attack leaves.
+
+        ``plan`` : (N,) elements of this problem
+        """
+        p = self.partitions.add_cut(attack.links)
+        self._update()
+        kept = np.zeros_like(self._inside)
+        chosen = np.zeros(len(self.team.owner), dtype=np.bool_)
+        chosen[[e for i, e in enumerate(plan.tolist()) if i not in attack.sensing]] = True
+        price = self._rng.uniform(0.5, 1.0, len(chosen))
+        completed = {}
+        for g in self.partitions.of[p].tolist():
+            kept[g] = chosen & self._inside[g]
+            completed[g] = self._complete(g, kept[g], price, level)[1]
+        return self._cover(p, kept, completed, level)
+
+    def _complete(self, group: int, kept: BoolArray, price: FloatArray, level: float) -> tuple[float, FloatArray]:
+        sums = np.empty_like(self.team.prior)
+        paid = self._loops.keep(self.team, self._inside[group], price, level, kept, sums)
+        return float(paid), sums
+
+    def _cover(self, partition: int, kept: BoolArray, sums: dict[int, FloatArray], level: float) -> int:
+        own = self.partitions.of[partition].tolist()
+        left_out = ~kept[own].any(axis=0)
+        return self.pool.add(partition, left_out, [sums[g] for g in own], level)
+
+    def stated(self, cover: int, elements: Elements) -> Cover:
+        """The cover over the elements of the whole problem; ``elements`` : what each element here stands for."""
+        partition = int(self.pool.covers.partition[cover])
+        own = self.partitions.of[partition].tolist()
+        places = sorted(range(len(own)), key=lambda place: self.partitions.groups[own[place]])
+        return Cover(
+            attack=Attack(frozenset(), self.partitions.cut(partition)),
+            left_out=elements.members(np.flatnonzero(self.pool.left_out(cover))),
+            points=tuple(from_triangles(self.pool.covers.sums[cover, place]) for place in places),
+        )

@@ -1,0 +1,196 @@
+"""Best plans by covers: against every plan and attack, where robots see few targets."""
+
+from __future__ import annotations
+
+import copy
+import json
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from ratt_opt import (
+    FileFormatError,
+    MaxMinResult,
+    Problem,
+    ProofError,
+    certify,
+    limited_view_scenario,
+    solve_maxmin,
+    verify_certificate,
+    worst_case_attack,
+)
+from ratt_opt.solvers.maxmin.both_searches import BothSearches
+from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
+from ratt_opt.solvers.maxmin.covers.elements import Elements
+from ratt_opt.solvers.maxmin.covers.separation import Separation
+from ratt_opt.stopping import Stop
+from tests.oracles import brute_force_worst_case
+from tests.strategies import OBJECTIVES, random_graph
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CASES = 40
+
+
+def sparse_problem(rng: np.random.Generator, kind: str, dimension: int = 2) -> Problem:
+    """Two to four robots of one to four elements, each of which sees few of three to five targets."""
+    n, m = int(rng.integers(2, 5)), int(rng.integers(3, 6))
+    robot = np.concatenate([np.full(rng.integers(1, 5), i) for i in range(n)])
+    root = rng.normal(size=(m, dimension, dimension))
+    prior = root @ root.swapaxes(-1, -2) + 0.3 * np.eye(dimension)
+    sees = rng.random((len(robot), m)) < rng.choice([0.2, 0.4])
+    factor = rng.normal(size=(len(robot), m, dimension, dimension))
+    factor *= (sees * rng.choice([0.3, 1.0, 3.0, 10.0], size=sees.shape))[..., None, None]
+    objective = OBJECTIVES[kind](prior, factor @ factor.swapaxes(-1, -2), rng.choice([1.0, 2.0], size=m))
+    graph = random_graph(rng, n)
+    links = list(graph.edges)
+    return Problem(
+        objective,
+        rng.permutation(robot) if rng.random() < 0.3 else robot,
+        graph,
+        int(rng.integers(0, n + 1)),
+        int(rng.integers(0, len(links) + 1)),
+        protected_robots={i for i in range(n) if rng.random() < 0.2},
+        protected_links={link for link in links if rng.random() < 0.2},
+    )
+
+
+def all_plans(problem: Problem) -> list[tuple[int, ...]]:
+    return list(product(*(choice.tolist() for choice in problem.choices)))
+
+
+@pytest.fixture
+def by_covers_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No concave relaxation is searched, and covers are looked for however much robots see."""
+    monkeypatch.setattr(BothSearches, "_run_concave", lambda *_: Stop.NODES)
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.covers.levels.UNSEEN", 0.0)
+
+
+@pytest.mark.usefixtures("by_covers_alone")
+@pytest.mark.parametrize(("kind", "dimension"), [("trace", 2), ("logdet", 2), ("trace", 3), ("logdet", 3)])
+def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tmp_path: Path):
+    proved = 0
+    for seed in range(CASES):
+        problem = sparse_problem(np.random.default_rng([seed, dimension]), kind, dimension)
+        optimum = max(brute_force_worst_case(problem, np.array(plan)) for plan in all_plans(problem))
+        found = solve_maxmin(problem)
+        scale = max(1e-3, problem.objective(range(problem.objective.n)))
+        assert found.lower == pytest.approx(optimum, rel=1e-9, abs=1e-12 * scale)
+        assert optimum - 1e-12 * scale <= found.upper <= optimum + 2e-9 * scale
+        if found.proof is not None and found.proof.covers:
+            proved += 1
+            certificate = certify(problem, found, tmp_path / "c.json")
+            assert certificate.verified.upper <= optimum + 1e-6 * scale
+    assert proved > CASES // 3
+
+
+def fails(problem: Problem, cover: Cover, plan: tuple[int, ...]) -> bool:
+    """Whether a plan counts less than the cover asks for, by its definition."""
+    chosen = {i for i, e in enumerate(plan) if e in cover.left_out}
+    can_be_blinded = problem.n_robots - len(problem.protected_robots)
+    return not chosen & problem.protected_robots and len(chosen) <= min(problem.alpha_s, can_be_blinded)
+
+
+@pytest.mark.parametrize("kind", ["trace", "logdet"])
+def test_a_plan_that_fails_a_cover_is_worth_no_more_than_its_bound(kind: str):
+    failing = 0
+    for seed in range(CASES):
+        rng = np.random.default_rng([seed, 5])
+        problem = sparse_problem(rng, kind)
+        values = {plan: brute_force_worst_case(problem, np.array(plan)) for plan in all_plans(problem)}
+        elements = Elements(problem)
+        separation = Separation(elements.problem)
+        top = max(values.values())
+        for level in top * rng.uniform(0.3, 1.1, 4):
+            share = rng.random(elements.problem.objective.n)
+            separation.violated(share, level, separation.enough)
+            plan = np.array([rng.choice(choice) for choice in elements.problem.choices])
+            attack = worst_case_attack(elements.problem, plan)
+            if attack.upper <= level:
+                separation.from_attack(plan, attack.attack, level)
+        for k in range(len(separation.pool)):
+            cover = separation.stated(k, elements)
+            bound = cover_bound(problem, cover)
+            assert bound <= separation.pool.covers.level[k] * (1 + 1e-9) + 1e-9
+            own = [value for plan, value in values.items() if fails(problem, cover, plan)]
+            failing += len(own)
+            assert max(own, default=-np.inf) <= bound + 1e-12 * max(top, 1.0)
+    assert failing > 1000
+
+
+def closed_by_covers() -> tuple[Problem, MaxMinResult]:
+    for seed in range(10):
+        problem = sparse_problem(np.random.default_rng([seed, 2]), "trace")
+        found = solve_maxmin(problem)
+        if found.proof is not None and len(found.proof.covers) > 1:
+            return problem, found
+    raise AssertionError("no problem was closed by covers")
+
+
+@pytest.fixture
+def document(tmp_path: Path) -> dict[str, Any]:
+    problem, found = closed_by_covers()
+    certify(problem, found, tmp_path / "c.json")
+    return json.loads((tmp_path / "c.json").read_text(encoding="utf-8"))
+
+
+def rejected(document: dict[str, Any], path: Path) -> str:
+    path.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises((ProofError, FileFormatError)) as caught:
+        verify_certificate(path)
+    return str(caught.value)
+
+
+@pytest.mark.usefixtures("by_covers_alone")
+def test_forged_covers_are_refused(document: dict[str, Any], tmp_path: Path):
+    path = tmp_path / "forged.json"
+    covers, tree = document["upper"]["covers"], document["upper"]["tree"]
+    leaf = next(k for k, node in enumerate(tree) if "covers" in node)
+
+    def forged(change: Any) -> str:
+        mutant = copy.deepcopy(document)
+        change(mutant["upper"])
+        return rejected(mutant, path)
+
+    def every(key: str, value: Any) -> Any:
+        return lambda upper: [cover.update({key: value}) for cover in upper["covers"]]
+
+    assert "more than the claim" in forged(every("left_out", []))
+    assert "may meet" in forged(every("left_out", list(range(len(document["problem"]["owners"])))))
+    assert "not positive" in forged(lambda upper: upper["tree"][leaf].update(weights=[0.0], covers=[0]))
+    assert "not positive" in forged(lambda upper: upper["tree"][leaf].update(weights=[], covers=[]))
+    assert "entries" in forged(every("points", []))
+    assert "[0," in forged(every("attack", 10**6))
+    if document["problem"]["alpha_s"] and 0 not in document["problem"]["protected_robots"]:
+
+        def blind(upper: Any) -> None:
+            upper["attacks"].append({"robots": [0], "links": []})
+            every("attack", len(upper["attacks"]) - 1)(upper)
+
+        assert "blinds" in forged(blind)
+    assert len(covers) > 1
+
+
+def test_covers_close_what_concave_relaxations_leave_open(tmp_path: Path):
+    problem = limited_view_scenario(6, 8, alpha_s=2, alpha_c=4, seed=0, view=57.0, communication_range=45.0).problem(
+        "trace"
+    )
+    found = solve_maxmin(problem, gap=1e-6)
+    assert found.proof is not None
+    assert found.proof.covers
+    assert found.upper - found.lower <= 1e-6 * found.upper
+    assert certify(problem, found, tmp_path / "c.json").upper_raised <= 1e-6 * found.upper
+
+
+@pytest.mark.usefixtures("by_covers_alone")
+def test_a_limit_of_nodes_leaves_a_true_bracket():
+    for seed in range(4):
+        problem = limited_view_scenario(5, 6, alpha_s=1, alpha_c=2, seed=seed).problem("trace")
+        whole = solve_maxmin(problem)
+        for nodes in (1, 3, 10):
+            part = solve_maxmin(problem, max_nodes=nodes)
+            assert part.lower <= whole.upper * (1 + 1e-9)
+            assert part.upper >= whole.lower * (1 - 1e-9)
