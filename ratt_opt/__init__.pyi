@@ -164,6 +164,7 @@ from .curvatures.ratios import (
 )
 
 # == The communication graph
+from .graph.any_networkx import communication_graph as communication_graph
 from .graph.survivor_sizes import caa as caa, CaaResult as CaaResult
 from .graph.largest_group.smallest import smallest_largest_group as smallest_largest_group
 from .graph.largest_group.counting import LargestGroup as LargestGroup

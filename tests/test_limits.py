@@ -69,6 +69,7 @@ NO_SEARCH = {
     "all_guarantees",
     "bounded_rational_attack",
     "caa",
+    "communication_graph",
     "count_outcomes",
     "find_normalisation_violation",
     "fit_sensor",

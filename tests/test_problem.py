@@ -79,10 +79,23 @@ def test_interleaved_and_ragged_owners() -> None:
         ({"robot": [-1, 0, 1, 1]}, "robot must hold robots >= 0"),
         ({"objective": 3}, "objective must be a SetFunction; got int"),
         ({"graph": nx.path_graph(3)}, r"graph must have the nodes 0..1; got \[0, 1, 2\]"),
-        ({"graph": nx.Graph([(0, 1), (1, 1)])}, "graph must have no self-loop"),
-        ({"graph": nx.DiGraph([(0, 1)])}, "graph must be an undirected networkx.Graph; got DiGraph"),
-        ({"graph": nx.MultiGraph([(0, 1)])}, "graph must be an undirected networkx.Graph; got MultiGraph"),
-        ({"graph": "complete"}, "graph must be an undirected networkx.Graph; got str"),
+        (
+            {"graph": nx.Graph([(0, 1), (1, 1)])},
+            r"graph must have no self-loop \(communication_graph makes one\); got",
+        ),
+        ({"graph": nx.Graph([("a", "b")])}, r"the nodes 0..1 \(communication_graph makes one\); got"),
+        (
+            {"graph": nx.DiGraph([(0, 1)])},
+            r"graph must be an undirected networkx.Graph \(communication_graph makes one\); got DiGraph",
+        ),
+        (
+            {"graph": nx.MultiGraph([(0, 1)])},
+            r"graph must be an undirected networkx.Graph \(communication_graph makes one\); got MultiGraph",
+        ),
+        (
+            {"graph": "complete"},
+            "graph must be an undirected networkx.Graph; got str",
+        ),
         ({"protected_robots": {5}}, "protected robot must be an integer in"),
         ({"protected_links": {(0, 3)}}, "protected link must be a link of the graph"),
     ],

@@ -18,6 +18,9 @@ __all__ = ["CommunicationGraph", "Link", "neighbour_masks"]
 Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
 
+RECIPE = " (communication_graph makes one)"
+"""What a refusal advises that :func:`ratt_opt.communication_graph` would have prevented."""
+
 
 def neighbour_masks(n_robots: int, links: Iterable[Link]) -> list[int]:
     """Bit mask of the neighbours of each robot by these links."""
@@ -57,13 +60,15 @@ class CommunicationGraph:
         Raises ``InputError`` : not an undirected simple graph, wrong nodes, or a self-loop.
         """
         if not isinstance(graph, nx.Graph) or graph.is_directed() or graph.is_multigraph():
-            raise InputError("graph", "must be an undirected networkx.Graph", type(graph).__name__)
+            recipe = RECIPE if isinstance(graph, nx.Graph) else ""
+            raise InputError("graph", f"must be an undirected networkx.Graph{recipe}", type(graph).__name__)
         if set(graph.nodes) != set(range(n_robots)) or any(isinstance(i, (bool, np.bool_)) for i in graph.nodes):
             nodes = sorted(map(repr, graph.nodes))
-            raise InputError("graph", f"must have the nodes 0..{n_robots - 1}", f"[{', '.join(nodes)}]")
+            recipe = RECIPE if len(nodes) == n_robots else ""
+            raise InputError("graph", f"must have the nodes 0..{n_robots - 1}{recipe}", f"[{', '.join(nodes)}]")
         loops = list(nx.selfloop_edges(graph))
         if loops:
-            raise InputError("graph", "must have no self-loop", loops[0])
+            raise InputError("graph", f"must have no self-loop{RECIPE}", loops[0])
         # Nodes equal to integers may be of another type, such as NumPy's.
         return cls(n_robots, frozenset((int(min(i, j)), int(max(i, j))) for i, j in graph.edges))
 

@@ -1,0 +1,95 @@
+"""Any networkx graph as a communication graph: the stated rule, on drawn graphs of every kind and kind of node."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ratt_opt as ro
+from ratt_opt.errors import InputError
+
+KINDS = (nx.Graph, nx.DiGraph, nx.MultiGraph, nx.MultiDiGraph)
+NODES = st.one_of(
+    st.integers(-3, 12),
+    st.text("ab01 \n\u202e²", max_size=3),
+    st.tuples(st.integers(0, 2), st.sampled_from(["x", "y10", "y9"])),
+    st.floats(-2, 2),
+    st.binary(max_size=2),
+    st.frozensets(st.integers(0, 3), max_size=2),
+)
+
+
+@st.composite
+def graphs(draw):
+    kind, nodes = draw(st.sampled_from(KINDS)), draw(st.lists(NODES, min_size=1, max_size=8))
+    graph = kind()
+    graph.add_nodes_from(nodes)
+    ends = st.sampled_from(nodes)
+    graph.add_edges_from(draw(st.lists(st.tuples(ends, ends), max_size=20)))
+    for node in draw(st.lists(ends, max_size=3)):
+        graph.nodes[node]["label"] = draw(st.one_of(st.text(max_size=3), st.integers()))
+    return graph
+
+
+@given(graphs())
+def test_the_rule(graph):
+    before = graph.copy()
+    found = ro.communication_graph(graph)
+    assert nx.utils.graphs_equal(graph, before)
+    assert type(found) is nx.Graph
+    assert list(found) == list(range(len(graph)))
+    node = {i: found.nodes[i]["node"] for i in found}
+    assert set(node.values()) == set(graph)
+    for i in found:
+        for j in found:
+            edges = [sum((a, b) == ends for a, b in graph.edges()) for ends in ((node[i], node[j]), (node[j], node[i]))]
+            count = max(edges) if graph.is_directed() else sum(edges)
+            assert found.has_edge(i, j) == (i != j and count > 0)
+            if found.has_edge(i, j):
+                assert found.edges[i, j]["count"] == count
+    assert all(found.nodes[i]["name"].isprintable() for i in found)
+    ro.Problem(ro.Modular(np.ones(len(found))), np.arange(len(found)), found, 0, 0)
+    has_parallel = any(count > 1 for *_, count in found.edges(data="count"))
+    if has_parallel:
+        with pytest.raises(
+            InputError, match=r'^graph must have no parallel edges \(parallel="count" takes them\); got'
+        ):
+            ro.communication_graph(graph, parallel="refuse")
+    else:
+        assert nx.utils.graphs_equal(ro.communication_graph(graph, parallel="refuse"), found)
+
+
+@given(
+    st.lists(st.one_of(st.integers(), st.text("ab09", max_size=4), st.tuples(st.integers())), unique=True), st.data()
+)
+def test_numbers_do_not_depend_on_the_order_in_which_nodes_were_added(nodes, data):
+    graph, other = nx.Graph(), nx.Graph()
+    graph.add_nodes_from([*nodes, "last"])
+    other.add_nodes_from([*data.draw(st.permutations(nodes)), "last"])
+    for one in (graph, other):
+        one.add_edges_from(pairwise([*nodes, "last"]))
+    assert nx.utils.graphs_equal(ro.communication_graph(graph), ro.communication_graph(other))
+
+
+def test_order_and_names():
+    graph = nx.MultiDiGraph([("r10", "r2"), ("r2", "r10"), (3, "r2"), (3, "r2"), (3, 3), ((0, 1), 1.5)])
+    graph.nodes["r2"]["label"] = "Győr\nwest"
+    graph.nodes[3].update(label="", name="three", x=1.0)
+    found = ro.communication_graph(graph)
+    assert [found.nodes[i]["node"] for i in found] == [1.5, 3, "r2", "r10", (0, 1)]
+    assert [found.nodes[i]["name"] for i in found] == ["1.5", "three", "Győr west", "r10", "(0, 1)"]
+    assert sorted(found.edges(data="count")) == [(0, 4, 1), (1, 2, 2), (2, 3, 1)]
+    assert found.nodes[1]["x"] == 1.0
+
+
+def test_what_is_refused():
+    for graph, text in ((3, "must be a networkx graph; got int"), (nx.Graph(), "must have at least one node")):
+        with pytest.raises(InputError, match=text):
+            ro.communication_graph(graph)
+    with pytest.raises(InputError, match="parallel must be one of count, refuse; got sum"):
+        ro.communication_graph(nx.path_graph(2), parallel="sum")
