@@ -24,6 +24,7 @@ from .scenario.files import (
 )
 from .scenario.limited_view import limited_view_scenario as limited_view_scenario
 from .scenario.networks import network_scenario as network_scenario
+from .scenario.on_graph import graph_scenario as graph_scenario
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.mrclam import from_mrclam as from_mrclam
 from .scenario.mrclam_reader import MrclamData as MrclamData, read_mrclam as read_mrclam

@@ -74,6 +74,7 @@ NO_SEARCH = {
     "find_normalisation_violation",
     "fit_sensor",
     "from_mrclam",
+    "graph_scenario",
     "greedy",
     "greedy_attack",
     "group_size_bound",

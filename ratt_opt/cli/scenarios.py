@@ -49,7 +49,11 @@ def new(
     ] = None,
     graph: Annotated[
         str | None,
-        typer.Option("--graph", help="Family of a random network: dense, disk-12, disk-6, small-world or hubs."),
+        typer.Option(
+            "--graph",
+            help="Family of a random network: dense, disk-12, disk-6, small-world or hubs. "
+            "Or a graph file, whose nodes are the robots: .graphml, .gml, .json (node-link), .edgelist, .edges, .txt.",
+        ),
     ] = None,
     mrclam: Annotated[Path | None, typer.Option("--mrclam", help="Folder of the MRCLAM dataset.")] = None,
     time: Annotated[
@@ -64,7 +68,8 @@ def new(
     ] = None,
     as_json: JsonFlag = False,
 ) -> None:
-    """Write a scenario file: random (--robots, --targets, --seed) or from real robots (--mrclam, --time).
+    """Write a scenario file: random (--robots, --targets, --seed), on the graph of a file (--graph, --targets, --seed),
+    or from real robots (--mrclam, --time).
 
     With --view the robots see only a part of what is around them, and a plan says what each looks at.
     """
@@ -110,11 +115,22 @@ def schema(
 
 def _random(drawn: "Mapping[str, int | None]", budgets: tuple[int, int], graph: str | None) -> "Scenario":
     from ratt_opt.scenario.generator import random_scenario
-    from ratt_opt.scenario.networks import network_scenario
+    from ratt_opt.scenario.networks import NETWORK_FAMILIES, network_scenario
 
+    if graph is not None and graph not in NETWORK_FAMILIES and Path(graph).suffix:
+        return _on_graph(dict(drawn), budgets, Path(graph))
     robots, targets, seed = _given(drawn)
     draw = random_scenario if graph is None else partial(network_scenario, graph)
     return draw(robots, targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
+
+
+def _on_graph(drawn: "dict[str, int | None]", budgets: tuple[int, int], file: Path) -> "Scenario":
+    from ratt_opt.scenario.graph_files import read_graph
+    from ratt_opt.scenario.on_graph import graph_scenario
+
+    _refuse({"robots": drawn.pop("robots")}, wants="no --graph file, whose nodes are the robots")
+    targets, seed = _given(drawn)
+    return graph_scenario(read_graph(file), targets, alpha_s=budgets[0], alpha_c=budgets[1], seed=seed)
 
 
 def _limited(

@@ -23,7 +23,7 @@ from ratt_opt.scenario.own_sensors import own_sensors
 if TYPE_CHECKING:
     from ratt_opt.scenario.record import Record
 
-__all__ = ["load_input", "load_scenario", "read_json", "save_scenario", "scenario_schema"]
+__all__ = ["load_input", "load_scenario", "read_bytes", "read_json", "save_scenario", "scenario_schema"]
 
 LARGEST_FILE = 256 * 2**20
 """Bytes; a longer input file is refused, and never held whole."""
@@ -158,13 +158,24 @@ def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _read_text(path: Path) -> str:
     try:
+        return read_bytes(path).removeprefix(BOM_UTF8).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise FileFormatError(str(path), "must be UTF-8 text", f"byte {error.start} is not") from None
+
+
+def read_bytes(path: Path) -> bytes:
+    """Read a file of at most ``LARGEST_FILE`` bytes.
+
+    Raises
+    ------
+    FileFormatError : it is longer, or cannot be read.
+    """
+    try:
         # Pipes and devices have no size to ask for, so reading itself stops past the limit.
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            raise FileFormatError(str(path), f"must be at most {LARGEST_FILE} bytes", "more")
-        return content.removeprefix(BOM_UTF8).decode("utf-8")
     except OSError as error:
         raise FileFormatError(str(path), "must be a file that can be read", error.strerror or "unreadable") from None
-    except UnicodeDecodeError as error:
-        raise FileFormatError(str(path), "must be UTF-8 text", f"byte {error.start} is not") from None
+    if len(content) > LARGEST_FILE:
+        raise FileFormatError(str(path), f"must be at most {LARGEST_FILE} bytes", "more")
+    return content

@@ -71,7 +71,8 @@ def network_links(family: str, positions: FloatArray, seed: int) -> tuple[Link, 
     InputError : the family is unknown, or ``seed`` is not an integer >= 0.
     """
     if family not in NETWORK_FAMILIES:
-        raise InputError("graph", f"must be one of {', '.join(NETWORK_FAMILIES)}", family)
+        rule = f"must be one of {', '.join(NETWORK_FAMILIES)} (or, in ratt-opt new, a graph file)"
+        raise InputError("graph", rule, family)
     seed = check_integer("seed", seed, low=0)
     links = NETWORK_FAMILIES[family](positions, seed)
     return tuple(sorted((min(i, j), max(i, j)) for i, j in links))
