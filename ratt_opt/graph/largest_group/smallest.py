@@ -18,6 +18,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph, Link
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
 from ratt_opt.graph.few_cuts import attacks_are_few, partitions_by_few_cuts
+from ratt_opt.graph.largest_group.bridges import by_bridges, is_nearly_a_tree
 from ratt_opt.graph.largest_group.counting import (
     COUNTED,
     LargestGroup,
@@ -71,7 +72,8 @@ def smallest_largest_group(
         ``"enumeration"`` (partitions into connected groups; any graph up to 14 robots, and up to 60 where a link
         budget allows few groups, as on sparse graphs), ``"milp"`` (any graph), ``"spreading"`` (hundreds of robots;
         a bracket), ``"counting"`` (any size; a bound and a heuristic cut only), or ``"auto"``: of caa, enumeration,
-        spreading and milp what applies, until one is exact; where few cuts are possible, all of them
+        spreading and milp what applies, until one is exact; if few cuts are possible, all of them, and if the graph is
+        hardly more than a tree, its bridges and few links beside them
     protected_links : links that cannot be cut
     time_limit, max_nodes : seconds and nodes for the enumeration beyond 14 robots, and for the integer program
     budget : an outer search's budget: its seconds and interrupts count too
@@ -109,6 +111,8 @@ def smallest_largest_group(
 def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
     if threat.links_alike or threat.graph.n_robots <= LARGEST_LATTICE:
         return by_search(threat, budget)
+    if is_nearly_a_tree(threat):
+        return by_bridges(threat, budget)
     if attacks_are_few(threat):
         return by_few_cuts(threat, budget)
     known = by_spreading(threat, budget)
