@@ -31,6 +31,7 @@ from .scenario.mrclam_reader import MrclamData as MrclamData, read_mrclam as rea
 from .scenario.simulation import simulate_tracking as simulate_tracking, Tracking as Tracking
 
 # == Planners
+from .solvers.refined import RefinedPlan as RefinedPlan, refined as refined
 from .solvers.ratt import ratt as ratt, greedy as greedy, myopic as myopic, random_plan as random_plan
 from .solvers.maxmin.solve import nonrobust_optimum as nonrobust_optimum, solve_maxmin as solve_maxmin
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
@@ -80,7 +81,11 @@ from .missions.models.targets import (
     KnownVelocity as KnownVelocity,
     TargetMotion as TargetMotion,
 )
-from .missions.players.planners import MaxMinPlanner as MaxMinPlanner, RandomPlanner as RandomPlanner
+from .missions.players.planners import (
+    MaxMinPlanner as MaxMinPlanner,
+    RandomPlanner as RandomPlanner,
+    RefinedPlanner as RefinedPlanner,
+)
 from .missions.replay.fit_sensor import FittedSensor as FittedSensor, fit_sensor as fit_sensor
 from .missions.replay.replay import (
     Replay as Replay,

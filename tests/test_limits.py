@@ -47,6 +47,8 @@ ROWS = {
     "smallest_largest_group by programs": lambda c, t: ro.smallest_largest_group(
         c.graph, c.cut, method="milp", time_limit=t
     ),
+    "refined": lambda c, t: ro.refined(c.problem, time_limit=t),
+    "refined on any graph": lambda c, t: ro.refined(c.on_graph, time_limit=t),
     "solve_maxmin": lambda c, t: ro.solve_maxmin(c.problem, gap=0, time_limit=t),
     "solve_maxmin on any graph": lambda c, t: ro.solve_maxmin(c.on_graph, gap=0, time_limit=t),
     "solve_maxmin of any function": lambda c, t: ro.solve_maxmin(c.any_problem, time_limit=t),

@@ -21,7 +21,7 @@ __all__ = ["track"]
 JOURNAL = "journal.jsonl"
 """Every step's decisions, in the folder of the results: run the same command again after a kill, and it goes on."""
 
-Planner = Literal["ratt", "maxmin", "greedy", "myopic", "nonrobust", "random"]
+Planner = Literal["ratt", "refined", "maxmin", "greedy", "myopic", "nonrobust", "random"]
 Attacker = Literal["none", "worst", "bounded rational", "greedy", "random"]
 
 
@@ -54,7 +54,8 @@ def track(
         typer.Option("--linearisation", help="First order is the textbook EKF, without the second-order term."),
     ] = "second order",
     time_limit: Annotated[
-        float | None, typer.Option("--time-limit", help="Seconds a step for maxmin; else limited by nodes.")
+        float | None,
+        typer.Option("--time-limit", help="Seconds a step for refined or maxmin; else limited by kicks or nodes."),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Seed of everything random.")] = 0,
     seeds: Annotated[int, typer.Option("--seeds", min=1, help="Missions for the figures' intervals.")] = 1,
@@ -65,18 +66,22 @@ def track(
     An interrupt (Ctrl-C) keeps the steps flown and exits with 130; the same command goes on from there.
     """
     from ratt_opt._files import output_directory
-    from ratt_opt.missions.players.planners import MaxMinPlanner
+    from ratt_opt.missions.players.planners import MaxMinPlanner, RefinedPlanner
     from ratt_opt.missions.run import run_mission
     from ratt_opt.missions.world import MissionModel
     from ratt_opt.report.mission.write import FILES, write_mission
     from ratt_opt.scenario.files import load_scenario
 
-    if time_limit is not None and planner != "maxmin":
-        raise InputError("--time-limit", "must come with --planner maxmin", planner)
+    if time_limit is not None and planner not in {"maxmin", "refined"}:
+        raise InputError("--time-limit", "must come with --planner maxmin or refined", planner)
     scenario = load_scenario(file)
     folder = output_directory(out, *FILES)
     model = MissionModel(motion=motion, linearisation=linearisation, objective=objective, beam=beam)
-    chosen = planner if time_limit is None else MaxMinPlanner(time_limit=time_limit, max_nodes=None)
+    chosen: str | MaxMinPlanner | RefinedPlanner = planner
+    if time_limit is not None and planner == "maxmin":
+        chosen = MaxMinPlanner(time_limit=time_limit, max_nodes=None)
+    elif time_limit is not None:
+        chosen = RefinedPlanner(time_limit=time_limit, max_kicks=None)
     missions = []
     with Step("flying") as shown, _resumable(folder):
         for k in range(seeds):

@@ -66,8 +66,8 @@ def run_mission(
     ----------
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
     steps : T, from 1 to a million: every step is kept
-    planner : ``"ratt"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or ``f(problem)``
-        that returns a plan or its elements, such as :class:`MaxMinPlanner`
+    planner : ``"ratt"``, ``"refined"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or
+        ``f(problem)`` that returns a plan or its elements, such as :class:`MaxMinPlanner`
     attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
         that returns an :class:`Attack`
     attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or

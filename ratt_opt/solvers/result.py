@@ -48,10 +48,23 @@ class MaxMinResult(ByValue, Shown):
     """The attack on ``elements`` that ``lower`` rests on; ``None`` where it was enumerated."""
     proof: UpperProof | None = None
     """What ``upper`` rests on; ``None`` where it was enumerated."""
+    unattacked: float | None = None
+    """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
+    ``None`` where plans were enumerated, and for set functions that are no information criterion."""
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data, without its proof: unknown numbers are ``None``."""
-        names = ("elements", "lower", "upper", "stop", "evaluations", "nodes", "posterior_gap", "worst_case")
+        names = (
+            "elements",
+            "lower",
+            "upper",
+            "stop",
+            "evaluations",
+            "nodes",
+            "posterior_gap",
+            "worst_case",
+            "unattacked",
+        )
         return {name: plain(getattr(self, name)) for name in names}
 
     def __repr__(self) -> str:

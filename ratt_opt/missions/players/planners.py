@@ -12,6 +12,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import player_called
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
+from ratt_opt.solvers.refined import RefinedPlan, refined
 from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     Planner = Callable[[Problem], Plan | MaxMinResult | IntArray]
 
-__all__ = ["PLANNERS", "AnytimePlanner", "MaxMinPlanner", "RandomPlanner", "planner_called"]
+__all__ = ["PLANNERS", "AnytimePlanner", "MaxMinPlanner", "RandomPlanner", "RefinedPlanner", "planner_called"]
 
 
 @runtime_checkable
@@ -55,6 +56,22 @@ class MaxMinPlanner:
 
 
 @dataclass(frozen=True, slots=True)
+class RefinedPlanner:
+    """RATT's plan, improved against the attacks that hurt it; limited by kicks alone it is the same on every run."""
+
+    time_limit: float | None = None
+    max_kicks: int | None = 20
+
+    def __call__(self, problem: Problem, start: IntArray | None = None) -> RefinedPlan:
+        """Improve until out of limits, from a plan ``start`` too if one is known."""
+        return refined(problem, time_limit=self.time_limit, max_kicks=self.max_kicks, start=start)
+
+    def within(self, problem: Problem, budget: Budget, start: IntArray) -> RefinedPlan:
+        """Improve until the budget is spent, whatever the limits are."""
+        return refined(problem, time_limit=None, budget=budget, start=start)
+
+
+@dataclass(frozen=True, slots=True)
 class RandomPlanner:
     """A random plan; the numbers of a step depend on the seed and on how much the robots have to choose from."""
 
@@ -70,6 +87,7 @@ class RandomPlanner:
 PLANNERS: dict[str, Planner] = {
     "ratt": ratt,
     "maxmin": MaxMinPlanner(),
+    "refined": RefinedPlanner(),
     "greedy": greedy,
     "myopic": myopic,
     "nonrobust": nonrobust_optimum,

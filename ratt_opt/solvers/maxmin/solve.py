@@ -22,6 +22,7 @@ from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.plans.ties import break_ties
 from ratt_opt.solvers.maxmin.search import Known
 from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
@@ -137,6 +138,8 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
             search = BothSearches(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew, by_covers=by_covers)
             search.concave.first.use(warm.add_cuts(search.concave.first.cuts, outcomes))
             stop = _search_and_prove(search, Turns(budget, incumbent), progress)
+        if incumbent.is_proved and not budget.is_over:
+            break_ties(incumbent, budget)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -190,6 +193,7 @@ def _result(
         posterior_gap=None if before is None or before <= lower else float((upper - lower) / (before - lower)),
         worst_case=proved.worst_case,
         proof=proof,
+        unattacked=float(problem.team_value(proved.elements, Attack())),
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
@@ -16,16 +16,17 @@ if TYPE_CHECKING:
 __all__ = ["Candidates", "climb"]
 
 
-def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -> IntArray:
+def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget, softness: float = 0.0) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
     ``plan`` : (N,) element of each robot to start from; not changed. Where the time is up, the pass ends where it is.
+    ``softness`` : of the mean of small values that judges; 0 for the smallest value
     """
     objective = pool.objective
     current = plan.copy()
     points = pool.group_points(objective.information[current])
     base = objective.value(points)
-    value = float(pool.outcome_values(base).min(initial=np.inf))
+    value = float(_judged(pool.outcome_values(base), softness))
     unchanged, i = 0, 0
     seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
     while unchanged < problem.n_robots and not budget.is_over:
@@ -37,7 +38,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -
             change = objective.information[others] - objective.information[current[i]]
             values = np.repeat(base[None], len(others), axis=0)
             values[:, rows] = objective.value(points[rows][None] + change[:, None])
-            worst = pool.outcome_values(values).min(axis=1)
+            worst = _judged(pool.outcome_values(values), softness)
             k = int(worst.argmax())
             if worst[k] > value + 1e-12 * abs(value) + objective.rounding:  # a tie is no improvement
                 current[i], value, base = others[k], float(worst[k]), values[k]
@@ -48,6 +49,14 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget) -
                 seen.add(key)
         i = (i + 1) % problem.n_robots
     return current
+
+
+def _judged(values: FloatArray, softness: float) -> FloatArray:
+    """The smallest of values (..., O), or a mean of small ones: what is ``softness`` more counts e times less."""
+    least = values.min(axis=-1, initial=np.inf)
+    if softness == 0.0 or not values.shape[-1]:
+        return np.asarray(least)
+    return np.asarray(least - softness * np.log(np.exp((least[..., None] - values) / softness).sum(axis=-1)))
 
 
 class Candidates:
