@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["SeparateProcesses", "local_processes"]
+__all__ = ["SeparateProcesses", "local_processes", "may_start_processes"]
 
 T = TypeVar("T")
 
@@ -41,6 +41,11 @@ def _stop_sending(calls: Any, future: Future[Any]) -> None:
     if calls is not None and not future.cancelled() and isinstance(future.exception(), BrokenProcessPool):
         with suppress(OSError):  # closed already
             calls._reader.close()
+
+
+def may_start_processes() -> bool:
+    """Whether this process may start others; a worker of a ``multiprocessing.Pool`` may not (it is daemonic)."""
+    return not multiprocessing.current_process().daemon
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import warnings
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from time import monotonic
@@ -12,7 +13,7 @@ from uuid import uuid4
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
-from ratt_opt.processes import SeparateProcesses
+from ratt_opt.processes import SeparateProcesses, may_start_processes
 from ratt_opt.solvers.maxmin.subtrees.worker import Searched, Work, search_nodes
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Crew", "check_workers", "open_crew"]
 
+ALONE = "workers: a daemonic process may start no others, so the search goes on alone"
 LOSSES = 3
 """Pieces of work lost one after the other, none coming back in between, after which nobody is asked any more."""
 
@@ -61,7 +63,7 @@ class Crew:
         """Give away the search of some nodes."""
         try:
             future = self._executor.submit(search_nodes, work)
-        except (RuntimeError, OSError) as error:  # broken, shut down, or no more processes
+        except (RuntimeError, OSError, ImportError) as error:  # broken, shut down, no more processes, no semaphores
             future = Future()
             future.set_exception(error)
         self._at_work[future] = work, nodes
@@ -102,7 +104,10 @@ def check_workers(problem: Problem, workers: int | Executor | None) -> None:
 
 @contextmanager
 def open_crew(workers: int | Executor | None) -> Iterator[Crew | None]:
-    """The crew for one search, ``None`` where it is alone; own processes are ended with the block."""
+    """The crew for one search, ``None`` where it is alone; own processes are ended with the block.
+
+    If this process may start no others, the search is alone, with a warning.
+    """
     if isinstance(workers, Executor):
         crew = Crew(workers, _size(workers))
         try:
@@ -110,6 +115,9 @@ def open_crew(workers: int | Executor | None) -> Iterator[Crew | None]:
         finally:
             crew.recall()
     elif workers is None or workers == 1:
+        yield None
+    elif not may_start_processes():
+        warnings.warn(ALONE, RuntimeWarning, stacklevel=2)
         yield None
     else:
         executor = SeparateProcesses(int(workers))
