@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json, write_together
+from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.page.page import report_page
 from ratt_opt.report.picture import picture_of
@@ -50,7 +50,7 @@ def write_numbers(report: BoundReport, folder: str | Path) -> list[Path]:
     writers = (
         lambda file: write_json(file, report.to_dict()),
         lambda file: file.write_text(page, encoding="utf-8"),
-        lambda file: _write_plan(report, file),
+        lambda file: write_csv(file, PLAN_COLUMNS, plan_rows(report)),
     )
     return write_together(output_directory(folder), dict(zip(NUMBERS, writers, strict=True)), outdated=FIGURES)
 
@@ -69,10 +69,3 @@ def write_verdict(report: BoundReport, folder: Path) -> None:
         lambda file: file.write_text(page, encoding="utf-8"),
     )
     write_together(folder, dict(zip(NUMBERS[: len(writers)], writers, strict=True)))
-
-
-def _write_plan(report: BoundReport, path: Path) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(PLAN_COLUMNS)
-        table.writerows(plan_rows(report))

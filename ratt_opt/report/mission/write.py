@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json, write_together
 from ratt_opt.errors import InputError
+from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.figure import save_figure
 from ratt_opt.report.mission.animation import save_gif
 from ratt_opt.report.mission.figures import mission_figure
@@ -16,7 +16,7 @@ from ratt_opt.report.mission.player import player_page
 from ratt_opt.report.mission.tables import MISSION_COLUMNS, TRACK_COLUMNS, mission_rows, track_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from ratt_opt.missions.result import Mission
 
@@ -36,8 +36,8 @@ def write_mission(mission: Mission, folder: str | Path, others: Sequence[Mission
     figure = mission_figure([mission, *others])
     writers = (
         lambda file: write_json(file, mission.to_dict()),
-        lambda file: _write_table(file, MISSION_COLUMNS, mission_rows(mission)),
-        lambda file: _write_table(file, TRACK_COLUMNS, track_rows(mission)),
+        lambda file: write_csv(file, MISSION_COLUMNS, mission_rows(mission)),
+        lambda file: write_csv(file, TRACK_COLUMNS, track_rows(mission)),
         lambda file: save_figure(figure, file),
         lambda file: save_figure(figure, file),
         lambda file: file.write_text(player_page(mission), encoding="utf-8"),
@@ -61,10 +61,3 @@ def write_animation(mission: Mission, path: str | Path) -> Path:
     if target.suffix == ".mcap":
         return write_atomically(target, lambda file: save_log(mission, file))
     raise InputError("path", "must end in .gif, .html or .mcap", target)
-
-
-def _write_table(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(columns)
-        table.writerows(rows)
