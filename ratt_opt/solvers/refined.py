@@ -20,10 +20,10 @@ from ratt_opt._values import shown
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.progress import Step
-from ratt_opt.solvers.maxmin.plans.candidates import climb
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent, ProvedPlan
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.plans.ties import break_ties
+from ratt_opt.solvers.maxmin.plans.walk import Walk
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.undominated import UndominatedProblem, dominators, undominated
 from ratt_opt.stopping import Stop
@@ -43,13 +43,6 @@ BEST_SHARE = 0.7
 """Of that, for the best plan; the rest is for an attack on RATT's plan that leaves it no more."""
 PROOF_NODES = 500_000
 """Of one exact attack: nearly all on teams of up to 30 robots close in less."""
-FEWEST = 2
-"""Robots that take another element in a kick; up to a third of the team do."""
-SOFTNESS = 0.01
-"""Share of the best value: what an attack leaves more by it counts e times less in the mean. At 10 robots 0.003 to 0.03
-do as well; without it half of the teams end a tenth below the best plan."""
-WORSE, RETURN = 0.01, 50
-"""Share of the best value that a step may lose, and kicks in vain after which the best plan is gone back to."""
 PATIENCE = 200
 """Kicks in vain after which a search without a limit of time ends: teams of six robots take a tenth of a second."""
 
@@ -115,7 +108,7 @@ def refined(
         incumbent.pool.list_all()
         others = [planner(problem, budget=own).elements for planner in (greedy, myopic)]
         _meet(incumbent, [among[plan] for plan in (first.elements, *given, *others)])
-        kicks = _Walk(incumbent, rng).run(own, kicks_left)
+        kicks = _walked(incumbent, rng, own, kicks_left)
         _prove(incumbent, own)
         break_ties(incumbent, own)
     except OutOfBudget as out:
@@ -146,45 +139,11 @@ def _prove(incumbent: Incumbent, budget: Budget) -> None:
         incumbent.adversary.attack(first, budget.part(max_nodes=PROOF_NODES), proved.lower)
 
 
-class _Walk:
-    """A walk from plan to plan, each kicked from the one before and climbed from; the best one is attacked exactly."""
-
-    def __init__(self, incumbent: Incumbent, rng: np.random.Generator) -> None:
-        self._incumbent, self._rng = incumbent, rng
-        self._plan = incumbent.candidates.best
-        self._in_vain = 0
-
-    def run(self, budget: Budget, most: int | None) -> int:
-        """Walk on for as long as there is time; how many kicks that were."""
-        until = budget.part(1 - (PROOF_SHARE_OF_ALL if self._incumbent.pool.complete else PROOF_SHARE))
-        kicks, is_endless = 0, most is None and np.isinf(budget.seconds_left)
-        while not until.is_over and kicks != most and not (is_endless and self._in_vain >= PATIENCE):
-            kicks += 1
-            self._step(until)
-        return kicks
-
-    def _step(self, budget: Budget) -> None:
-        """Go where a kick leads, unless that is much worse; from the best plan again after some kicks in vain."""
-        incumbent, candidates = self._incumbent, self._incumbent.candidates
-        softness = SOFTNESS * abs(candidates.level)
-        plan = climb(incumbent.problem, incumbent.pool, self._kicked(), budget, softness)
-        plan = climb(incumbent.problem, incumbent.pool, plan, budget)
-        self._in_vain += 1
-        if incumbent.offer(plan):
-            self._in_vain = 0
-        value = incumbent.pool.plan_value(plan)
-        if value >= incumbent.pool.plan_value(self._plan) - WORSE * abs(candidates.level):
-            self._plan = plan
-        if self._in_vain % RETURN == 0:
-            self._plan = candidates.best
-
-    def _kicked(self) -> IntArray:
-        plan, choices = self._plan.copy(), self._incumbent.problem.choices
-        most = max(FEWEST, len(plan) // 3)
-        count = int(self._rng.integers(FEWEST, most + 1)) if len(plan) > 1 else 1
-        for i in self._rng.choice(len(plan), min(count, len(plan)), replace=False).tolist():
-            plan[i] = self._rng.choice(choices[i])
-        return plan
+def _walked(incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most: int | None) -> int:
+    """Walk for as long as there is time, that for the proof left aside; how many kicks that were."""
+    until = budget.part(1 - (PROOF_SHARE_OF_ALL if incumbent.pool.complete else PROOF_SHARE))
+    patience = PATIENCE if most is None and np.isinf(budget.seconds_left) else None
+    return Walk(incumbent, rng).run(until, most, patience)
 
 
 def _best(few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int, stop: Stop) -> RefinedPlan:

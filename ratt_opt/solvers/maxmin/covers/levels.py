@@ -19,6 +19,7 @@ from ratt_opt.solvers.maxmin.covers.records import BY_COVER, BY_SUM, DiveProof
 from ratt_opt.solvers.maxmin.covers.search import Ending, LevelSearch
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.frontier import ClosingRule
+from ratt_opt.solvers.maxmin.plans.walk import Walk
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ UNSEEN = 0.25
 """Least share of pairs of an element and a target without information for covers to be looked for."""
 SHARES = (0.0, 0.25, 0.5, 0.75)
 """Of what is open, how far above the best plan the levels are that are tried in turn."""
+WALK_KICKS, WALK_SHARE = 50, 0.05
+"""Kicks, and share of the time left, in which a better plan is looked for once the best plan's level took too long."""
 FIRST_RUNS, GROWTH = 20, 2
 """Runs of the first search at each level, and how many times as many the next ones have."""
 
@@ -48,6 +51,7 @@ class CoverSearch:
         self._proof: DiveProof | None = None
         self._searches: dict[int, LevelSearch] = {}
         self._runs, self._share = FIRST_RUNS, 0
+        self._walk = Walk(known.incumbent, np.random.default_rng(0))
 
     @classmethod
     def of(cls, known: Known) -> CoverSearch | None:
@@ -84,6 +88,8 @@ class CoverSearch:
                 return Stop.NODES
             search = self._search()
             ending = search.run(turns, self._runs)
+            if ending is Ending.LIMIT and self._share == 0:
+                self._walk.run(budget.part(WALK_SHARE), WALK_KICKS)
             if ending is Ending.PROVED:
                 self._keep(search)
                 del self._searches[self._share]
