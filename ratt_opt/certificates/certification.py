@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.certificates.verifier.verified import Verified
 
-__all__ = ["INTERRUPTED", "PENDING", "Certificate", "Certification"]
+__all__ = ["INTERRUPTED", "NOT_ASKED_FOR", "PENDING", "Certificate", "Certification"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +41,8 @@ class Certification:
     final: bool = True
 
 
+NOT_ASKED_FOR = Certification(why_not="not asked for")
+"""What a report says that was made without one."""
 PENDING = Certification(
     why_not="not finished when this report was written; a certificate beside it is of an earlier one", final=False
 )

@@ -11,7 +11,7 @@ from flint import arb, ctx, fmpq
 
 from ratt_opt._files import write_atomically
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.certification import Certificate, Certification
+from ratt_opt.certificates.certification import NOT_ASKED_FOR, Certificate, Certification
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
@@ -97,7 +97,7 @@ def certify_if_possible(
     ProofError : the result's proof has a fault. One that is not decided within the verifier's limits is a reason.
     """
     if path is None:
-        return Certification(why_not="not asked for")
+        return NOT_ASKED_FOR
     if not _is_known(problem):
         return Certification(why_not="only the trace, log-det and max-eigenvalue criteria have certificates")
     if result.proof is None:

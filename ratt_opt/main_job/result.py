@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt._files import output_directory
 from ratt_opt._rounding import down, up
+from ratt_opt.budget import Budget
+from ratt_opt.certificates.certification import NOT_ASKED_FOR, Certification
+from ratt_opt.certificates.write import certify_if_possible
+from ratt_opt.errors import ProofError
 from ratt_opt.main_job.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.notebook import plan_view, report_view
@@ -21,7 +26,6 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
-    from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
@@ -67,6 +71,9 @@ class PlanAssessment:
 
     def __hash__(self) -> int:
         return hash((self.name, self.controls))
+
+
+CERTIFICATE, SECONDS = "certificate.json", 60.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -161,17 +168,34 @@ class BoundReport:
         """The report as plain data, which is what ``report.json`` holds: unknown numbers are ``None``."""
         return report_document(self)
 
-    def save(self, directory: str | Path) -> list[Path]:
+    def save(
+        self, directory: str | Path, *, certificate: bool = True, time_limit: float | None = SECONDS
+    ) -> list[Path]:
         """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
 
         ``report.json`` (all of it), ``report.html`` (to read), ``plan.csv`` (to execute), ``plan.png``, ``plan.svg``,
-        and a copy of the certificate where there is one.
+        and ``certificate.json``: a copy of the report's, or if none was asked for before, one that is written now.
+
+        Parameters
+        ----------
+        certificate : whether to write one now; the files say why there is none
+        time_limit : seconds for that
 
         Raises
         ------
         InputError : the folder cannot be written.
+        ProofError : the proof has a fault; the other files are written.
         """
-        return write_report(self, directory)
+        if not certificate or self.certificate != NOT_ASKED_FOR:
+            return write_report(self, directory)
+        path = output_directory(directory) / CERTIFICATE
+        try:
+            proof = certify_if_possible(self.problem, self.optimum, path, Budget(time_limit), source=self.source)
+        except ProofError as fault:
+            failed = Certification(why_not=f"the proof has a fault: {fault}", final=False)
+            write_report(replace(self, certificate=failed), directory)
+            raise
+        return write_report(replace(self, certificate=proof), directory)
 
     def plot(self) -> Figure:
         """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""

@@ -29,6 +29,17 @@ def test_save_returns_the_files_it_wrote(saved):
     assert ro.verify_certificate(out / "certificate.json").upper == report.certificate.certificate.verified.upper
 
 
+def test_save_writes_a_certificate_that_was_not_asked_for_before(tmp_path):
+    report = ro.bound(SCENARIO)
+    files = report.save(tmp_path / "with")
+    assert tmp_path / "with" / "certificate.json" in files
+    verified = ro.verify_certificate(tmp_path / "with" / "certificate.json")
+    assert (verified.lower, verified.upper) == pytest.approx((report.optimum.lower, report.optimum.upper))
+    said = json.loads((tmp_path / "with" / "report.json").read_text())["certificate"]
+    assert "not asked for" not in json.dumps(said)
+    assert not any(file.name == "certificate.json" for file in report.save(tmp_path / "without", certificate=False))
+
+
 def test_the_archive_runs_again_and_says_the_same(saved, tmp_path):
     """The input in it is whole: planned again, it gives the same report."""
     report, out, _ = saved

@@ -81,7 +81,7 @@ def tick() -> None:
     """Raise :class:`UndecidedError` when the time is up."""
     work = _CURRENT.get()
     if work is not None and monotonic() > work.ends:
-        raise UndecidedError(f"not decided within {work.limit:g} s")
+        raise UndecidedError(f"not decided within {work.limit:.2g} s" if work.limit > 0 else "no time was left for it")
 
 
 def hold(number: fmpq, count: int = 1) -> None:
