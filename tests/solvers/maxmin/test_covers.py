@@ -87,6 +87,18 @@ def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tm
     assert proved > CASES // 3
 
 
+@pytest.mark.usefixtures("by_covers_alone")
+@pytest.mark.parametrize(("name", "most"), [("levels.MOST_COVERS", 4), ("dive.MOST_RECORDED", 8)])
+def test_forgetting_covers_and_searches_makes_no_bracket_false(name: str, most: int, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(f"ratt_opt.solvers.maxmin.covers.{name}", most)
+    for seed in range(CASES // 2):
+        problem = sparse_problem(np.random.default_rng([seed, 2]), "trace")
+        optimum = max(brute_force_worst_case(problem, np.array(plan)) for plan in all_plans(problem))
+        found = solve_maxmin(problem, max_nodes=300)
+        assert found.lower <= optimum * (1 + 1e-9) + 1e-12
+        assert found.upper >= optimum * (1 - 1e-12) - 1e-12
+
+
 def fails(problem: Problem, cover: Cover, plan: tuple[int, ...]) -> bool:
     """Whether a plan counts less than the cover asks for, by its definition."""
     chosen = {i for i, e in enumerate(plan) if e in cover.left_out}

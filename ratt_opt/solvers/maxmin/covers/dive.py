@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Dive", "Outcome"]
 
-FIRST_RECORD = 4096
+FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
+"""Nodes of a record: it grows, to 160 MB at most."""
 MOST_WAYS = 10
 """Partitions that are tried at a node, those that last led to a dead end first."""
 
@@ -64,6 +65,11 @@ class Dive:
     def frame(self) -> int:
         """The frame that it is in."""
         return int(self._stack.frame[0])
+
+    @property
+    def is_long(self) -> bool:
+        """Whether its record is as long as memory should hold."""
+        return int(self.record.size[0]) >= MOST_RECORDED
 
     def run(self, level: float, nodes: int) -> Outcome:
         """Search on; how that ended. Makes room in what is full first."""

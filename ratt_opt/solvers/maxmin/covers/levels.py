@@ -37,6 +37,8 @@ SHARES = (0.0, 0.25, 0.5, 0.75)
 """Of what is open, how far above the best plan the levels are that are tried in turn."""
 WALK_KICKS, WALK_SHARE = 50, 0.05
 """Kicks, and share of the time left, in which a better plan is looked for once the best plan's level took too long."""
+MOST_COVERS = 20_000
+"""Covers that are known at once: a node looks at all of them."""
 FIRST_RUNS, GROWTH = 20, 2
 """Runs of the first search at each level, and how many times as many the next ones have."""
 
@@ -86,6 +88,7 @@ class CoverSearch:
                 return stop
             if budget.nodes >= until:
                 return Stop.NODES
+            self._make_room()
             search = self._search()
             ending = search.run(turns, self._runs)
             if ending is Ending.LIMIT and self._share == 0:
@@ -97,6 +100,13 @@ class CoverSearch:
             if progress is not None and budget.nodes > told:
                 told = budget.nodes
                 progress(budget.nodes, self._known.incumbent.proved.lower, self.upper)
+
+    def _make_room(self) -> None:
+        """Give up searches of long records; of too many covers forget the old ones, and the searches that know them."""
+        if len(self._separation.pool) > MOST_COVERS:
+            self._separation.pool.keep_latest(MOST_COVERS // 4)
+            self._searches.clear()
+        self._searches = {share: search for share, search in self._searches.items() if not search.dive.is_long}
 
     def _next_share(self, ending: Ending) -> None:
         """After the best plan's level come the higher ones, each lower than the last, as long as they are proved."""

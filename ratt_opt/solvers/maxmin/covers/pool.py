@@ -107,6 +107,16 @@ class CoverPool:
         found = np.flatnonzero((counted < enough - NEGLIGIBLE) & (self.covers.level[: len(self)] <= level))
         return [int(k) for k in found[np.argsort(counted[found], kind="stable")][:MOST_VIOLATED]]
 
+    def keep_latest(self, count: int) -> None:
+        """Forget all but the covers that were found last; they are numbered anew."""
+        first = max(len(self) - count, 0)
+        for array in self.covers[:-1]:
+            array[: len(self) - first] = array[first : len(self)].copy()
+        self.covers.size[0] = len(self) - first
+        self._known.clear()
+        self._counted = 0
+        self._count()
+
     def _count(self) -> None:
         """Number the covers that compiled loops added."""
         for k in range(self._counted, len(self)):

@@ -43,7 +43,7 @@ class Ending(Enum):
     """Why a search ended."""
 
     PROVED = "no plan is worth more than the level"
-    LIMIT = "its runs were spent"
+    LIMIT = "its runs were spent, or its record is long"
     STOPPED = "it was time to stop"
 
 
@@ -66,6 +66,8 @@ class LevelSearch:
         while self._runs < until:
             if turns.budget.stop() is not None or turns.stop() is not None:
                 return Ending.STOPPED
+            if self.dive.is_long:
+                return Ending.LIMIT
             if self._runs == 0:
                 self._ask(0, turns, ROUNDS_AT_ROOT)
             outcome = self.dive.run(self.level, RUN)
