@@ -105,10 +105,7 @@ def criticality_ranking(
 
 def _losses(problem: Problem, values: PlanValues, targets: list[int | Link]) -> list[float]:
     """Team value that each target alone costs; a link costs something only where its cut leaves more groups."""
-    import networkx as nx
-
-    graph: nx.Graph = nx.Graph(problem.communication.links)
-    bridges = {(min(i, j), max(i, j)) for i, j in nx.bridges(graph)}
+    bridges = problem.communication.bridges()
     untouched = PartialAttack.of(problem)
     felt = [t for t in targets if isinstance(t, int) or t in bridges]
     single = [untouched.blind(t) if isinstance(t, int) else PartialAttack.of(problem, cut=frozenset([t])) for t in felt]

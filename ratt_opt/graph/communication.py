@@ -95,6 +95,10 @@ class CommunicationGraph:
                 found.extend((i, j) if i < j else (j, i) for j in _bits(self._neighbours[i] & left))
         return frozenset(found)
 
+    def bridges(self) -> frozenset[Link]:
+        """The links whose cut alone leaves more groups."""
+        return frozenset((min(i, j), max(i, j)) for i, j in nx.bridges(nx.Graph(self.links)))
+
     def links_of(self, robot: int) -> frozenset[Link]:
         """The links of one robot."""
         return frozenset((min(robot, j), max(robot, j)) for j in _bits(self._neighbours[robot]))

@@ -25,7 +25,7 @@ MOST_ATTACKS = 20_000
 
 def attacks_are_few(threat: Threat) -> bool:
     """Whether all attacks of the whole budgets can be tried one by one."""
-    cuts = comb(len(threat.graph.links) - len(threat.protected_links), _links_cut(threat))
+    cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
     blinded = comb(threat.graph.n_robots - len(threat.protected_robots), threat.n_blinded)
     return cuts * blinded <= MOST_ATTACKS
 
@@ -42,13 +42,9 @@ def partitions_by_few_cuts(
     OutOfBudget : the time is up, or no node is left.
     """
     seen: set[tuple[frozenset[int], ...]] = set()
-    for cut in combinations(sorted(threat.graph.links - threat.protected_links), _links_cut(threat)):
+    for cut in combinations(sorted(threat.graph.links - threat.protected_links), threat.n_cut):
         budget.spend()
         groups = threat.graph.groups(cut)
         if groups not in seen:
             seen.add(groups)
             yield frozenset(cut), groups
-
-
-def _links_cut(threat: Threat) -> int:
-    return min(threat.alpha_c, len(threat.graph.links) - len(threat.protected_links))

@@ -49,6 +49,11 @@ class Threat:
         return min(self.alpha_s, self.graph.n_robots - len(self.protected_robots))
 
     @property
+    def n_cut(self) -> int:
+        """Links a worst attack cuts: the budget, as far as unprotected links last."""
+        return min(self.alpha_c, len(self.graph.links) - len(self.protected_links))
+
+    @property
     def links_alike(self) -> bool:
         """Whether all links are alike to the adversary (complete graph, no protected link)."""
         return self.graph.is_complete and not self.protected_links

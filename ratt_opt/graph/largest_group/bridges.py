@@ -55,36 +55,16 @@ class _Sparse:
         cuts: Cuts = []
         seen = [-1] * self.n
         for root in range(self.n):
-            if seen[root] < 0:
-                left = self._hang(root, seen, without, most, cuts)
-                if left is None:
-                    return None
+            if seen[root] < 0 and not self._cut_off(root, seen, without, most, cuts):
+                return None
         return cuts
 
-    def bridges(self) -> set[tuple[int, int]]:
-        """All of them."""
-        cuts: Cuts = []
-        found: set[tuple[int, int]] = set()
-        seen = [-1] * self.n
-        for root in range(self.n):
-            if seen[root] < 0:
-                self._hang(root, seen, frozenset(), self.n, cuts, found)
-        return found
+    def _cut_off(self, root: int, seen: list[int], without: frozenset[Link], most: int, cuts: Cuts) -> bool:
+        """Cut off parts of the root's group as they must be; whether no part was too heavy.
 
-    def _hang(  # noqa: PLR0917
-        self,
-        root: int,
-        seen: list[int],
-        without: frozenset[Link],
-        most: int,
-        cuts: Cuts,
-        found: set[tuple[int, int]] | None = None,
-    ) -> int | None:
-        """Robots left with the root, once its parts are cut off as they must be; ``None`` if a part is too heavy.
-
-        ``seen`` : order in which robots are met, of those met; ``found`` : takes all bridges
+        ``seen`` : order in which robots are met, of those met
         """
-        order, parent, low = [root], {root: (-1, (-1, -1))}, {}
+        parent, low = {root: (-1, (-1, -1))}, {}
         robots: dict[int, int] = {}
         hanging: dict[int, list[_Hanging]] = {}
         stack = [(root, iter(self.near[root]))]
@@ -101,7 +81,6 @@ class _Sparse:
                     parent[j] = (i, link)
                     seen[j] = low[j] = len(parent)
                     robots[j], hanging[j] = 1, []
-                    order.append(j)
                     stack.append((j, iter(self.near[j])))
                 else:
                     low[i] = min(low[i], seen[j])
@@ -109,8 +88,6 @@ class _Sparse:
             stack.pop()
             above, link = parent[i]
             is_bridge = above >= 0 and low[i] == seen[i]
-            if is_bridge and found is not None:
-                found.add(link)
             if above >= 0:
                 low[above] = min(low[above], low[i])
             if above >= 0 and (not is_bridge or link in self.protected):
@@ -119,10 +96,10 @@ class _Sparse:
                 continue
             left = _lightened(robots[i], hanging[i], most, cuts)
             if left is None:
-                return None
+                return False
             if above >= 0:
                 hanging[above].append(_Hanging(left, link))
-        return left
+        return True
 
 
 def _lightened(robots: int, hanging: list[_Hanging], most: int, cuts: Cuts) -> int | None:
@@ -136,9 +113,9 @@ def _lightened(robots: int, hanging: list[_Hanging], most: int, cuts: Cuts) -> i
     return total if total <= most else None
 
 
-def _choices(threat: Threat, beside: int) -> int:
-    """How many choices of links beside bridges there are to try."""
-    return sum(comb(beside, k) for k in range(min(_links_cut(threat), _cycles(threat) + 1)))
+def _are_few(threat: Threat, beside: int) -> bool:
+    """Whether all choices of so many links beside bridges can be tried."""
+    return sum(comb(beside, k) for k in range(min(threat.n_cut, _cycles(threat) + 1))) <= MOST_CHOICES
 
 
 def _cycles(threat: Threat) -> int:
@@ -147,14 +124,15 @@ def _cycles(threat: Threat) -> int:
     return len(graph.links) - graph.n_robots + len(graph.groups())
 
 
-def _links_cut(threat: Threat) -> int:
-    return min(threat.alpha_c, len(threat.graph.links) - len(threat.protected_links))
-
-
 def is_nearly_a_tree(threat: Threat) -> bool:
     """Whether all choices of links beside bridges can be tried."""
-    beside = len(threat.graph.links) - len(_Sparse(threat).bridges() | threat.protected_links)
-    return _choices(threat, beside) <= MOST_CHOICES
+    at_least = max(_cycles(threat) - len(threat.protected_links), 0)  # on dense graphs that says enough
+    return _are_few(threat, at_least) and _are_few(threat, len(_beside(threat)))
+
+
+def _beside(threat: Threat) -> frozenset[Link]:
+    """The links that can be cut and are no bridges."""
+    return threat.graph.links - threat.graph.bridges() - threat.protected_links
 
 
 def by_bridges(threat: Threat, budget: Budget) -> LargestGroup:
@@ -163,10 +141,9 @@ def by_bridges(threat: Threat, budget: Budget) -> LargestGroup:
     A node is a choice.
     """
     sparse, cut = _Sparse(threat), frozenset[tuple[int, int]]()
-    beside = sorted(threat.graph.links - sparse.bridges() - threat.protected_links)
-    smallest, allowed, cycles = max(map(len, threat.graph.groups())), _links_cut(threat), _cycles(threat)
+    beside, smallest, allowed = sorted(_beside(threat)), max(map(len, threat.graph.groups())), threat.n_cut
     try:
-        for k in range(min(allowed, cycles + 1)):
+        for k in range(min(allowed, _cycles(threat) + 1)):
             for choice in combinations(beside, k):
                 budget.spend()
                 without = frozenset(choice)
