@@ -1,19 +1,19 @@
-"""A search in depth (``diving.py``) that runs on and on, the plan that it meets, and its proof."""
+"""A search in depth (``loops/diving.py``) that runs on and on, the plan that it meets, and its proof."""
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.covers.loops.tables import Outcome, Record, Stack
+
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.solvers.maxmin.covers.diving import Record
     from ratt_opt.solvers.maxmin.covers.separation import Separation
     from ratt_opt.solvers.maxmin.covers.sums import CoverSums
 
-__all__ = ["Dive", "Outcome"]
+__all__ = ["Dive"]
 
 FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
 """Nodes of a record: it grows, to 160 MB at most."""
@@ -21,26 +21,18 @@ MOST_WAYS = 10
 """Partitions that are tried at a node, those that last led to a dead end first."""
 
 
-class Outcome(IntEnum):
-    """How a run ended, as ``diving.py`` has it."""
-
-    PROVED = 0
-    SPENT = 1
-    PLAN = 2
-    FULL = 3
-
-
 class Dive:
     """A search over all plans."""
 
     def __init__(self, separation: Separation, sums: CoverSums) -> None:
-        from ratt_opt.solvers.maxmin.covers import diving  # compiles
+        from ratt_opt.solvers.maxmin.covers.loops.diving import dive  # compiles
+        from ratt_opt.solvers.maxmin.covers.loops.team import bound_robot
 
-        self._loops, self._separation, self._sums = diving, separation, sums
-        self.record: Record = diving.Record(np.zeros((FIRST_RECORD, 5), dtype=np.int64), np.zeros(1, dtype=np.int64))
+        self._dive, self._separation, self._sums = dive, separation, sums
+        self.record = Record(np.zeros((FIRST_RECORD, 5), dtype=np.int64), np.zeros(1, dtype=np.int64))
         n, e = separation.problem.n_robots, separation.problem.objective.n
         whole = [np.uint64((1 << len(choice)) - 1) for choice in separation.problem.choices]
-        self._stack = diving.Stack(
+        self._stack = Stack(
             start=np.array(whole, dtype=np.uint64),
             allowed=np.zeros((n + 1, n), dtype=np.uint64),
             strongest=np.zeros((n + 1, n, *separation.team.prior.shape)),
@@ -59,7 +51,7 @@ class Dive:
         )
         self._stack.allowed[0] = self._stack.start
         for i, mask in enumerate(whole):
-            diving.bound_robot(separation.team, i, mask, self._stack.strongest[0, i])
+            bound_robot(separation.team, i, mask, self._stack.strongest[0, i])
 
     @property
     def frame(self) -> int:
@@ -81,7 +73,7 @@ class Dive:
             self.record = self.record._replace(nodes=np.concatenate([self.record.nodes, more]))
         team, ways = self._separation.team, self._separation.ways()
         sums = self._sums.rows()
-        outcome = self._loops.dive(team, ways, pool.covers, sums, self._stack, self.record, level, nodes, MOST_WAYS)
+        outcome = self._dive(team, ways, pool.covers, sums, self._stack, self.record, level, nodes, MOST_WAYS)
         return Outcome(outcome)
 
     def allowed(self, frame: int) -> BoolArray:

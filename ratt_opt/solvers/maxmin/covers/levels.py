@@ -14,8 +14,9 @@ from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.maxmin.covers.cover import cover_bound
 from ratt_opt.solvers.maxmin.covers.elements import Elements
+from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM
 from ratt_opt.solvers.maxmin.covers.pool import MOST_CHOICES
-from ratt_opt.solvers.maxmin.covers.records import BY_COVER, BY_SUM, DiveProof
+from ratt_opt.solvers.maxmin.covers.records import DiveProof
 from ratt_opt.solvers.maxmin.covers.search import Ending, LevelSearch
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.frontier import ClosingRule

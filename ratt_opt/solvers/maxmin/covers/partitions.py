@@ -36,9 +36,9 @@ class Partitions:
         self.problem = problem
         self.groups: list[tuple[int, ...]] = []
         self.of: list[IntArray] = []
-        self._known: set[Groups] = set()
         self._looked = 0
-        self._number: dict[tuple[int, ...], int] = {}
+        self._group: dict[tuple[int, ...], int] = {}
+        self._partition: dict[Groups, int] = {}
         self.add(problem.communication.groups())
         threat = problem.threat
         if threat.alpha_c == 0 or threat.links_alike:
@@ -62,16 +62,14 @@ class Partitions:
     def add(self, partition: Iterable[Iterable[int]]) -> int:
         """Add a partition; its number, new or old."""
         groups = tuple(sorted(tuple(sorted(group)) for group in partition))
-        if groups not in self._known:
-            self._known.add(groups)
+        if groups not in self._partition:
             for group in groups:
-                if group not in self._number:
-                    self._number[group] = len(self.groups)
+                if group not in self._group:
+                    self._group[group] = len(self.groups)
                     self.groups.append(group)
-            self.of.append(np.array([self._number[group] for group in groups]))
-            return len(self.of) - 1
-        numbers = [self._number[group] for group in groups]
-        return next(p for p, own in enumerate(self.of) if own.tolist() == numbers)
+            self._partition[groups] = len(self.of)
+            self.of.append(np.array([self._group[group] for group in groups]))
+        return self._partition[groups]
 
     def cut(self, partition: int) -> frozenset[Link]:
         """The links that are cut."""

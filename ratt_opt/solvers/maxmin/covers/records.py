@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM, TRIED
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 
 if TYPE_CHECKING:
@@ -14,9 +15,6 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.covers.elements import Elements
 
 __all__ = ["DiveProof"]
-
-BY_COVER, BY_SUM, TRIED = 0, 1, 2
-"""As ``diving.py`` has them."""
 
 
 class DiveProof:

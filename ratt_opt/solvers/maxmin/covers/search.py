@@ -1,6 +1,6 @@
 """A search that shows that no plan is worth more than a level, or finds one that is.
 
-It goes in depth (``diving.py``). From time to time it asks the linear program of the covers known (``program.py``)
+It goes in depth (``dive.py``). From time to time it asks the linear program of the covers known (``program.py``)
 which of its frames are dead ends: sums of covers that the program finds serve from then on. A plan that meets all
 covers is attacked: it raises the level, or the attack shows a cover that it fails.
 """
@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.covers.dive import Dive, Outcome
+from ratt_opt.solvers.maxmin.covers.dive import Dive
+from ratt_opt.solvers.maxmin.covers.loops.tables import Outcome
 from ratt_opt.solvers.maxmin.covers.program import CoverProgram
 from ratt_opt.solvers.maxmin.covers.sums import CoverSums
 

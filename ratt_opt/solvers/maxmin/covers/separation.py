@@ -9,15 +9,14 @@ import numpy as np
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import from_triangles, triangles
 from ratt_opt.solvers.maxmin.covers.cover import Cover
+from ratt_opt.solvers.maxmin.covers.loops.tables import Team, Ways
 from ratt_opt.solvers.maxmin.covers.partitions import Partitions
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.covers.diving import Ways
     from ratt_opt.solvers.maxmin.covers.elements import Elements
-    from ratt_opt.solvers.maxmin.covers.keeping import Team
 
 __all__ = ["Separation"]
 
@@ -33,9 +32,9 @@ class Separation:
     """Finds covers of one problem for any level, and puts them into its ``pool``."""
 
     def __init__(self, problem: Problem) -> None:
-        from ratt_opt.solvers.maxmin.covers import keeping  # compiles
+        from ratt_opt.solvers.maxmin.covers.loops import keeping, team  # compile
 
-        self._loops, self.problem = keeping, problem
+        self._keeping, self._loops, self.problem = keeping, team, problem
         self.partitions = Partitions(problem)
         self._rng = np.random.default_rng(0)
         prior = triangles(problem.information_objective.prior_information)
@@ -44,7 +43,7 @@ class Separation:
         self.enough = self.team.enough
         self.count = self.team.count[self.team.owner]
         """(E,) what an element counts in a cover that leaves it out; ``enough`` have to be counted."""
-        self._strongest = keeping.strongest_of(self.team)
+        self._strongest = team.strongest_of(self.team)
         self._inside = np.zeros((0, problem.objective.n), dtype=np.bool_)
         self._values = np.zeros((0, len(prior)))
         self._order = np.zeros(0, dtype=np.int64)
@@ -54,7 +53,7 @@ class Separation:
         safe = np.isin(np.arange(self.problem.n_robots), list(self.problem.protected_robots))
         enough = float(min(self.problem.alpha_s, self.problem.threat.n_blinded) + 1)
         assert objective.compiled_code is not None
-        return self._loops.Team(
+        return Team(
             code=objective.compiled_code,
             weights=np.array(objective.weights),
             baseline=objective.criterion(objective.prior_information),
@@ -71,8 +70,6 @@ class Separation:
 
     def ways(self) -> Ways:
         """Ways to cut links as the loops of a dive read them; their order is kept from one to the next."""
-        from ratt_opt.solvers.maxmin.covers.diving import Ways  # compiles
-
         of = self.partitions.of
         if len(self._order) < len(of):
             self._update()
@@ -101,7 +98,7 @@ class Separation:
         price = x * self.count
         kept = np.empty_like(self._inside)
         noise = self._rng.uniform(1 - NOISE, 1 + NOISE, self._values.shape)
-        paid = self._loops.lose_all(self.team.sees, self._inside, price, self._values, level, noise, kept)
+        paid = self._keeping.lose_all(self.team.sees, self._inside, price, self._values, level, noise, kept)
         totals = np.array([paid[own].sum() for own in self.partitions.of])
         completed: dict[int, FloatArray] = {}
         found = []
@@ -136,7 +133,7 @@ class Separation:
 
     def _complete(self, group: int, kept: BoolArray, price: FloatArray, level: float) -> tuple[float, FloatArray]:
         sums = np.empty_like(self.team.prior)
-        paid = self._loops.keep(self.team, self._inside[group], price, level, kept, sums)
+        paid = self._keeping.keep(self.team, self._inside[group], price, level, kept, sums)
         return float(paid), sums
 
     def _cover(self, partition: int, kept: BoolArray, sums: dict[int, FloatArray], level: float) -> int:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.covers.loops.tables import Sums
 from ratt_opt.solvers.maxmin.proof import CoverLeaf
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.solvers.maxmin.covers.diving import Sums
 
 __all__ = ["CoverSums"]
 
@@ -41,7 +41,5 @@ class CoverSums:
 
     def rows(self) -> Sums:
         """As the loops of a dive read them."""
-        from ratt_opt.solvers.maxmin.covers.diving import Sums  # compiles
-
         tried = np.argsort(-self._used[: len(self.leaves)], kind="stable")[:MOST_TRIED]
         return Sums(self._terms, tried.astype(np.int64), self._used)
