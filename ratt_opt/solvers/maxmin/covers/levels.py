@@ -53,7 +53,7 @@ class CoverSearch:
         self._separation = Separation(self._elements.problem)
         self._proof: DiveProof | None = None
         self._searches: dict[int, LevelSearch] = {}
-        self._runs, self._share = FIRST_RUNS, 0
+        self._runs, self._share, self._left = FIRST_RUNS, 0, FIRST_RUNS
         self._walk = Walk(known.incumbent, np.random.default_rng(0))
 
     @classmethod
@@ -91,7 +91,9 @@ class CoverSearch:
                 return Stop.NODES
             self._make_room()
             search = self._search()
-            ending = search.run(turns, self._runs)
+            before = search.runs
+            ending = search.run(turns, self._left)
+            self._left -= search.runs - before
             if ending is Ending.LIMIT and self._share == 0:
                 self._walk.run(budget.part(WALK_SHARE), WALK_KICKS)
             if ending is Ending.PROVED:
@@ -111,7 +113,7 @@ class CoverSearch:
 
     def _next_share(self, ending: Ending) -> None:
         """After the best plan's level come the higher ones, each lower than the last, as long as they are proved."""
-        if ending is Ending.STOPPED:
+        if ending is Ending.STOPPED:  # it goes on with the runs that are left
             return
         if self._share == 0 or ending is Ending.PROVED:
             self._share = (self._share - 1) % len(SHARES)
@@ -119,6 +121,7 @@ class CoverSearch:
             self._share = 0
         if self._share == 0:
             self._runs *= GROWTH
+        self._left = self._runs
 
     def _search(self) -> LevelSearch:
         """The search of the present share, a new one if the level is lower than that of the last."""

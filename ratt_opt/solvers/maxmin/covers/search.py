@@ -59,17 +59,17 @@ class LevelSearch:
         self._program = CoverProgram(elements.problem, separation.pool, separation.count, separation.enough)
         self.sums = CoverSums(elements.problem.objective.n)
         self.dive = Dive(separation, self.sums)
-        self._runs = 0
+        self.runs = 0
 
     def run(self, turns: Turns, runs: int) -> Ending:
         """Search until nothing is open, the runs are spent, or it is time to stop."""
-        until = self._runs + runs
-        while self._runs < until:
+        until = self.runs + runs
+        while self.runs < until:
             if turns.budget.stop() is not None or turns.stop() is not None:
                 return Ending.STOPPED
             if self.dive.is_long:
                 return Ending.LIMIT
-            if self._runs == 0:
+            if self.runs == 0:
                 self._ask(0, turns, ROUNDS_AT_ROOT)
             outcome = self.dive.run(self.level, RUN)
             if outcome is Outcome.PROVED:
@@ -78,7 +78,7 @@ class LevelSearch:
                 return Ending.STOPPED
             if outcome is Outcome.SPENT:
                 turns.budget.nodes += 1
-                self._runs += 1
+                self.runs += 1
                 self._learn(turns)
         return Ending.LIMIT
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 
-__all__ = ["Kicks"]
+__all__ = ["Kicks", "kicked"]
 
 SEED = 0
 FEWEST, MOST = 2, 4
@@ -35,6 +35,14 @@ PROOF_SHARE, PROOF_LIMIT = 0.01, 100_000
 """Share of the time left, and nodes, of an exact attack: at 20 robots one takes some hundredths of a second."""
 ROUNDS = 20
 """Of climbing and attacking after which a plan is left as it is."""
+
+
+def kicked(plan: IntArray, robots: int, choices: tuple[IntArray, ...], rng: np.random.Generator) -> IntArray:
+    """The plan, but that many robots, or all of them, choose at random."""
+    changed = plan.copy()
+    for i in rng.choice(len(plan), min(robots, len(plan)), replace=False).tolist():
+        changed[i] = rng.choice(choices[i])
+    return changed
 
 
 class Kicks:
@@ -58,15 +66,11 @@ class Kicks:
 
         Raises ``OutOfBudget`` : the user interrupted an attack; what it had proved counts.
         """
-        candidates, choices = self._incumbent.candidates, self._incumbent.problem.choices
-        plan = candidates.best.copy()
+        candidates = self._incumbent.candidates
         self._in_vain += 1
         self._next = self._incumbent.budget.nodes + KICK_NODES + self._in_vain // PATIENCE
         most = int(self._rng.integers(FEWEST, MOST + 1))
-        kicked = self._rng.choice(len(plan), min(most, len(plan)), replace=False)
-        for i in kicked.tolist():
-            plan[i] = self._rng.choice(choices[i])
-        plan = self._climbed(plan)
+        plan = self._climbed(kicked(candidates.best, most, self._incumbent.problem.choices, self._rng))
         if candidates.is_better(plan) and candidates.meet(plan):
             candidates.add(plan)
             self._in_vain = 0

@@ -9,11 +9,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.solvers.maxmin.plans.candidates import climb
+from ratt_opt.solvers.maxmin.plans.kicks import kicked
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 
@@ -48,7 +48,10 @@ class Walk:
         """Go where a kick leads, unless that is much worse; from the best plan again after some kicks in vain."""
         incumbent, candidates = self._incumbent, self._incumbent.candidates
         softness = SOFTNESS * abs(candidates.level)
-        plan = climb(incumbent.problem, incumbent.pool, self._kicked(), budget, softness)
+        most = max(FEWEST, len(self._plan) // 3)
+        robots = int(self._rng.integers(FEWEST, most + 1)) if len(self._plan) > 1 else 1
+        plan = kicked(self._plan, robots, incumbent.problem.choices, self._rng)
+        plan = climb(incumbent.problem, incumbent.pool, plan, budget, softness)
         plan = climb(incumbent.problem, incumbent.pool, plan, budget)
         self._in_vain += 1
         if incumbent.offer(plan):
@@ -58,11 +61,3 @@ class Walk:
             self._plan = plan
         if self._in_vain % RETURN == 0:
             self._plan = candidates.best
-
-    def _kicked(self) -> IntArray:
-        plan, choices = self._plan.copy(), self._incumbent.problem.choices
-        most = max(FEWEST, len(plan) // 3)
-        count = int(self._rng.integers(FEWEST, most + 1)) if len(plan) > 1 else 1
-        for i in self._rng.choice(len(plan), min(count, len(plan)), replace=False).tolist():
-            plan[i] = self._rng.choice(choices[i])
-        return plan
