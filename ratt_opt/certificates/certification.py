@@ -9,8 +9,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.certificates.verifier.verified import Verified
+    from ratt_opt.errors import ProofError
 
-__all__ = ["INTERRUPTED", "NOT_ASKED_FOR", "PENDING", "Certificate", "Certification"]
+__all__ = ["CERTIFICATE", "INTERRUPTED", "NOT_ASKED_FOR", "PENDING", "Certificate", "Certification"]
+
+CERTIFICATE = "certificate.json"
+"""Its name in a report's folder."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +43,11 @@ class Certification:
     certificate: Certificate | None = None
     why_not: str = ""
     final: bool = True
+
+    @classmethod
+    def faulty(cls, fault: ProofError) -> Certification:
+        """Our own proof has a fault: the verifier named the first one."""
+        return cls(why_not=f"the proof has a fault: {fault}", final=False)
 
 
 NOT_ASKED_FOR = Certification(why_not="not asked for")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ratt_opt.certificates.certification import CERTIFICATE, INTERRUPTED, PENDING, Certification
 from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import ProofError, printable
@@ -21,8 +22,8 @@ __all__ = ["bound", "demo"]
 
 PAPER_SEED = 14
 """A scenario of the paper's kind on which the planners differ; on many others RATT and greedy find the same plan."""
-PROOF, EARLIER_PROOF = "certificate.json", "certificate.earlier.json"
-"""The certificate of a folder's report, and that of an earlier report when a later one has none."""
+EARLIER = "certificate.earlier.json"
+"""The certificate of an earlier report in the folder when a later one has none."""
 NOT_DRAWN = "without plan.png and plan.svg, which the same command draws once it ends; report.html has the map"
 """After an interrupt: drawing takes a second or two, most of them to load what draws."""
 
@@ -46,7 +47,7 @@ def demo(
     from ratt_opt.scenario.limited_view import demo_scenario
 
     scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=PAPER_SEED) if paper else demo_scenario()
-    save_scenario(scenario, output_directory(out, PROOF, EARLIER_PROOF, *FILES) / "scenario.json")
+    save_scenario(scenario, output_directory(out, CERTIFICATE, EARLIER, *FILES) / "scenario.json")
     _bound(scenario, out, certificate=certificate, as_json=as_json)
 
 
@@ -85,14 +86,13 @@ def _bound(
     as_json: bool,
 ) -> None:
     from ratt_opt._files import output_directory
-    from ratt_opt.certificates.certification import PENDING
     from ratt_opt.main_job.bound import CERTIFICATE_SHARE
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.report.tables import report_tables
     from ratt_opt.report.write import FILES, write_numbers
     from ratt_opt.solvers.maxmin.solve import check_limits
 
-    folder = output_directory(out, PROOF, EARLIER_PROOF, *FILES)
+    folder = output_directory(out, CERTIFICATE, EARLIER, *FILES)
     check_limits(gap, time_limit)
     began = monotonic()
     searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
@@ -107,8 +107,8 @@ def _bound(
         with Step("certificate"):
             report = _certified(report, folder, left)
         files += [proof.path] if (proof := report.certificate.certificate) else []
-    if report.certificate.certificate is None and report.certificate.final and (folder / PROOF).exists():
-        (folder / PROOF).replace(folder / EARLIER_PROOF)  # it is not about this report
+    if report.certificate.certificate is None and report.certificate.final and (folder / CERTIFICATE).exists():
+        (folder / CERTIFICATE).replace(folder / EARLIER)  # it is not about this report
     if as_json:
         print_json(report.to_dict())
     else:
@@ -123,7 +123,6 @@ def _drawn(report: "BoundReport", folder: Path, *, wanted: bool) -> list[Path]:
 
     Raises WorkInterrupted.
     """
-    from ratt_opt.certificates.certification import INTERRUPTED
     from ratt_opt.report.write import write_figures, write_verdict
 
     try:
@@ -141,7 +140,6 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "Bound
     Raises ProofError for a fault in our own proof, and WorkInterrupted; the report in the folder then says so.
     """
     from ratt_opt.budget import Budget
-    from ratt_opt.certificates.certification import INTERRUPTED, Certification
     from ratt_opt.certificates.write import certify_if_possible
     from ratt_opt.report.write import write_verdict
 
@@ -149,9 +147,9 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "Bound
     budget = Budget(time_limit)
     failure: Exception | None = None
     try:
-        proof = certify_if_possible(report.problem, report.optimum, folder / PROOF, budget, source=report.source)
+        proof = certify_if_possible(report.problem, report.optimum, folder / CERTIFICATE, budget, source=report.source)
     except ProofError as error:
-        proof, failure = Certification(why_not=f"the proof has a fault: {error}", final=False), error
+        proof, failure = Certification.faulty(error), error
     except KeyboardInterrupt:
         proof, failure = (
             INTERRUPTED,

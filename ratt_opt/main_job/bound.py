@@ -206,7 +206,7 @@ def _certified(
     try:
         return certify_if_possible(problem, optimum, path, budget, source=source), None
     except ProofError as failure:
-        return Certification(why_not=f"the proof has a fault: {failure}", final=False), failure
+        return Certification.faulty(failure), failure
     except KeyboardInterrupt:
         budget.interrupt()
         return INTERRUPTED, None

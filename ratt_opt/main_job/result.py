@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._files import output_directory
 from ratt_opt._rounding import down, up
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.certification import NOT_ASKED_FOR, Certification
+from ratt_opt.certificates.certification import CERTIFICATE, NOT_ASKED_FOR, Certification
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.errors import ProofError
 from ratt_opt.main_job.document import plan_document, report_document
@@ -73,7 +73,7 @@ class PlanAssessment:
         return hash((self.name, self.controls))
 
 
-CERTIFICATE, SECONDS = "certificate.json", 60.0
+SECONDS = 60.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -192,8 +192,7 @@ class BoundReport:
         try:
             proof = certify_if_possible(self.problem, self.optimum, path, Budget(time_limit), source=self.source)
         except ProofError as fault:
-            failed = Certification(why_not=f"the proof has a fault: {fault}", final=False)
-            write_report(replace(self, certificate=failed), directory)
+            write_report(replace(self, certificate=Certification.faulty(fault)), directory)
             raise
         return write_report(replace(self, certificate=proof), directory)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ratt_opt._files import output_directory, write_atomically, write_json, write_together
+from ratt_opt.certificates.certification import CERTIFICATE
 from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.page.page import report_page
@@ -37,7 +38,7 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
     out = Path(folder)
     proof = report.certificate.certificate
     if proof is not None:
-        copy = out / "certificate.json"
+        copy = out / CERTIFICATE
         if not (copy.exists() and copy.samefile(proof.path)):
             write_atomically(copy, lambda file: shutil.copyfile(proof.path, file))
         files.append(copy)

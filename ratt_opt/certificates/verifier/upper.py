@@ -196,11 +196,10 @@ class UpperCheck:
         weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
         need(used and all(w > 0 for w in weights), "upper proof: a leaf's weights are not positive")
         needed = min(self.about.alpha_s, self.about.n - len(self.about.safe_robots)) + 1
-        most = fmpq(0)
+        pairs, most = list(zip(weights, used, strict=True)), fmpq(0)
         for i, elements in enumerate(left):
             tick()
             count = needed if i in self.about.safe_robots else 1
-            pairs = list(zip(weights, used, strict=True))
             most += count * max(total(w for w, cover in pairs if e in cover.left_out) for e in elements)
         need(most < needed * total(weights), "upper proof: a plan of a leaf may meet all its covers")
         return largest([cover.bound for cover in used])
