@@ -10,6 +10,8 @@ from .stopping import Stop as Stop
 
 # == Problems
 from .problem import Problem as Problem, Plan as Plan, Attack as Attack
+from .coordinates.measured import measured_coordinates as measured_coordinates
+from .coordinates.changed import ChangedProblem as ChangedProblem
 
 # == Scenarios and files
 from .scenario.generator import random_scenario as random_scenario
@@ -36,10 +38,6 @@ from .solvers.ratt import ratt as ratt, greedy as greedy, myopic as myopic, rand
 from .solvers.maxmin.solve import nonrobust_optimum as nonrobust_optimum, solve_maxmin as solve_maxmin
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.result import MaxMinResult as MaxMinResult
-from .solvers.measured_coordinates import (
-    measured_coordinates as measured_coordinates,
-    MeasuredProblem as MeasuredProblem,
-)
 from .solvers.undominated import undominated as undominated, UndominatedProblem as UndominatedProblem
 
 # == Attackers

@@ -13,6 +13,8 @@ from fractions import Fraction
 
 __all__ = ["bracket_text", "down", "gap_text", "named_text", "relative_gap", "up"]
 
+AND_SO_ON = "\N{HORIZONTAL ELLIPSIS}"
+"""After digits that are certain: more follow."""
 AT_LEAST, AT_MOST = {"lower", "proved", "share", "guarantee"}, {"upper", "gap"}
 """Last words of the names of numbers that are to be read so."""
 
@@ -28,10 +30,16 @@ def up(value: float | Fraction, digits: int) -> str:
 
 
 def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
-    """The bracket as text: the value to ``digits`` digits where both ends are one float, else both ends, outward."""
+    """The bracket as text: both ends, outward, or the digits that both begin with where these are ``digits`` many.
+
+    The value to ``digits`` digits where both ends are one float.
+    """
     if lower == upper:
         return f"{upper:.{digits}g}"
-    return f"[{down(lower, digits)}, {up(upper, digits)}]"
+    low = down(lower, digits)
+    if lower > 0 and low == down(upper, digits) and "e" not in low:
+        return f"{low}{AND_SO_ON}"
+    return f"[{low}, {up(upper, digits)}]"
 
 
 def gap_text(lower: float, upper: float, digits: int) -> str:

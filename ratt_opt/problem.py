@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt.setfunctions.evaluation_error import evaluation_error
 from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
@@ -166,6 +168,40 @@ class Problem:
     def communication(self) -> CommunicationGraph:
         """The communication graph; complete where ``graph`` is ``None``."""
         return self.threat.graph
+
+    @cached_property
+    def evaluation_error(self) -> float:
+        """No value of a plan's robots is computed further from the exact one, of the matrices given.
+
+        0 where nothing is known of that: set functions and criteria of your own count as exact.
+        """
+        if not isinstance(self.objective, InformationObjective):
+            return 0.0
+        return evaluation_error(self.objective, self.choices)
+
+    def outward(self, lower: float, upper: float) -> tuple[float, float]:
+        """Ends of a worst case's bracket as computed, moved apart by the :attr:`evaluation_error`.
+
+        Relies on a non-decreasing objective: no team is worth less than none. Where all robots that tell anything can
+        be blinded, a worst case of 0 is exact.
+        """
+        error = self.evaluation_error
+        if error == 0.0 or (upper == 0.0 and self._can_be_blinded):
+            return lower, upper
+        lowest = np.nextafter(lower - error, -np.inf)
+        return float(max(lowest, min(lower, 0.0))), float(np.nextafter(upper + error, np.inf))
+
+    @property
+    def _can_be_blinded(self) -> bool:
+        information = self.information_objective.information
+        telling = {i for i, choice in enumerate(self.choices) if information[choice].any()}
+        return len(telling) <= self.alpha_s and not telling & self.protected_robots
+
+    def tells_anything(self, plan: IntArray, attack: Attack) -> bool:
+        """Whether a robot that is not blinded has any information under this plan."""
+        seeing = [i for i in range(self.n_robots) if i not in attack.sensing]
+        f = self.objective
+        return bool(f.information[plan[seeing]].any() if isinstance(f, InformationObjective) else seeing)
 
     def check_plan(self, elements: ArrayLike) -> IntArray:
         """Return ``elements`` as an (N,) array after checking that each is its robot's.

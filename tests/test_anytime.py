@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
+from tests.brackets import attains
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import OBJECTIVES, SEEDED, Drawn, information_data, problems_with_plans
 
@@ -25,7 +26,7 @@ def test_any_limit_leaves_a_valid_bracket(drawn_pair, limit):
     worst = brute_force_worst_case(problem, plan)
     assert attack.lower <= worst + 1e-9 * abs(worst) + 1e-12
     assert attack.upper >= worst - 1e-9 * abs(worst) - 1e-12
-    assert problem.team_value(plan, attack.attack) == attack.upper
+    assert attains(problem, plan, attack)
     found = ro.solve_maxmin(problem, time_limit=limit)
     assert found.lower <= brute_force_worst_case(problem, found.elements) * (1 + 1e-9) + 1e-9
 
@@ -74,7 +75,8 @@ def test_ties_zeros_and_extremes_close(problem):
     """An optimum of 0, two equal elements, a value slightly negative by rounding: once each an endless loop."""
     found = ro.solve_maxmin(problem, time_limit=60)
     best = brute_force_optimum(problem)
-    slack = 1e-9 * abs(best) + 10 * problem.objective.rounding
+    searched = ro.measured_coordinates(problem)
+    slack = 1e-9 * abs(best) + 10 * problem.objective.rounding + 2 * searched.evaluation_error
     assert found.stop in DONE
     assert found.lower <= best + slack
     assert found.upper >= best - slack

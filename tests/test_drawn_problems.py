@@ -6,6 +6,7 @@ from hypothesis import HealthCheck, given, settings
 
 import ratt_opt as ro
 from ratt_opt.graph.outcomes import non_dominated_outcomes
+from tests.brackets import attains
 from tests.oracles import brute_force_optimum, brute_force_outcomes, brute_force_worst_case
 from tests.strategies import SEEDED, monotone_tables, problems, problems_with_plans
 
@@ -25,7 +26,7 @@ def test_the_worst_case_is_that_of_all_raw_attacks(given_plan):
     expected = brute_force_worst_case(problem, elements)
     assert result.lower - 1e-9 * scale_of(problem) <= expected <= result.upper + 1e-9 * scale_of(problem)
     assert result.upper == pytest.approx(expected, abs=1e-9 * scale_of(problem))
-    assert problem.team_value(elements, result.attack) == result.upper
+    assert attains(problem, elements, result)
 
 
 @DRAWN
@@ -42,7 +43,8 @@ def test_the_bracket_of_the_optimum_holds_and_closes(problem):
 @given(problems(controls=2))
 def test_exhaustive_search_finds_the_optimum(problem):
     result = ro.exhaustive_optimum(problem)
-    assert result.lower == result.upper == pytest.approx(brute_force_optimum(problem), abs=1e-9 * scale_of(problem))
+    assert 0 <= result.upper - result.lower <= 3 * problem.evaluation_error
+    assert result.upper == pytest.approx(brute_force_optimum(problem), abs=1e-9 * scale_of(problem))
 
 
 @DRAWN

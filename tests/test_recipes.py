@@ -13,6 +13,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.scenario.sensor import jacobian
 from ratt_opt.setfunctions.criteria import registry
 from ratt_opt.setfunctions.information import InformationObjective
+from tests.brackets import attains
 from tests.oracles import brute_force_worst_case
 
 
@@ -70,7 +71,8 @@ def test_recipe_an_attacker():
     problem = ro.random_scenario(5, 3, alpha_s=2, alpha_c=3, seed=1).problem()
     plan = ro.ratt(problem).elements
     found, exact = loudest_attack(problem, plan), ro.worst_case_attack(problem, plan)
-    assert found.lower == 0 <= exact.upper <= found.upper == problem.team_value(plan, found.attack)
+    assert found.lower == 0 <= exact.upper <= found.upper
+    assert attains(problem, plan, found)
     assert len(found.attack.sensing) == 2
 
 

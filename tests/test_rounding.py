@@ -51,6 +51,11 @@ def test_a_printed_bracket_holds_the_bracket(lower: float, other: float | int, d
     shown = [Fraction(number) for number in NUMBER.findall(bracket_text(lower, upper, digits=digits))]
     if lower == upper:
         assert len(shown) == 1
+    elif len(shown) == 1:
+        text = bracket_text(lower, upper, digits=digits)
+        assert text.endswith("…")
+        last = Fraction(1, 10 ** len(text.rstrip("…").partition(".")[2]))
+        assert 0 < shown[0] <= Fraction(lower) <= Fraction(upper) < shown[0] + last
     else:
         assert len(shown) == 2
         assert shown[0] <= Fraction(lower)
@@ -74,6 +79,8 @@ def test_what_is_exact_is_printed_as_it_is() -> None:
     assert [down(0.5, 3), up(0.5, 3), up(100.0, 3), up(0.0, 3), down(1e10, 10)] == ["0.5", "0.5", "100", "0", "1e+10"]
     assert bracket_text(1 / 3, 1 / 3) == "0.3333333333"
     assert bracket_text(1 / 3, 2 / 3, digits=3) == "[0.333, 0.667]"
+    assert bracket_text(0.3334, 0.3339, digits=3) == "0.333…"
+    assert bracket_text(0.3339, 0.3341, digits=3) == "[0.333, 0.335]"
     assert bracket_text(0.0, float("inf")) == "[0, inf]"
     assert gap_text(0.0, 0.0, 3) == "0"
     assert share_text(0.0, 0.0) == "optimal to 1e-9"

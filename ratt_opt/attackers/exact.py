@@ -17,7 +17,7 @@ from ratt_opt.attackers.few_attacks import try_every_attack
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, AttackTask, MeetsAim, PlanValues
+from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, AttackTask, MeetsAim, PlanValues, outward
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
-__all__ = ["worst_case_attack"]
+__all__ = ["strongest_attack", "worst_case_attack"]
 
 THRESHOLDS_FASTER = 15
 """Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
@@ -126,12 +126,42 @@ def worst_case_attack(
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
+    memory = AttackMemory() if memory is None else memory
+    found = strongest_attack(
+        problem,
+        elements,
+        max_nodes=max_nodes,
+        time_limit=time_limit,
+        max_evaluations=max_evaluations,
+        budget=budget,
+        aim=aim,
+        known=known,
+        memory=memory,
+    )
+    return outward(memory.searched_of(problem), problem.check_plan(elements), found)
+
+
+def strongest_attack(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    max_nodes: int | None = None,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
+    aim: float = -math.inf,
+    known: Attack | None = None,
+    memory: AttackMemory | None = None,
+) -> AttackResult:
+    """:func:`worst_case_attack` for other searches: both ends as they were computed."""
     own = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if isinstance(aim, bool) or not isinstance(aim, Real) or math.isnan(aim):
         raise InputError("aim", "must be a number", aim)
     values = PlanValues(problem, elements)
     memory = AttackMemory() if memory is None else memory
     memory.check(problem, values.plan)
+    problem = memory.searched_of(problem)
+    values.objective = problem.objective
     try:
         asked = problem
         if not isinstance(problem.objective, InformationObjective):
@@ -139,7 +169,9 @@ def worst_case_attack(
             values.objective = asked.objective
         if memory.bracket is None:
             first = bounded_rational_attack(asked, values.plan)
-            memory.bracket = AttackBracket(first.attack, first.upper, first.lower, problem.objective.rounding)
+            is_exact = problem.evaluation_error == 0.0  # then the end was not moved
+            upper = first.upper if is_exact else asked.team_value(values.plan, first.attack)
+            memory.bracket = AttackBracket(first.attack, upper, first.lower, problem.objective.rounding)
             values.evaluations = first.evaluations
         memory.bracket.aim = aim
         if known is not None:
@@ -214,8 +246,7 @@ def _larger_team(task: AttackTask, *, is_inner: bool) -> Stop:
         if task.bracket.is_closed:
             return Stop.CLOSED
     with task.budget.stage(GREEDY_SHARE) as part:
-        better = greedy_attack(problem, plan, budget=part)
-        task.bracket.offer(better.attack, better.upper)
+        task.offer(greedy_attack(problem, plan, budget=part).attack)
     groups = _few_groups(task, team)
     if problem.n_robots <= LARGEST_COMPILED and groups is None:
         return threshold_search(task)

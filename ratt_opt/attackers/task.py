@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import Shown, counted, plain
+from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
@@ -23,7 +24,16 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.stopping import Stop
 
-__all__ = ["AttackBracket", "AttackMemory", "AttackResult", "AttackTask", "MeetsAim", "PlanValues", "Resumable"]
+__all__ = [
+    "AttackBracket",
+    "AttackMemory",
+    "AttackResult",
+    "AttackTask",
+    "MeetsAim",
+    "PlanValues",
+    "Resumable",
+    "outward",
+]
 
 LARGEST_CHUNK = 4096
 """Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
@@ -63,8 +73,9 @@ class PlanValues(SetFunction):
 class AttackResult(Shown):
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
-    ``attack`` attains ``upper``. ``lower`` is proved in floating point when ``stop`` is ``EXHAUSTED`` or ``CLOSED``; it
-    is 0 (the value of no measurement) for a heuristic. Results are equal when all their fields are.
+    ``attack`` leaves no more than ``upper``, and less only by what computing its value may have rounded. ``lower`` is
+    proved when ``stop`` is ``EXHAUSTED`` or ``CLOSED``, by computations whose error it makes up for; it is 0 (the value
+    of no measurement) for a heuristic. Results are equal when all their fields are.
     """
 
     attack: Attack
@@ -84,6 +95,14 @@ class AttackResult(Shown):
         attack = f"{counted(len(self.attack.sensing), 'robot')} blinded, {counted(len(self.attack.links), 'link')} cut"
         cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
         return f"AttackResult([{down(self.lower, 6)}, {up(self.upper, 6)}], {attack}, {self.stop.value}, {cost})"
+
+
+def outward(problem: Problem, plan: IntArray, found: AttackResult) -> AttackResult:
+    """A plan's attack, the ends moved apart by what computing them may have rounded; 0 is exact if nobody tells."""
+    lower, upper = problem.outward(found.lower, found.upper)
+    if found.upper == 0.0 and not problem.tells_anything(plan, found.attack):
+        upper = 0.0
+    return replace(found, lower=lower, upper=upper)
 
 
 CLOSED_WIDTH = 1e-10
@@ -150,14 +169,22 @@ class Resumable(Protocol):
 class AttackMemory:
     """What attacks on one plan of one problem found out, for the next one to go on from.
 
+    ``searched`` : the problem in other coordinates, or itself
     ``search`` : the last stage of an attack, once it was reached; ``seconds`` : that the stages before had shares of
     """
 
     problem: Problem | None = None
+    searched: Problem | None = None
     plan: IntArray | None = None
     bracket: AttackBracket | None = None
     search: Resumable | None = None
     seconds: float = 0.0
+
+    def searched_of(self, problem: Problem) -> Problem:
+        """The problem in the coordinates in which it is searched."""
+        if self.searched is None:
+            self.searched = with_unit_prior(problem)
+        return self.searched
 
     def check(self, problem: Problem, plan: IntArray) -> None:
         """Raise ``InputError`` where this is about another problem or plan."""

@@ -156,7 +156,7 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "Bound
             WorkInterrupted(f"interrupted; {folder} holds the report, not yet its certificate"),
         )
     seconds = {**report.seconds, "certificate": monotonic() - began}
-    report = replace(report, certificate=proof, seconds=seconds)
+    report = replace(report.with_certificate(proof), seconds=seconds)
     write_verdict(report, folder)
     if failure is not None:
         raise failure

@@ -9,15 +9,16 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.task import AttackResult
+from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
+from ratt_opt.attackers.task import PlanValues
 from ratt_opt.main_job.result import PlanAssessment
 from ratt_opt.problem import Attack, Plan, Problem
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.budget import Budget
 
 __all__ = ["assess", "recommended", "views_of"]
@@ -63,11 +64,8 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
     plan = Plan(elements=worst.elements, evaluations=worst.evaluations, bait=worst.bait)
 
     def under(attack: Attack) -> PlanAssessment:
-        value = problem.team_value(plan.elements, attack)
-        bracket = AttackResult(
-            attack=attack, lower=worst.worst_case.lower, upper=value, stop=Stop.HEURISTIC, evaluations=1
-        )
-        return assess(problem, worst.name, plan, budget, known=bracket)
+        found = heuristic_result(problem, PlanValues(problem, plan.elements), attack)
+        return assess(problem, worst.name, plan, budget, known=replace(found, lower=worst.worst_case.lower))
 
     attacks = []
     for spared in _spared(problem, worst.worst_case.attack):

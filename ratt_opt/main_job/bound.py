@@ -13,7 +13,7 @@ from ratt_opt._rounding import down, up
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.certification import INTERRUPTED, Certification
+from ratt_opt.certificates.certification import INTERRUPTED, NOT_ASKED_FOR, Certification
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
@@ -163,7 +163,7 @@ def bound(
         total_curvature=c,
         guarantees=guarantees,
         inapplicable=inapplicable_guarantees(problem, alpha_cs),
-        certificate=proof,
+        certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
         source=source,
@@ -171,7 +171,7 @@ def bound(
         seeds={"random": RANDOM_SEED},
         interrupted=whole.stop() is Stop.INTERRUPTED,
     )
-    return _delivered(report, failure)
+    return _delivered(report.with_certificate(proof), failure)
 
 
 def _delivered(report: BoundReport, failure: ProofError | None) -> BoundReport:

@@ -142,7 +142,9 @@ class BoundReport:
 
     @property
     def recommended(self) -> PlanAssessment:
-        """The plan with the best proved worst case; RATT's among equals."""
+        """The plan with the best proved worst case; RATT's among equals. ``views`` are of this one."""
+        if "worst" in self.views:
+            return next(plan for plan in self.plans if plan.name == self.views["worst"].name)
         return max(self.plans, key=lambda plan: plan.worst_case.lower)
 
     @property
@@ -163,6 +165,27 @@ class BoundReport:
     def guaranteed_share(self) -> float:
         """The largest share of the optimum that was guaranteed before planning; 0 where nothing was."""
         return max((float(guarantee) for guarantee in self.guarantees.values()), default=0.0)
+
+    def with_certificate(self, certification: Certification) -> BoundReport:
+        """The report with its certificate: none of its ends goes beyond what that states."""
+        if certification.certificate is None:
+            return replace(self, certificate=certification)
+        stated = certification.certificate.verified
+
+        def supported(plan: PlanAssessment) -> PlanAssessment:
+            """The plan's lower end, no higher than that of the best plan."""
+            worst = plan.worst_case
+            return replace(plan, worst_case=replace(worst, lower=min(worst.lower, stated.lower)))
+
+        return replace(
+            self,
+            certificate=certification,
+            optimum=self.optimum.within(self.problem, stated.lower, stated.upper),
+            ratt=supported(self.ratt),
+            best=supported(self.best),
+            baselines=tuple(map(supported, self.baselines)),
+            views={name: supported(view) for name, view in self.views.items()},
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """The report as plain data, which is what ``report.json`` holds: unknown numbers are ``None``."""
@@ -194,7 +217,7 @@ class BoundReport:
         except ProofError as fault:
             write_report(replace(self, certificate=Certification.faulty(fault)), directory)
             raise
-        return write_report(replace(self, certificate=proof), directory)
+        return write_report(self.with_certificate(proof), directory)
 
     def plot(self) -> Figure:
         """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""

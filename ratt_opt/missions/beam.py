@@ -93,7 +93,7 @@ def solve_by_columns(
         kept = np.union1d(kept, fresh)
     if not np.isfinite(upper):
         upper = problem.objective(range(problem.objective.n))  # by monotonicity
-    return MaxMinResult(
+    result = MaxMinResult(
         elements=readonly(kept[found.elements]),
         lower=found.lower,
         upper=max(float(upper), found.lower),
@@ -102,6 +102,7 @@ def solve_by_columns(
         nodes=nodes,
         worst_case=found.worst_case,
     )
+    return result.outward(problem)
 
 
 def _stopped(found: MaxMinResult, upper: float, gap: float, budget: Budget, fresh: IntArray) -> Stop | None:

@@ -202,6 +202,14 @@ class CriterionParts(ProofParts):
         what rounding the information matrices does to their inverses."""
         return VALUE_ROUNDING * self.prior_magnitude + self.inverse_rounding(np.abs(self._baseline))
 
+    @property
+    def error_scale(self) -> FloatArray | None:
+        """(M,) by how much the criterion of each target changes at most, per relative change of its information.
+
+        ``None``: nothing is known of that. See ``evaluation_error.py``.
+        """
+        return None
+
     def inverse_rounding(self, scale: FloatArray) -> float:
         """Error of the sum of targets' criteria of these sizes (M,), by the condition of their matrices."""
         return INVERSE_ROUNDING * float(scale @ self.condition)

@@ -17,6 +17,7 @@ import numpy as np
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
+from ratt_opt.setfunctions.evaluation_error import inverse_error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,7 +61,16 @@ class InformationObjective(CriterionParts):
     Source: ratt.tex, Section II-A e) and the objective of Section VI.
     """
 
-    __slots__ = ("_baseline", "_singletons", "condition", "information", "prior", "prior_information", "weights")
+    __slots__ = (
+        "_baseline",
+        "_inverse_error",
+        "_singletons",
+        "condition",
+        "information",
+        "prior",
+        "prior_information",
+        "weights",
+    )
 
     is_non_decreasing: ClassVar[bool] = True
     """Added information is positive semidefinite, up to the rounding that the input rule admits."""
@@ -76,6 +86,7 @@ class InformationObjective(CriterionParts):
         self._baseline: FloatArray = readonly(baseline)
         self.condition: FloatArray = readonly(self._condition())
         self._singletons: FloatArray | None = None
+        self._inverse_error: FloatArray | None = None
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.n} elements, {self.n_targets} targets, d = {self.dimension})"
@@ -99,6 +110,13 @@ class InformationObjective(CriterionParts):
         """(M,) no information matrix of a target has a larger condition: most information over least."""
         largest = np.linalg.eigvalsh(self.prior_information + self.information.sum(axis=0))[:, -1]
         return np.asarray(largest * np.linalg.eigvalsh(self.prior)[:, -1])
+
+    @property
+    def inverse_error(self) -> FloatArray:
+        """(M,) bounds of the norms by which :attr:`prior_information` differs from the exact inverses."""
+        if self._inverse_error is None:
+            self._inverse_error = readonly(inverse_error(self.prior, self.prior_information))
+        return self._inverse_error
 
     def restricted_to(self, elements: IntArray) -> Self:
         """The same criterion over some of the elements, in the given order."""

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.problem import check_problem
@@ -55,7 +56,8 @@ def exhaustive_optimum(
 
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
-    shape = _shape(problem, range(check_problem(problem).n_robots))
+    problem = with_unit_prior(check_problem(problem))
+    shape = _shape(problem, range(problem.n_robots))
     with np.errstate(over="ignore"):
         n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
     if n_plans > LARGEST_SEARCH:
@@ -84,11 +86,12 @@ def exhaustive_optimum(
     lower = upper = float(worst[best])
     if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
         upper = min(upper, problem.objective(range(problem.objective.n)))
-        lower = min(worst_case_attack(problem, elements, time_limit=0, budget=own).lower, upper)
+        lower = min(strongest_attack(problem, elements, time_limit=0, budget=own).lower, upper)
     count = sum(values.size for values in group_values.values())
-    return MaxMinResult(
+    found = MaxMinResult(
         elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size
     )
+    return found.outward(problem)
 
 
 def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:

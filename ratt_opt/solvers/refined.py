@@ -17,7 +17,9 @@ import numpy as np
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt._values import shown
+from ratt_opt.attackers.task import outward
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.progress import Step
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent, ProvedPlan
@@ -94,7 +96,7 @@ def refined(
     ------
     InputError : a limit is negative, ``start`` is no plan, or the objective is another set function.
     """
-    check_problem(problem)
+    problem = with_unit_prior(check_problem(problem))
     kicks_left = None if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
     given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
@@ -115,7 +117,7 @@ def refined(
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
-    return _best(few, incumbent, first, kicks, own.stop() or stop)
+    return _best(problem, few, incumbent, first, kicks, own.stop() or stop)
 
 
 def _meet(incumbent: Incumbent, plans: list[IntArray]) -> None:
@@ -146,7 +148,9 @@ def _walked(incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most
     return Walk(incumbent, rng).run(until, most, patience)
 
 
-def _best(few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int, stop: Stop) -> RefinedPlan:
+def _best(  # noqa: PLR0917
+    problem: Problem, few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int, stop: Stop
+) -> RefinedPlan:
     """The plan of which most is proved, if that is no less than RATT's plan can keep; that one otherwise.
 
     Elements of RATT's plan that are dominated were exchanged before.
@@ -160,17 +164,17 @@ def _best(few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int
     upper = min(unattacked, pool.plan_value(proved.elements))
     if proved.worst_case is not None:
         upper = min(upper, proved.worst_case.upper)
-    elements = few.kept[proved.elements]
+    elements, (lower, upper) = few.kept[proved.elements], problem.outward(min(proved.lower, upper), upper)
     is_ratts = np.array_equal(elements, ratts.elements)
     return RefinedPlan(
         elements=readonly(elements),
         evaluations=ratts.evaluations + incumbent.proved.evaluations,
         bait=ratts.bait if is_ratts else (),
         alpha_cs=ratts.alpha_cs if is_ratts else None,
-        lower=float(min(proved.lower, upper)),
+        lower=float(lower),
         upper=float(upper),
         unattacked=float(unattacked),
         stop=stop,
         kicks=kicks,
-        worst_case=proved.worst_case,
+        worst_case=None if proved.worst_case is None else outward(problem, elements, proved.worst_case),
     )

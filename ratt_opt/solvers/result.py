@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Self
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, Shown, plain, shown
+from ratt_opt.attackers.task import outward
 from ratt_opt.problem import Plan
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.stopping import Stop
 
-__all__ = ["MaxMinResult", "NonrobustPlan"]
+__all__ = ["MaxMinResult", "NonrobustPlan", "posterior_gap"]
+
+
+def posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
+    """``upper - lower`` as a share of the posterior criterion that ``lower`` leaves, where the criterion is a size."""
+    before = problem.information_objective.prior_criterion
+    return None if before is None or before <= lower else float((upper - lower) / (before - lower))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -51,6 +59,17 @@ class MaxMinResult(ByValue, Shown):
     unattacked: float | None = None
     """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
     ``None`` where plans were enumerated, and for set functions that are no information criterion."""
+
+    def outward(self, problem: Problem) -> Self:
+        """The result, its ends moved apart by what computing them for ``problem`` may have rounded."""
+        worst = None if self.worst_case is None else outward(problem, self.elements, self.worst_case)
+        return replace(self.within(problem, *problem.outward(self.lower, self.upper)), worst_case=worst)
+
+    def within(self, problem: Problem, lower: float, upper: float) -> Self:
+        """The result, its ends moved apart as far as these."""
+        lower, upper = min(self.lower, lower), max(self.upper, upper)
+        gap = None if self.posterior_gap is None else posterior_gap(problem, lower, upper)
+        return replace(self, lower=lower, upper=upper, posterior_gap=gap)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data, without its proof: unknown numbers are ``None``."""

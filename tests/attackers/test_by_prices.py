@@ -26,6 +26,7 @@ from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
+from tests.brackets import worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
 
@@ -85,7 +86,7 @@ def test_against_a_table_of_thresholds(seed):
     problem, plan = team_problem(seed, 13, graph=families[seed % 2])
     bracket, stop = run_prices(problem, plan, time_limit=60)
     assert stop is ro.Stop.CLOSED
-    check(problem, plan, bracket, ro.worst_case_attack(problem, plan).upper)
+    check(problem, plan, bracket, worst_value(problem, plan))
 
 
 @pytest.mark.parametrize("n_robots", [1, 2, 5])
@@ -102,7 +103,7 @@ def test_where_nothing_can_be_attacked_no_group_is_weak(n_robots, seed):
 @pytest.mark.parametrize("nodes", [0, 1, 100, 2_000])
 def test_a_bracket_that_is_stopped_is_valid(nodes):
     problem, plan = team_problem(1, 13, graph=nx.gnp_random_graph(13, 0.5, seed=1))
-    exact = ro.worst_case_attack(problem, plan).upper
+    exact = worst_value(problem, plan)
     bracket, _ = run_prices(problem, plan, max_nodes=nodes)
     assert bracket.lower <= exact * (1 + 1e-12)
     assert exact <= bracket.upper * (1 + 1e-12)

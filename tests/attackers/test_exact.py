@@ -11,6 +11,7 @@ import ratt_opt as ro
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
+from tests.brackets import attained, attains, is_exact, worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_elements, random_problem, range_bearing
 
@@ -21,9 +22,10 @@ def test_value_is_the_definition_s(seed):
     problem = random_problem(rng)
     elements = random_elements(rng, problem)
     result = worst_case_attack(problem, elements)
-    assert result.lower == result.upper
-    assert result.upper == pytest.approx(brute_force_worst_case(problem, elements), rel=1e-12, abs=1e-12)
-    assert problem.team_value(elements, result.attack) == result.upper
+    assert is_exact(problem, elements, result)
+    assert worst_value(problem, elements) == pytest.approx(
+        brute_force_worst_case(problem, elements), rel=1e-12, abs=1e-12
+    )
     assert result.stop is ro.Stop.EXHAUSTED
 
 
@@ -55,7 +57,7 @@ def test_six_robots_on_named_graphs(graph, alpha_c):
         )
         elements = random_elements(rng, problem)
         expected = brute_force_worst_case(problem, elements)
-        assert worst_case_attack(problem, elements).upper == pytest.approx(expected, rel=1e-12)
+        assert worst_value(problem, elements) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -84,7 +86,7 @@ def test_the_bracket_is_valid_wherever_the_search_stops(seed):
     for nodes in range(full.nodes + 2):
         part = worst_case_attack(problem, elements, max_nodes=nodes)
         assert part.lower <= full.upper <= part.upper
-        assert problem.team_value(elements, part.attack) == part.upper
+        assert attains(problem, elements, part)
         assert part.nodes <= nodes
         is_closed = part.lower >= part.upper - 1e-9 * abs(part.upper)  # what is known at once may do
         assert (part.stop is ro.Stop.NODES) == (nodes < full.nodes and not is_closed)
@@ -114,7 +116,8 @@ def test_an_outer_budget_counts_too(n_robots, complete):
     for outer, stop in ((Budget(0.0), ro.Stop.TIME), (interrupted, ro.Stop.INTERRUPTED)):
         result = worst_case_attack(problem, plan, time_limit=60.0, budget=outer)
         assert (result.stop, result.nodes) == (stop, 0)
-        assert result.lower <= problem.team_value(plan, result.attack) == result.upper
+        assert result.lower <= attained(problem, plan, result)
+        assert attains(problem, plan, result)
 
 
 @pytest.mark.parametrize("family", [None, "disk-6", "dense"])
@@ -130,7 +133,7 @@ def test_an_attack_that_meets_the_aim_ends_the_search(family, n_robots):
         result = worst_case_attack(problem, plan, aim=aim)
         assert result.stop in {ro.Stop.GAP, worst.stop}
         assert result.lower <= worst.upper <= result.upper <= aim
-        assert problem.team_value(plan, result.attack) == result.upper
+        assert attains(problem, plan, result)
     assert result.stop is ro.Stop.GAP
     assert worst_case_attack(problem, plan, aim=worst.lower * (1 - 1e-6)) == worst
     with pytest.raises(InputError, match="aim"):
@@ -200,7 +203,7 @@ def test_an_interrupt_at_any_batch_returns_the_bracket(graph):
             break
         assert result.stop is ro.Stop.INTERRUPTED
         assert 0.0 <= result.lower <= expected.upper <= result.upper
-        assert problem.team_value(plan, result.attack) == result.upper
+        assert attains(problem, plan, result)
     assert batches > 5
     assert result == expected
 
@@ -238,7 +241,7 @@ def test_ten_robots_match_the_enumeration_of_outcomes(name, budget):
             if group not in known:
                 known[group] = problem.objective(elements[sorted(group)])
         worst = min(worst, max(known[group] for group in outcome))
-    assert worst_case_attack(problem, elements).upper == pytest.approx(worst, rel=1e-13)
+    assert worst_value(problem, elements) == pytest.approx(worst, rel=1e-13)
 
 
 def test_far_fewer_evaluations_than_raw_attacks():

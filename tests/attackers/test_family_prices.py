@@ -26,6 +26,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.stopping import Stop
+from tests.brackets import worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data
 
@@ -306,7 +307,7 @@ def test_a_program_is_divided_where_a_relaxed_attack_mixes_vectors():
         for size in range(1, N_ROBOTS + 1):
             for one in combinations(range(N_ROBOTS), size):
                 program.add(np.isin(EVERYONE, one), team.value(one))
-        worst = worst_case_attack(problem, EVERYONE).upper
+        worst = worst_value(problem, EVERYONE)
         for share in (0.95, 0.97, 0.99, 1.01):
             whole = program.solve(share * worst)
             parts = program.divided()
@@ -351,7 +352,7 @@ def bounded(problem, budget, vectors=None):
 def test_refuted_thresholds_are_below_the_worst_case(name):
     near = {False: [], True: []}
     for problem in problems(name, 5):
-        worst = worst_case_attack(problem, EVERYONE).upper
+        worst = worst_value(problem, EVERYONE)
         for has_vectors, shares in near.items():
             lower = bounded(problem, Budget(max_nodes=20_000), vectors_of(problem) if has_vectors else None)
             assert lower <= worst + 1e-9 * abs(worst)
@@ -375,7 +376,7 @@ def test_thresholds_refuted_in_parts_are_below_the_worst_case(name, monkeypatch)
 
     monkeypatch.setattr(FamilyProgram, "divided", divided)
     for problem in problems(name, 20):
-        worst = worst_case_attack(problem, EVERYONE).upper
+        worst = worst_value(problem, EVERYONE)
         assert bounded(problem, Budget(max_nodes=20_000), vectors_of(problem)) <= worst + 1e-9 * abs(worst)
     assert any(parts)
 
@@ -396,7 +397,7 @@ def test_prices_of_sizes_close_on_the_worst_attack(name):
 
 def test_wherever_it_ends_the_bound_holds():
     problem = next(problems("logdet", 1))
-    worst = worst_case_attack(problem, EVERYONE).upper
+    worst = worst_value(problem, EVERYONE)
     lowers = [bounded(problem, Budget(max_nodes=nodes)) for nodes in (0, 1, 3, 10, 30, 100)]
     assert lowers == sorted(lowers)
     assert lowers[-1] <= worst
@@ -411,7 +412,7 @@ def test_with_time_left_a_search_of_all_families_goes_on(name, monkeypatch):
     n_robots, rng = 14, np.random.default_rng(3)
     objective = OBJECTIVES[name](*information_data(rng, n_robots, 3))
     problem = Problem(objective, np.arange(n_robots), None, 1, 65)
-    worst = worst_case_attack(problem, np.arange(n_robots)).upper
+    worst = worst_value(problem, np.arange(n_robots))
     values = PlanValues(problem, np.arange(n_robots))
     bracket = AttackBracket(Attack(), problem.team_value(values.plan, Attack()), 0.0)
     task = AttackTask(problem, values, bracket, Budget(time_limit=0.5))

@@ -15,13 +15,14 @@ from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.few_cuts import attacks_are_few
 from ratt_opt.graph.threat import Threat
+from tests.brackets import attained, is_exact
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
 
 def tried(problem, elements, max_nodes=None):
     first = bounded_rational_attack(problem, elements)
-    bracket = AttackBracket(first.attack, first.upper, 0.0)
+    bracket = AttackBracket(first.attack, attained(problem, elements, first), 0.0)
     try:
         task = AttackTask(problem, PlanValues(problem, elements), bracket, Budget(max_nodes=max_nodes))
         try_every_attack(task)
@@ -77,7 +78,8 @@ def test_one_cut_on_a_sparse_network(seed, n_robots, alpha_s, kind):
     truth = min(max(values[group - blind] for group in groups) for groups in outcomes for blind in blinded)
     found = ro.worst_case_attack(problem, np.arange(n_robots))
     assert found.stop is ro.Stop.CLOSED
-    assert found.lower == found.upper == pytest.approx(truth, rel=1e-12)
+    assert is_exact(problem, np.arange(n_robots), found)
+    assert attained(problem, np.arange(n_robots), found) == pytest.approx(truth, rel=1e-12)
     largest = ro.smallest_largest_group(graph, 1)
     assert (largest.lower, largest.upper) == (min(max(map(len, groups)) for groups in outcomes),) * 2
 

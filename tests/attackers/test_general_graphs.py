@@ -12,6 +12,7 @@ from ratt_opt.attackers.forced_group import forced_survivors
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.outcomes import non_dominated_outcomes
+from tests.brackets import attains, is_exact
 from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
 
 
@@ -30,7 +31,7 @@ def test_fourteen_robots_on_a_sparse_graph_close(name, seed):
     problem = ro.Problem(OBJECTIVES[name](*range_bearing(rng, 14, 4, 1)), np.arange(14), graph, 2, 6)
     plan = np.arange(14)
     result = ro.worst_case_attack(problem, plan)
-    assert result.lower == result.upper == problem.team_value(plan, result.attack)
+    assert is_exact(problem, plan, result)
     assert result.upper <= min(ro.greedy_attack(problem, plan).upper, ro.bounded_rational_attack(problem, plan).upper)
     for seed_of_attack in range(200):
         assert result.upper <= ro.random_attack(problem, plan, seed=seed_of_attack).upper + 1e-12
@@ -67,7 +68,8 @@ def test_a_large_team_on_any_graph_gets_a_valid_bracket(name, dimension):
     problem = ro.Problem(objective, np.arange(24), graph, 4, 12)
     plan = np.arange(24)
     result = ro.worst_case_attack(problem, plan, max_nodes=10_000, time_limit=5)
-    assert result.lower <= result.upper == problem.team_value(plan, result.attack)
+    assert result.lower <= result.upper
+    assert attains(problem, plan, result)
     assert result.stop is not ro.Stop.HEURISTIC
     for seed in range(100):
         assert result.lower <= ro.random_attack(problem, plan, seed=seed).upper

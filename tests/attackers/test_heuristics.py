@@ -9,6 +9,7 @@ from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_atta
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.errors import InputError
+from tests.brackets import attains
 from tests.strategies import random_elements, random_problem
 
 
@@ -29,7 +30,7 @@ def test_attacks_are_allowed_and_their_values_are_recomputed(seed):
         random_attack(problem, elements, seed=seed),
     ):
         problem.check_attack(result.attack)
-        assert result.upper == problem.team_value(elements, result.attack)
+        assert attains(problem, elements, result)
         assert result.upper >= exact.upper - 1e-12
         assert result.lower == problem.objective(())
         assert result.stop is ro.Stop.HEURISTIC

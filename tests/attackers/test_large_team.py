@@ -30,6 +30,7 @@ from ratt_opt.attackers.weakest_set.minorant import affine_minorant
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.attackers.weakest_set.weakest_axis import weakest_axis
 from ratt_opt.budget import Budget, OutOfBudget
+from tests.brackets import attained, attains, worst_value
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
 
 
@@ -49,7 +50,7 @@ def run_large(problem, elements, max_nodes=None):
     """The large-team search, also where ``worst_case_attack`` would use the one for small teams."""
     values = PlanValues(problem, elements)
     start = bounded_rational_attack(problem, elements)
-    bracket, budget = AttackBracket(start.attack, start.upper, 0.0), Budget(max_nodes=max_nodes)
+    bracket, budget = AttackBracket(start.attack, attained(problem, elements, start), 0.0), Budget(max_nodes=max_nodes)
     team = PackedTeam.planar(problem.objective, values.plan)
     try:
         stop = SizeVectorSearch(AttackTask(problem, values, bracket, budget), team).run()
@@ -94,13 +95,13 @@ def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
         monkeypatch.setattr(vector_search, "FEW_SETS", 10)
         monkeypatch.setattr(weak_families, "SHAKEN", 0)
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
-    expected = ro.worst_case_attack(problem, elements).upper
+    expected = worst_value(problem, elements)
     bracket, _, stop = run_large(problem, elements)
     assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
     assert bracket.lower <= expected + 1e-12
     assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
     assert stop is ro.Stop.CLOSED
-    assert problem.team_value(elements, bracket.attack) == bracket.upper
+    assert attained(problem, elements, bracket) == bracket.upper
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -109,9 +110,12 @@ def test_shares_that_end_anywhere_lose_no_set(name, seed, monkeypatch):
     """Where a share ended while the groups around sets were packed, the next one closed the bracket without them."""
     pack_again(monkeypatch)
     problem, elements = team_problem(seed, 6 + seed % 4, name, protect=seed % 3 == 0)
-    expected, values = ro.worst_case_attack(problem, elements).upper, PlanValues(problem, elements)
+    expected, values = worst_value(problem, elements), PlanValues(problem, elements)
     start = bounded_rational_attack(problem, elements)
-    bracket, team = AttackBracket(start.attack, start.upper, 0.0), PackedTeam.planar(problem.objective, values.plan)
+    bracket, team = (
+        AttackBracket(start.attack, attained(problem, elements, start), 0.0),
+        PackedTeam.planar(problem.objective, values.plan),
+    )
     search = SizeVectorSearch(AttackTask(problem, values, bracket, Budget()), team)
     search.bounds = dict.fromkeys(search.vectors, -np.inf)
     stop, nodes = None, 1
@@ -159,7 +163,7 @@ def test_the_bracket_is_valid_at_every_node_count(name, seed, limits, monkeypatc
     monkeypatch.setattr(low_lists, "NODES_OF_A_LOOK", 3)
     problem, elements = team_problem(seed, 8, name)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)
-    expected = ro.worst_case_attack(problem, elements).upper
+    expected = worst_value(problem, elements)
     _, nodes, _ = run_large(problem, elements)
     previous = 0.0
     for limit in [*range(min(nodes, 150)), nodes, nodes + 1]:
@@ -266,7 +270,7 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     result = ro.worst_case_attack(problem, np.arange(13))
     assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
-    assert problem.team_value(np.arange(13), result.attack) == result.upper
+    assert attains(problem, np.arange(13), result)
 
 
 def searched_in_pieces(name, n_robots, nodes, growth):

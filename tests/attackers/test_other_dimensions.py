@@ -23,6 +23,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
 from ratt_opt.setfunctions.criteria import compiled
 from ratt_opt.setfunctions.information import from_triangles, triangles
+from tests.brackets import attained, worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph
 
@@ -49,7 +50,7 @@ def team_problem(seed, n_robots, dimension, name, *, complete):
 
 def run(search, problem, elements, max_nodes=None):
     values, first = PlanValues(problem, elements), bounded_rational_attack(problem, elements)
-    bracket, budget = AttackBracket(first.attack, first.upper, 0.0), Budget(max_nodes=max_nodes)
+    bracket, budget = AttackBracket(first.attack, attained(problem, elements, first), 0.0), Budget(max_nodes=max_nodes)
     try:
         task, team = AttackTask(problem, values, bracket, budget), PackedTeam.of(problem.objective, values.plan)
         stop = search(task, team).run()
@@ -80,7 +81,7 @@ def test_complete_graphs_agree_with_the_threshold_search(name, dimension, way, m
         monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", -1)
     for seed in range(12):
         problem, elements = team_problem(seed, 4 + seed % 6, dimension, name, complete=True)
-        expected = ro.worst_case_attack(problem, elements).upper
+        expected = worst_value(problem, elements)
         bracket, _, stop = run(SizeVectorSearch, problem, elements)
         is_closed_at(bracket, stop, problem, elements, expected)
 
@@ -99,7 +100,7 @@ def test_networks_agree_with_the_definition(search, name, dimension):
 @pytest.mark.parametrize("name", OBJECTIVES)
 def test_the_bracket_is_valid_at_every_node_count(search, name):
     problem, elements = team_problem(3, 9, 3, name, complete=search is SizeVectorSearch)
-    expected = ro.worst_case_attack(problem, elements).upper
+    expected = worst_value(problem, elements)
     for nodes in [*range(25), *range(25, 400, 25)]:
         bracket, _, _ = run(search, problem, elements, nodes)
         assert bracket.lower <= expected * (1 + 1e-12) + 1e-12
@@ -165,7 +166,7 @@ def test_teams_of_24_close_where_prices_left_much_open(name, dimension, family):
     problem = ro.Problem(OBJECTIVES[name](*data), np.arange(n_robots), graph, *budgets)
     result = ro.worst_case_attack(problem, np.arange(n_robots), max_nodes=3_000_000)
     assert result.stop is ro.Stop.CLOSED
-    assert problem.team_value(np.arange(n_robots), result.attack) == pytest.approx(result.upper, rel=1e-12)
+    assert attained(problem, np.arange(n_robots), result) == pytest.approx(result.upper, rel=1e-9)
     rng = np.random.default_rng(0)
     for _ in range(300):
         blinded = frozenset(rng.permutation(n_robots)[: budgets[0]].tolist())

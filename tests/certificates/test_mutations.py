@@ -76,7 +76,7 @@ def is_false(document):
         return True
     claim = document["claim"]
     scale = max(1e-3, abs(problem.objective(range(problem.objective.n))))
-    optimum, worst = exhaustive_optimum(problem).upper, brute_force_worst_case(problem, plan)
+    optimum, worst = exhaustive_optimum(problem).lower, brute_force_worst_case(problem, plan)
     return claim["upper"] < optimum - MARGIN * scale or claim["lower"] > worst + MARGIN * scale
 
 

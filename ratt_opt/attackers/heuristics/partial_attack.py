@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.task import AttackResult
+from ratt_opt.attackers.task import AttackResult, outward
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -74,4 +74,5 @@ def heuristic_result(problem: Problem, values: PlanValues, attack: Attack) -> At
     """The result of a heuristic: its attack's value, and the value of no measurement as lower bound."""
     lower, evaluations = problem.objective(()), values.evaluations
     upper = problem.team_value(values.plan, attack)
-    return AttackResult(attack=attack, lower=lower, upper=upper, stop=Stop.HEURISTIC, evaluations=evaluations)
+    found = AttackResult(attack=attack, lower=lower, upper=upper, stop=Stop.HEURISTIC, evaluations=evaluations)
+    return outward(problem, values.plan, found)

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer
 from ratt_opt._values import Shown
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.link_choice.choice_search import best_choice
 from ratt_opt.attackers.link_choice.known_attacks import KnownAttacks
 from ratt_opt.attackers.link_choice.upgrades import Addition, Protection
-from ratt_opt.attackers.task import CLOSED_WIDTH, AttackMemory, PlanValues
+from ratt_opt.attackers.task import CLOSED_WIDTH, AttackMemory, PlanValues, outward
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.coordinates.unit_prior import with_unit_prior
+from ratt_opt.problem import check_problem
 from ratt_opt.progress import Step
 from ratt_opt.stopping import Stop
 
@@ -108,7 +110,8 @@ def links_to_protect(
     InputError : the plan is not one element per robot, a candidate is no link or given twice, ``k`` is no integer >= 0,
         or a budget is not a number >= 0.
     """
-    search = _LinkSearch(Protection(problem, candidates), elements, k, max_nodes, Budget.inside(budget, time_limit))
+    upgrade = Protection(with_unit_prior(check_problem(problem)), candidates)
+    search = _LinkSearch(upgrade, elements, k, max_nodes, Budget.inside(budget, time_limit))
     return search.run()
 
 
@@ -139,7 +142,8 @@ def links_to_add(
     ------
     InputError : as for :func:`links_to_protect`; a candidate that is a link already is refused too.
     """
-    search = _LinkSearch(Addition(problem, candidates), elements, k, max_nodes, Budget.inside(budget, time_limit))
+    upgrade = Addition(with_unit_prior(check_problem(problem)), candidates)
+    search = _LinkSearch(upgrade, elements, k, max_nodes, Budget.inside(budget, time_limit))
     return search.run()
 
 
@@ -182,12 +186,14 @@ class _LinkSearch:
             stop = self.budget.interrupt()
         if not self.count:
             self.upper = self.after.upper
+        problem = self.upgrade.problem
+        lower, upper = problem.outward(self.after.lower, max(self.upper, self.after.lower))
         return BestLinks(
             links=self.links,
-            lower=self.after.lower,
-            upper=max(self.upper, self.after.lower),
-            before=self.before,
-            after=self.after,
+            lower=lower,
+            upper=upper,
+            before=outward(problem, self.values.plan, self.before),
+            after=outward(problem, self.values.plan, self.after),
             stop=Stop.CLOSED if self.upper <= self.level else stop or self.budget.stop() or self.unproved_stop,
             attacks=self.attacks,
             nodes=self.nodes,
@@ -233,7 +239,7 @@ class _LinkSearch:
         _, changed, memory = self._last
         nodes = self.max_nodes if max_nodes is None else max_nodes
         part = self.budget.part(share)
-        result = worst_case_attack(changed, self.values.plan, max_nodes=nodes, budget=part, memory=memory)
+        result = strongest_attack(changed, self.values.plan, max_nodes=nodes, budget=part, memory=memory)
         self.attacks, self.nodes = self.attacks + 1, self.nodes + result.nodes
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
             self.unproved_stop = result.stop

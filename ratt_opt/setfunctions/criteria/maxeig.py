@@ -46,6 +46,7 @@ class MaxEigenvalueObjective(StateCriterion):
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 2
+    error_scale = StateCriterion.error_scale
 
     @property
     def prior_criterion(self) -> float:
@@ -178,6 +179,7 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
     unit: ClassVar[str] = "m²"
     output: FloatArray
     stated = StateCriterion.stated
+    error_scale = StateCriterion.error_scale
     # What is written in levels and axes holds as it stands.
     prior_criterion = MaxEigenvalueObjective.prior_criterion
     combine = MaxEigenvalueObjective.combine

@@ -50,6 +50,14 @@ class StateCriterion(InformationObjective):
         super().__init__(prior, information, weights)
 
     @property
+    def error_scale(self) -> FloatArray:
+        """(M,) no less than the weighted trace of what counts of the prior: ``w_j |C_j|^2 |prior_j|`` of an output."""
+        if self.output is None:
+            return np.asarray(self.weights * np.trace(self.prior, axis1=-2, axis2=-1))
+        size = np.square(self.output).sum(axis=(-2, -1)) * np.linalg.norm(self.prior, axis=(-2, -1))
+        return np.asarray(self.weights * size)
+
+    @property
     def stated(self) -> dict[str, Any]:
         """The output matrices, row by row."""
         return {} if self.output is None else {"output": self.output.reshape(self.n_targets, -1).tolist()}

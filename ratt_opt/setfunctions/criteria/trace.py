@@ -62,6 +62,7 @@ class TraceObjective(StateCriterion):
     name: ClassVar[str] = "trace"
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 0
+    error_scale = StateCriterion.error_scale
 
     @property
     def prior_criterion(self) -> float:
@@ -183,6 +184,7 @@ class OutputTraceObjective(TraceObjective):
     unit: ClassVar[str] = "m²"
     output: FloatArray
     stated = StateCriterion.stated
+    error_scale = StateCriterion.error_scale
     marginal_minorant = TraceObjective.marginal_minorant
 
     @property

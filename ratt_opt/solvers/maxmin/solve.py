@@ -11,6 +11,8 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.coordinates.measured import measured_coordinates
+from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.progress import Step
@@ -28,9 +30,8 @@ from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
-from ratt_opt.solvers.measured_coordinates import measured_coordinates
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
-from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan
+from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
@@ -99,11 +100,11 @@ def solve_maxmin(
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap, alpha_cs)
-    measured = measured_coordinates(problem)
-    earlier = measured.lowered(start) if isinstance(start, MaxMinResult) else start
-    smaller = measured if measured.is_smaller else problem
-    found = search_in_all_coordinates(smaller, budget, gap, progress, alpha_cs, earlier, workers)
-    return measured.lifted(found)
+    searched = with_unit_prior(measured_coordinates(problem))
+    earlier = searched.lowered(start) if isinstance(start, MaxMinResult) else start
+    told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.outward(lower, upper)))
+    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, earlier, workers).outward(searched)
+    return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
 def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
@@ -170,7 +171,7 @@ def _search_and_prove(search: BothSearches, turns: Turns, progress: Progress) ->
 def _result(
     problem: Problem, incumbent: Incumbent, search: BothSearches | None, stop: Stop, gap: float
 ) -> MaxMinResult:
-    before, proved = problem.information_objective.prior_criterion, incumbent.proved
+    proved = incumbent.proved
     lower = proved.lower
     if search is not None and np.isfinite(search.upper):
         upper, proof = search.upper, search.proof()
@@ -190,7 +191,7 @@ def _result(
         stop=stop,
         evaluations=proved.evaluations,
         nodes=incumbent.budget.nodes,
-        posterior_gap=None if before is None or before <= lower else float((upper - lower) / (before - lower)),
+        posterior_gap=posterior_gap(problem, lower, upper),
         worst_case=proved.worst_case,
         proof=proof,
         unattacked=float(problem.team_value(proved.elements, Attack())),

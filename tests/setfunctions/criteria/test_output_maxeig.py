@@ -25,6 +25,7 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.budget import Budget
+from tests.brackets import worst_value
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.setfunctions import oracle
 from tests.strategies import information_data, random_elements
@@ -96,7 +97,7 @@ def test_attacks_and_optima_are_exact(seed: int) -> None:
     graph = nx.cycle_graph(4) if seed % 3 == 2 else None
     problem = part_problem(rng, d=2 + seed % 3, q=1 + seed % 2, graph=graph)
     plan = random_elements(rng, problem)
-    assert worst_case_attack(problem, plan).upper == pytest.approx(brute_force_worst_case(problem, plan), rel=1e-9)
+    assert worst_value(problem, plan) == pytest.approx(brute_force_worst_case(problem, plan), rel=1e-9)
     found = solve_maxmin(problem)
     best = brute_force_optimum(problem)
     assert found.lower == pytest.approx(best, rel=1e-8)

@@ -78,8 +78,9 @@ def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tm
         optimum = max(brute_force_worst_case(problem, np.array(plan)) for plan in all_plans(problem))
         found = solve_maxmin(problem)
         scale = max(1e-3, problem.objective(range(problem.objective.n)))
-        assert found.lower == pytest.approx(optimum, rel=1e-9, abs=1e-12 * scale)
-        assert optimum - 1e-12 * scale <= found.upper <= optimum + 2e-9 * scale
+        slack = 1e-12 * scale + 2 * problem.evaluation_error
+        assert found.lower == pytest.approx(optimum, rel=1e-9, abs=slack)
+        assert optimum - slack <= found.upper <= optimum + 2e-9 * scale + slack
         if found.proof is not None and found.proof.covers:
             proved += 1
             certificate = certify(problem, found, tmp_path / "c.json")

@@ -11,6 +11,7 @@ from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans.adversary import QUICK_SHARE, LastingAttacks
 from ratt_opt.solvers.maxmin.plans.incumbent import IMPROVED_SHARE, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from tests.brackets import attains
 
 SECONDS = 1000.0
 
@@ -78,7 +79,8 @@ def test_what_is_known_at_once_takes_one_attack(criterion: str, monkeypatch: pyt
     found = solve_maxmin(problem, time_limit=0)
     assert len(attacked) == 1
     assert found.worst_case is not None
-    assert 0 < found.lower <= found.worst_case.upper == problem.team_value(found.elements, found.worst_case.attack)
+    assert 0 < found.lower <= found.worst_case.upper
+    assert attains(problem, found.elements, found.worst_case)
 
 
 def test_attacks_that_last_are_left_out_where_they_take_long(

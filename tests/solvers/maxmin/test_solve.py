@@ -202,7 +202,7 @@ def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.worst_case_attack", interrupted)
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.strongest_attack", interrupted)
     result = solve_maxmin(problem)
     assert result.stop is Stop.INTERRUPTED
     assert result.lower <= full.lower <= full.upper <= result.upper
@@ -220,7 +220,7 @@ def test_an_interrupt_that_an_inner_attack_turned_into_a_bracket_is_heard(
         asked.append(given)
         return replace(worst_case_attack(*given, **limits), stop=Stop.INTERRUPTED)
 
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.worst_case_attack", interrupted)
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.strongest_attack", interrupted)
     outer = Budget()
     result = solve_maxmin(problem, budget=outer)
     assert result.stop is outer.stop() is Stop.INTERRUPTED
@@ -266,7 +266,7 @@ def test_optimal_designs_known_in_closed_form(objective, robots: int, shares: di
     chosen = (result.elements % 21).tolist()
     best = problem.objective([i * 21 + point for i, point in enumerate(p for p, k in shares.items() for _ in range(k))])
     assert result.upper >= best * (1 - 1e-12)
-    assert result.lower == pytest.approx(best, rel=1e-9)
+    assert result.lower == pytest.approx(best, rel=1e-9, abs=2 * problem.evaluation_error)
     assert {point: chosen.count(point) for point in set(chosen)} == shares
 
 

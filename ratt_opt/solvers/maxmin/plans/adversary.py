@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackMemory
@@ -220,7 +220,7 @@ class Adversary:
     def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> AttackResult:
         """Exact worst case of a plan within a part of the budget, or an attack that leaves it no more than ``aim``."""
         nodes, known, memory = budget.max_nodes, self._worst_known(self.problem, plan), self._memory(plan)
-        result = worst_case_attack(
+        result = strongest_attack(
             self.problem, plan, max_nodes=nodes, budget=budget, aim=aim, known=known, memory=memory
         )
         self._remember(self.problem, plan, result.attack)
@@ -236,7 +236,7 @@ class Adversary:
             worst = int(values.argmin())
             value = max(objective(plan[list(self.pool.groups[group])]) for group in self.pool.of_outcome[worst])
             memory.bracket = AttackBracket(self.pool.attack(worst), value, objective(()), objective.rounding)
-        return worst_case_attack(self.problem, plan, time_limit=0, budget=budget, memory=memory)
+        return strongest_attack(self.problem, plan, time_limit=0, budget=budget, memory=memory)
 
     def _memory(self, plan: IntArray) -> AttackMemory:
         """Of earlier exact attacks on the plan, where it is one of the last few attacked."""
@@ -266,6 +266,6 @@ class Adversary:
             return bounded_rational_attack(problem, plan).attack
         if not problem.threat.links_alike:
             return greedy_attack(problem, plan, budget=self.budget).attack
-        found = worst_case_attack(problem, plan, max_nodes=0, budget=self.budget.part(QUICK_SHARE))
+        found = strongest_attack(problem, plan, max_nodes=0, budget=self.budget.part(QUICK_SHARE))
         self.heed(found)
         return found.attack

@@ -21,26 +21,26 @@ certificates are written and verified in all coordinates, and rely on nothing he
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, readonly
-from ratt_opt.problem import Problem, check_problem
+from ratt_opt.coordinates.changed import ChangedProblem, change_error, product_error, sizes_of
+from ratt_opt.problem import check_problem
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.evaluation_error import UNIT, largest_sizes
 from ratt_opt.setfunctions.information import symmetric_inverse
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["MeasuredProblem", "measured_coordinates"]
+__all__ = ["measured_coordinates"]
 
 RANK = 1e-9
 """Directions that hold less than this share of an element's information are no measured ones, if ``SLACK`` agrees."""
@@ -54,58 +54,7 @@ KINDS = (TraceObjective, MaxEigenvalueObjective)
 """Criteria that may have an output."""
 
 
-@dataclass(frozen=True, eq=False, init=False, repr=False)
-class MeasuredProblem(Problem):
-    """A problem in coordinates ``basis[j]' x`` of each target: the same elements, plans, attacks and values.
-
-    ``basis`` : (M, d, r), with r = d where nothing could be left out; ``whole`` : the problem in all d coordinates.
-    The other fields are those of a :class:`Problem`.
-    """
-
-    basis: FloatArray = field(kw_only=True)
-    whole: Problem = field(kw_only=True)
-
-    def __init__(self, *, basis: ArrayLike, whole: Problem, **fields: Any) -> None:
-        super().__init__(**fields)
-        object.__setattr__(self, "basis", readonly(np.asarray(basis, dtype=np.float64)))
-        object.__setattr__(self, "whole", whole)
-
-    @property
-    def is_smaller(self) -> bool:
-        """Whether coordinates were left out."""
-        return bool(self.basis.shape[2] < self.basis.shape[1])
-
-    def lifted(self, result: MaxMinResult) -> MaxMinResult:
-        """A result of this problem as one of ``whole``: its proof touches at the same information."""
-        if not self.is_smaller:
-            return result
-        before, proof = self.whole.information_objective.prior_criterion, result.proof
-        gap = None
-        if before is not None and before > result.lower:
-            gap = float((result.upper - result.lower) / (before - result.lower))
-        if proof is not None:
-            proof = proof.moved(self._lifted)
-        return replace(result, posterior_gap=gap, proof=proof)
-
-    def lowered(self, result: MaxMinResult) -> MaxMinResult:
-        """An earlier result of ``whole``, or of a similar problem, as one of this problem: to start from it."""
-        proof, shape = result.proof, self.whole.information_objective.prior.shape
-        if not self.is_smaller or proof is None:
-            return result
-        if any(cut.point.shape != shape for cut in proof.cuts):
-            return replace(result, proof=None)
-        return replace(result, proof=proof.moved(self._lowered))
-
-    def _lifted(self, point: FloatArray) -> FloatArray:
-        added = self.basis @ (point - self.information_objective.prior_information) @ np.swapaxes(self.basis, -1, -2)
-        lifted = self.whole.information_objective.prior_information + added
-        return np.asarray((lifted + np.swapaxes(lifted, -1, -2)) / 2)
-
-    def _lowered(self, point: FloatArray) -> FloatArray:
-        return symmetric_inverse(np.swapaxes(self.basis, -1, -2) @ symmetric_inverse(point) @ self.basis)
-
-
-def measured_coordinates(problem: Problem) -> MeasuredProblem:
+def measured_coordinates(problem: Problem) -> ChangedProblem:
     """Leave out the coordinates of targets that no element measures.
 
     A sensor of positions tells about two of the four or six coordinates of a track. If targets differ in how many are
@@ -123,20 +72,12 @@ def measured_coordinates(problem: Problem) -> MeasuredProblem:
     """
     objective = check_problem(problem).information_objective
     measured = _measured(problem)
-    smaller = None if measured is None else _smaller(objective, measured)
-    if smaller is None:
-        smaller = objective, np.broadcast_to(np.eye(objective.dimension), objective.prior.shape)
-    return MeasuredProblem(
-        objective=smaller[0],
-        robot=problem.robot,
-        graph=problem.graph,
-        alpha_s=problem.alpha_s,
-        alpha_c=problem.alpha_c,
-        protected_robots=problem.protected_robots,
-        protected_links=problem.protected_links,
-        basis=smaller[1],
-        whole=problem,
-    )
+    change = None if measured is None else _change(objective, measured)
+    if change is None:
+        identity = np.broadcast_to(np.eye(objective.dimension), objective.prior.shape)
+        return ChangedProblem.of(problem, objective, identity)
+    smaller, coordinates, outputs = change
+    return ChangedProblem.of(problem, smaller, coordinates.basis, _error(problem, smaller, coordinates, outputs))
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,10 +125,14 @@ def _most_of_plans(problem: Problem, sizes: FloatArray) -> FloatArray:
     return np.asarray(np.sum([sizes[choice].max(axis=0) for choice in problem.choices], axis=0))
 
 
-def _smaller(objective: InformationObjective, measured: _Coordinates) -> tuple[InformationObjective, FloatArray] | None:
-    """The criterion in the measured coordinates, or in such that it is one of their whole state, and their basis."""
+_Change = tuple["InformationObjective", _Coordinates, "FloatArray | None"]
+"""A criterion, its coordinates, and (M,) what computing ``C K`` rounds off of the trace; ``None`` for log-det."""
+
+
+def _change(objective: InformationObjective, measured: _Coordinates) -> _Change | None:
+    """The criterion in the measured coordinates, or in such that it is one of their whole state."""
     if type(objective) is LogDetObjective:
-        return _in_coordinates(objective, LogDetObjective, measured)
+        return _in_coordinates(objective, LogDetObjective, measured), measured, None
     kind = next((kind for kind in KINDS if type(objective) in (kind, kind.of_part)), None)
     if kind is None or not isinstance(objective, StateCriterion):
         return None
@@ -199,9 +144,12 @@ def _smaller(objective: InformationObjective, measured: _Coordinates) -> tuple[I
     _, sizes, axes = np.linalg.svd(shown, full_matrices=False)
     if (sizes[..., -1] <= REGULAR * sizes[..., 0]).any():
         return None
+    condition = sizes_of(mixed) * sizes_of(symmetric_inverse(mixed))
+    rounded = 16 * objective.dimension**2 * UNIT * condition * sizes_of(shown) ** 2 * sizes_of(mixed)
     if shown.shape[-2] < shown.shape[-1]:
-        return _in_coordinates(objective, kind, measured, shown)
-    return _in_coordinates(objective, kind, measured.mapped(sizes[..., None] * axes))
+        return _in_coordinates(objective, kind, measured, shown), measured, rounded
+    mapped = measured.mapped(sizes[..., None] * axes)
+    return _in_coordinates(objective, kind, mapped), mapped, rounded
 
 
 def _is_measured(prior: FloatArray, output: FloatArray, seen: FloatArray) -> bool:
@@ -212,10 +160,29 @@ def _is_measured(prior: FloatArray, output: FloatArray, seen: FloatArray) -> boo
 
 def _in_coordinates(
     objective: InformationObjective, kind: Any, measured: _Coordinates, output: FloatArray | None = None
-) -> tuple[InformationObjective, FloatArray]:
-    """A criterion of the measured coordinates, whole or of the part ``output``, and their basis."""
+) -> InformationObjective:
+    """A criterion of the measured coordinates, whole or of the part ``output``."""
     prior = measured.turned @ objective.prior @ measured.basis
     information = measured.inverse @ objective.information @ np.swapaxes(measured.inverse, -1, -2)
     prior, information = ((x + np.swapaxes(x, -1, -2)) / 2 for x in (prior, information))
     part = {} if output is None else {"output": output}
-    return kind(prior, information, objective.weights, **part), measured.basis
+    made: InformationObjective = kind(prior, information, objective.weights, **part)
+    return made
+
+
+def _error(
+    problem: Problem, smaller: InformationObjective, coordinates: _Coordinates, outputs: FloatArray | None
+) -> float:
+    """What rounding changes, and what was left out beside the measured coordinates."""
+    objective, (basis, inverse) = problem.information_objective, (coordinates.basis, coordinates.inverse)
+    r = basis.shape[-1]
+    prior = sizes_of(product_error(coordinates.turned, objective.prior, basis))
+    one = sizes_of(inverse @ basis - np.eye(r)) + sizes_of(product_error(inverse, np.eye(basis.shape[-2]), basis))
+    rounded = sizes_of(product_error(inverse, objective.information, np.swapaxes(inverse, -1, -2)))
+    rounded += 3 * one * sizes_of(smaller.information)
+    information = _most_of_plans(problem, rounded)
+    size = sizes_of(smaller.prior) * largest_sizes(smaller.information, problem.choices)
+    share = np.maximum(SLACK, ROUNDINGS * size)
+    if outputs is not None and smaller.error_scale is not None:
+        share = share + smaller.weights * outputs / smaller.error_scale
+    return change_error(problem, smaller, prior, information, share)

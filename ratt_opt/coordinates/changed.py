@@ -1,0 +1,126 @@
+"""A problem in other coordinates, and how far its values are from the exact ones of the problem as it was given.
+
+In coordinates ``y = U'x`` with ``V U = 1`` a target has the prior ``Q = U'PU`` and the information ``Y = V X V'``;
+``X = U Y U'``. Both are rounded. With ``S = |Q| |Y|``,
+
+- ``tr C (Q^{-1} + Y)^{-1} C'`` moves by at most ``(1 + sqrt S)^2 |C|^2`` times what ``Q`` moves, as
+  ``(1 + QY)^{-1} = 1 - Q Y^{1/2} (1 + Y^{1/2} Q Y^{1/2})^{-1} Y^{1/2}``;
+- and by at most ``|C|^2 |Q|^2`` times what ``Y`` moves, as no posterior exceeds the prior.
+
+The largest eigenvalue moves by no more. ``logdet(1 + QY)`` moves by at most ``d`` times what ``|Q| |Y|`` moves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt._validation import FloatArray, readonly
+from ratt_opt.problem import Problem
+from ratt_opt.setfunctions.evaluation_error import UNIT, evaluation_error, largest_sizes
+from ratt_opt.setfunctions.information import symmetric_inverse
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.setfunctions.information import InformationObjective
+    from ratt_opt.solvers.result import MaxMinResult
+
+__all__ = ["ChangedProblem", "change_error", "product_error", "sizes_of"]
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class ChangedProblem(Problem):
+    """A problem in coordinates ``basis[j]' x`` of each target: the same elements, plans, attacks and values.
+
+    ``basis`` : (M, d, r), the identity where nothing was changed; ``whole`` : the problem as it was given
+    ``change_error`` : no exact value differs by more from the exact one of ``whole``
+    The other fields are those of a :class:`Problem`.
+    """
+
+    basis: FloatArray = field(kw_only=True)
+    whole: Problem = field(kw_only=True)
+    change_error: float = field(kw_only=True, default=0.0)
+
+    def __init__(self, *, basis: ArrayLike, whole: Problem, change_error: float = 0.0, **fields: Any) -> None:
+        super().__init__(**fields)
+        object.__setattr__(self, "basis", readonly(np.asarray(basis, dtype=np.float64)))
+        object.__setattr__(self, "whole", whole)
+        object.__setattr__(self, "change_error", change_error)
+
+    @classmethod
+    def of(
+        cls, whole: Problem, objective: InformationObjective, basis: ArrayLike, change_error: float = 0.0
+    ) -> ChangedProblem:
+        """``whole`` with another objective."""
+        threat = {name: getattr(whole, name) for name in ("alpha_s", "alpha_c", "protected_robots", "protected_links")}
+        fields = {"objective": objective, "robot": whole.robot, "graph": whole.graph, **threat}
+        return cls(basis=basis, whole=whole, change_error=change_error, **fields)
+
+    @property
+    def is_smaller(self) -> bool:
+        """Whether coordinates were left out."""
+        return bool(self.basis.shape[2] < self.basis.shape[1])
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the coordinates are others."""
+        return self.objective is not self.whole.objective
+
+    @cached_property
+    def evaluation_error(self) -> float:
+        """The same as of any problem, against the exact values of ``whole``."""
+        return evaluation_error(self.information_objective, self.choices) + self.change_error
+
+    def lifted(self, result: MaxMinResult) -> MaxMinResult:
+        """A result of this problem with the proof as one of ``whole``: it touches at the same information."""
+        if not self.is_changed:
+            return result
+        proof = result.proof
+        return result if proof is None else replace(result, proof=proof.moved(self._lifted))
+
+    def lowered(self, result: MaxMinResult) -> MaxMinResult:
+        """An earlier result of ``whole``, or of a similar problem, as one of this problem: to start from it."""
+        proof, shape = result.proof, self.whole.information_objective.prior.shape
+        if not self.is_changed or proof is None:
+            return result
+        if any(cut.point.shape != shape for cut in proof.cuts):
+            return replace(result, proof=None)
+        return replace(result, proof=proof.moved(self._lowered))
+
+    def _lifted(self, point: FloatArray) -> FloatArray:
+        added = self.basis @ (point - self.information_objective.prior_information) @ np.swapaxes(self.basis, -1, -2)
+        lifted = self.whole.information_objective.prior_information + added
+        return np.asarray((lifted + np.swapaxes(lifted, -1, -2)) / 2)
+
+    def _lowered(self, point: FloatArray) -> FloatArray:
+        return symmetric_inverse(np.swapaxes(self.basis, -1, -2) @ symmetric_inverse(point) @ self.basis)
+
+
+def sizes_of(matrices: FloatArray) -> FloatArray:
+    """Frobenius' norms."""
+    return np.asarray(np.linalg.norm(matrices, axis=(-2, -1)))
+
+
+def product_error(left: FloatArray, matrices: FloatArray, right: FloatArray) -> FloatArray:
+    """(..., r, r) entries no smaller than the errors of computed products ``left @ matrices @ right``."""
+    terms = 2 * matrices.shape[-1] + 4
+    return np.asarray(terms * UNIT * (np.abs(left) @ np.abs(matrices) @ np.abs(right)))
+
+
+def change_error(
+    problem: Problem, objective: InformationObjective, prior: FloatArray, information: FloatArray, share: FloatArray
+) -> float:
+    """How far values of ``objective`` are from those of ``problem``, which is the same but in other coordinates.
+
+    ``prior`` : (M,) how far the prior in these coordinates is from the exact one; ``information`` : (M,) the same of
+    the information of a whole plan; ``share`` : (M,) of the criterion's size, whatever else was neglected
+    """
+    scale = objective.error_scale
+    assert scale is not None
+    size, whole = sizes_of(objective.prior), largest_sizes(objective.information, problem.choices)
+    worst = 1 + np.sqrt(size * whole)
+    return float(objective.combine(2 * scale * (worst**2 * prior / size + size * information + share)))

@@ -1,0 +1,84 @@
+"""Coordinates in which the prior is the identity, where digits would be lost otherwise.
+
+With ``P = R R'`` and ``y = R^{-1} x`` a target has the prior 1 and the information ``R'XR``. However ill-conditioned
+``P`` is, sums ``1 + R'XR`` are as well conditioned as what is measured allows: clock seconds and the bias of a
+gyroscope beside metres cost no digits.
+
+- Log-determinants: ``log(det P / det P+)`` is the same in all coordinates.
+- Trace and largest eigenvalue of ``C P+ C'``: those of the output ``C R``.
+
+Information is given as ``G G'``: what is negative in it, by rounding, is left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from ratt_opt.coordinates.changed import ChangedProblem, change_error, product_error, sizes_of
+from ratt_opt.problem import Problem
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.setfunctions.evaluation_error import UNIT, largest_sizes
+from ratt_opt.setfunctions.information import InformationObjective
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["with_unit_prior"]
+
+AnyProblem = TypeVar("AnyProblem", bound=Problem)
+
+TOLERABLE = 1e-9
+"""Error of values, as a share of the criterion before any measurement, that is no reason to change coordinates."""
+WORTHWHILE = 0.1
+"""Of the error that has to be left at most."""
+KINDS: tuple[Any, ...] = (TraceObjective, MaxEigenvalueObjective)
+"""Criteria that may have an output."""
+
+
+def with_unit_prior(problem: AnyProblem) -> AnyProblem | ChangedProblem:
+    """The problem in coordinates in which the prior is the identity, if values lose many digits in the given ones."""
+    objective = problem.objective
+    if not isinstance(objective, InformationObjective) or objective.error_scale is None:
+        return problem
+    if problem.evaluation_error <= TOLERABLE * float(objective.combine(objective.error_scale)):
+        return problem
+    changed = _changed(problem, objective)
+    return changed if changed.evaluation_error <= WORTHWHILE * problem.evaluation_error else problem
+
+
+def _changed(problem: Problem, objective: InformationObjective) -> ChangedProblem:
+    root: FloatArray = np.asarray(np.linalg.cholesky(objective.prior), dtype=np.float64)
+    turned = np.swapaxes(root, -1, -2)
+    values, vectors = np.linalg.eigh(objective.information)
+    factor = turned @ (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
+    information = factor @ np.swapaxes(factor, -1, -2)
+    prior = np.broadcast_to(np.eye(objective.dimension), objective.prior.shape)
+    part: dict[str, FloatArray] = {}
+    kind = next((kind for kind in KINDS if isinstance(objective, kind)), LogDetObjective)
+    if kind is not LogDetObjective:
+        given = getattr(objective, "output", None)
+        part["output"] = root if given is None else given @ root
+    changed = kind(prior, information, objective.weights, **part)
+    basis, error = np.linalg.inv(turned), _error(problem, objective, changed, root)
+    if isinstance(problem, ChangedProblem):
+        return ChangedProblem.of(problem.whole, changed, problem.basis @ basis, problem.change_error + error)
+    return ChangedProblem.of(problem, changed, basis, error)
+
+
+def _error(problem: Problem, objective: InformationObjective, changed: InformationObjective, root: FloatArray) -> float:
+    """What rounding the root of the prior, the information and the output changes."""
+    d, turned = objective.dimension, np.swapaxes(root, -1, -2)
+    prior = sizes_of(root @ turned - objective.prior) + sizes_of(product_error(root, np.eye(d), turned))
+    values = np.linalg.eigvalsh(objective.information)
+    negative = np.maximum(0.0, -values[..., 0])
+    size = sizes_of(root) ** 2
+    rounded = size * (negative * d + (20 * d + 8 * d**2) * UNIT * sizes_of(objective.information))
+    information = largest_sizes(rounded[..., None, None], problem.choices)
+    output = np.full(len(size), 4 * d * UNIT * d)
+    # The root's error counts in the given coordinates, where the prior is not the identity.
+    first = change_error(problem, objective, prior, np.zeros_like(prior), output)
+    return first + change_error(problem, changed, np.zeros_like(prior), information, output)

@@ -1,0 +1,122 @@
+"""How far computed values may be from the exact ones, of the matrices as they are given.
+
+Notation, for one target: ``P`` is the prior, ``X`` the information of a set of elements, at most one of each robot,
+``L = P^{-1} + X``; norms are spectral, or Frobenius' where that is simpler and larger; ``u = 2^-53``.
+
+1. What is evaluated is not ``L`` but ``L + D``: the prior's inverse was computed, and sums were rounded. Each rounding
+   moves a sum by at most ``u`` times the sizes of its terms.
+2. ``tr C (L + D)^{-1} C'`` differs from ``tr C L^{-1} C'`` by at most ``r / (1 - r) tr C P C'``, ``r = |D| |P|``, as
+   ``L^{-1} <= P``. The same is true of the largest eigenvalue. Log-determinants differ by at most ``d r / (1 - r)``.
+3. The formulas themselves have the error of a matrix moved by ``growth(d) u |L|``: Gauss' elimination with row
+   exchanges, whose factors have entries of at most ``2^(k - 1)`` times the matrix's in step ``k``, and three
+   triangular solutions (Higham, Accuracy and Stability of Numerical Algorithms, 2002, theorems 8.5, 9.3 and 14.1).
+
+So ``r`` grows with ``|P| |L|``. Where the prior's own condition makes that large, coordinates in which the prior is the
+identity have a smaller one: see ``ratt_opt/solvers/measured_coordinates.py``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["UNIT", "evaluation_error", "inverse_error", "largest_sizes"]
+
+UNIT = float(np.finfo(np.float64).eps) / 2
+"""Unit roundoff of float64."""
+MORE = 1 + 1e-12
+"""Factor on bounds for their own rounding."""
+FEW_COORDINATES = {1: 1.0, 2: 1.0}
+"""The same of closed formulas: ``det L = ac - b^2`` is off by at most ``2 u ac + u det L``, and ``ac / det L`` is at
+most
+``(k + 3) / 4`` for matrices of condition ``k``."""
+SIGN = 1e-9
+"""Eigenvalues of an element's information are at least minus this times the largest."""
+
+
+def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray]) -> float:
+    """No value of a set of elements, at most one of each robot, is computed further from the exact one.
+
+    0 for a criterion of one's own: nothing is known of its formula, so its values count as exact.
+    """
+    scale = objective.error_scale
+    if scale is None:
+        return 0.0
+    dimension, targets = objective.dimension, objective.n_targets
+    prior = np.linalg.norm(objective.prior, axis=(-2, -1)) * MORE
+    inverse = np.linalg.norm(objective.prior_information, axis=(-2, -1)) * MORE
+    sizes = largest_sizes(objective.information, choices)
+    lowest = SIGN * sizes * prior
+    if lowest.max() > SIGN * 1e6:  # information may be negative by rounding: then more is left than the prior
+        lowest = np.maximum(0.0, -np.linalg.eigvalsh(objective.information)[..., 0])
+        lowest = _most_of_plans(lowest, choices) * prior + UNIT * dimension * sizes * prior
+    largest = prior / np.maximum(1 - lowest, 0.0)
+    formula = UNIT * _growth(objective)
+    before = _share(prior * (objective.inverse_error + formula * inverse))
+    sums = UNIT * (len(choices) + 2) * (inverse + sizes)
+    after = _share(largest * (objective.inverse_error + sums + formula * (inverse + sizes)))
+    logarithms = np.abs(np.log(np.stack([prior, inverse, inverse + sizes]))).max(axis=0)
+    own = 2 * UNIT * (4 * dimension + targets + 8) * (1 + logarithms)
+    return float(objective.combine(scale * (before + after + own)) * MORE)
+
+
+def _share(moved: FloatArray) -> FloatArray:
+    """``r / (1 - r)``, infinite from 1 on."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(moved < 1, moved * MORE / (1 - moved), np.inf)
+
+
+def _growth(objective: InformationObjective) -> float:
+    """Factor of ``u |L|`` by which the formulas may move a matrix ``L``."""
+    dimension = objective.dimension
+    if dimension in FEW_COORDINATES and getattr(objective, "output", None) is None:
+        return FEW_COORDINATES[dimension]
+    k = np.arange(1, dimension + 1)
+    entries = np.sqrt(((2 * (dimension - k) + 1) * (2.0**k - 1) ** 2).sum())  # |L||U|, of factors L and U
+    return float(3 * dimension * entries) + 2 * dimension
+
+
+def largest_sizes(information: FloatArray, choices: Sequence[IntArray]) -> FloatArray:
+    """(M,) the largest sums of the sizes of a plan's elements, of (E, M, d, d) ``information``."""
+    return _most_of_plans(np.linalg.norm(information, axis=(-2, -1)) * MORE, choices)
+
+
+def _most_of_plans(sizes: FloatArray, choices: Sequence[IntArray]) -> FloatArray:
+    return np.asarray(np.sum([sizes[choice].max(axis=0) for choice in choices], axis=0))
+
+
+def inverse_error(matrices: FloatArray, inverses: FloatArray) -> FloatArray:
+    """(M,) bounds of ``|Y - A^{-1}|`` for (M, d, d) matrices ``A`` and computed inverses ``Y``.
+
+    With ``R = 1 - A Y``, ``Y - A^{-1} = -Y R (1 - R)^{-1}``; ``Y R`` is computed in integers, hence exactly.
+    """
+    (a, of_a), (y, of_y) = _integers(matrices), _integers(inverses)
+    one = np.array([[1 << -(of_a + of_y) if of_a + of_y < 0 else 0]], dtype=object) * np.eye(a.shape[-1], dtype=int)
+    rest = one - a @ y
+    size = _norms(rest, of_a + of_y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(size < 1, _norms(y @ rest, of_a + 2 * of_y) * MORE / (1 - size), np.inf)
+
+
+def _integers(matrices: FloatArray) -> tuple[Any, int]:
+    """The matrices as integers times a power of two, exactly: an object array and the exponent."""
+    digits, exponents = np.frexp(matrices)
+    exponents = np.where(matrices == 0, exponents.max(), exponents)
+    lowest = int(exponents.min())
+    shifts = (exponents - lowest).astype(object)
+    return (digits * 2.0**53).astype(np.int64).astype(object) << shifts, lowest - 53
+
+
+def _norms(integers: Any, exponent: int) -> FloatArray:
+    """Frobenius' norms of integer matrices times a power of two, rounded up."""
+    largest = max(abs(x) for x in integers.ravel())
+    excess = max(0, largest.bit_length() - 64)
+    mantissas = (np.abs(integers) >> excess).astype(np.float64) + (1.0 if excess else 0.0)
+    return np.asarray(np.linalg.norm(np.ldexp(mantissas, excess + exponent), axis=(-2, -1)) * MORE)

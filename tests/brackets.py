@@ -1,0 +1,31 @@
+"""Brackets of attacks: published ends are those computed, moved apart by what computing them may have rounded."""
+
+from __future__ import annotations
+
+import ratt_opt as ro
+
+
+def attained(problem, plan, result):
+    """What the result's attack leaves of the plan, as computed."""
+    return problem.team_value(plan, result.attack)
+
+
+def worst_value(problem, plan):
+    """What the worst attack leaves of the plan, as computed."""
+    return attained(problem, plan, ro.worst_case_attack(problem, plan))
+
+
+def attains(problem, plan, result):
+    """Whether the result's upper end is what its attack leaves; 0 is exact where no robot tells anything."""
+    value = attained(problem, plan, result)
+    if value == result.upper == 0.0:
+        return not problem.tells_anything(plan, result.attack)
+    return result.upper == problem.outward(0.0, value)[1]
+
+
+def is_exact(problem, plan, result):
+    """Whether both ends are what its attack leaves."""
+    value = attained(problem, plan, result)
+    if value == 0.0:
+        return result.lower == 0.0 and attains(problem, plan, result)
+    return (result.lower, result.upper) == problem.outward(value, value)
