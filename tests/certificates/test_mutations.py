@@ -13,7 +13,17 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import FileFormatError, InputError, ProofError, exhaustive_optimum, verify_certificate
+from ratt_opt import (
+    FileFormatError,
+    InputError,
+    ProofError,
+    certify,
+    exhaustive_optimum,
+    limited_view_scenario,
+    network_scenario,
+    solve_maxmin,
+    verify_certificate,
+)
 from tests.certificates.cases import certified, full, problem_of
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
@@ -197,6 +207,45 @@ def test_pairs_of_mutations(tmp_path):
                         continue
             if is_false(mutant):
                 assert not accepted(mutant, tmp_path / "mutant.json")
+
+
+def reshaped(value, rng):
+    """Another value of another size, depth or kind."""
+    if isinstance(value, list):
+        deep = value
+        for _ in range(300):
+            deep = [deep]
+        return [value * 2, value * 300, [value], deep, value[: len(value) // 2], [], None][int(rng.integers(7))]
+    if isinstance(value, str):
+        return ["", "attack_tree", "enumerated", 3, None][int(rng.integers(5))]
+    if isinstance(value, int):
+        return [0, -1, 50, 10**6, 10**30, 2**63, True, None, "1", 1.5][int(rng.integers(10))]
+    return [0.0, -value, 1e300, 1e-300, 5e-324, None, "1"][int(rng.integers(7))]
+
+
+def test_proofs_of_other_shapes_end_in_documented_errors(tmp_path):
+    """Of real networks and limited views, too: their proofs have trees of attacks, groups and covers."""
+    documents = [document for _, document in bases(tmp_path, range(3))]
+    for seed, kind in enumerate(OBJECTIVES):
+        scenarios = (
+            network_scenario("disk-6", 12, 3, alpha_s=2, alpha_c=4, seed=seed),
+            limited_view_scenario(5, 5, alpha_s=2, alpha_c=4, seed=seed),
+        )
+        for problem in (scenario.problem(kind) for scenario in scenarios):
+            written = certify(problem, solve_maxmin(problem, time_limit=10), tmp_path / "base.json")
+            documents.append(json.loads(written.path.read_text()))
+    rng, path = np.random.default_rng(37), tmp_path / "mutant.json"
+    for document in documents:
+        spots = list(places({name: document[name] for name in document if name not in ("format", "version")}))
+        for _ in range(60):
+            mutant = document
+            for k in rng.integers(len(spots), size=int(rng.integers(1, 4))):
+                try:
+                    mutant = changed(mutant, spots[k][0], reshaped(spots[k][1], rng))
+                except (IndexError, KeyError, TypeError):  # the spot is gone
+                    continue
+            path.write_text(json.dumps(mutant))
+            believed(path)
 
 
 def test_bytes_flipped_or_cut_never_crash(tmp_path):
