@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ratt_opt._rounding import named_text
+from ratt_opt._validation import readonly
 
 __all__ = ["ByValue", "Shown", "counted", "plain", "shown"]
 
@@ -22,10 +23,18 @@ class ByValue:
     """Base of frozen dataclasses (``eq=False, repr=False``) with array fields: equal when all they hold is.
 
     Arrays count by shape and entries, and NaN equals NaN, so that a copy equals its original. Fields with
-    ``compare=False`` or ``repr=False`` are left out of that.
+    ``compare=False`` or ``repr=False`` are left out of that. What it is given to hold is copied, unless it cannot be
+    written to: nobody changes a value afterwards.
     """
 
     __slots__ = ()
+
+    def __post_init__(self) -> None:
+        assert is_dataclass(self)
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if isinstance(value, np.ndarray) and value.flags.writeable:
+                object.__setattr__(self, f.name, readonly(value))
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
