@@ -48,7 +48,7 @@ class InformationObjective(CriterionParts):
 
     Parameters
     ----------
-    prior : (M, d, d) predicted covariances, symmetric positive definite
+    prior : (M, d, d) predicted covariances, symmetric (float32: up to its rounding) positive definite
     information : (E, M, d, d) information of element ``e`` about target ``j``, symmetric
         positive semidefinite; smallest eigenvalue at least ``-1e-9`` times the largest. float32: ``-1e-6``
         times, and eigenvalues below the first limit are set to 0, with a ``UserWarning`` that says so
@@ -203,17 +203,22 @@ def from_triangles(entries: FloatArray) -> FloatArray:
     return np.ascontiguousarray(entries[..., place])
 
 
-def _check_symmetric(argument: str, matrices: FloatArray) -> FloatArray:
-    """Return the symmetric part of matrices that are symmetric up to rounding."""
+def _check_symmetric(argument: str, matrices: FloatArray, *, single: bool) -> FloatArray:
+    """Return the symmetric part of matrices that are symmetric up to rounding, to float32 where they are ``single``."""
+    tolerance = SINGLE_TOLERANCE if single else SYMMETRY_TOLERANCE
     if np.abs(matrices).max() > LARGEST:
         raise InputError(argument, f"must have entries of size at most {LARGEST:g}", float(np.abs(matrices).max()))
     transposed = np.swapaxes(matrices, -1, -2)
     defect = np.abs(matrices - transposed).max(axis=(-1, -2))
-    bad = np.argwhere(defect > SYMMETRY_TOLERANCE * np.abs(matrices).max(axis=(-1, -2)))
+    bad = np.argwhere(defect > tolerance * np.abs(matrices).max(axis=(-1, -2)))
     if len(bad):
         where = tuple(bad[0].tolist())
         raise InputError(f"{argument}[{', '.join(map(str, where))}]", "must be symmetric", matrices[where].tolist())
     return (matrices + transposed) / 2
+
+
+def _is_single(value: ArrayLike) -> bool:
+    return bool(np.asarray(value).dtype == np.float32)
 
 
 def _check_prior(value: ArrayLike) -> FloatArray:
@@ -223,7 +228,7 @@ def _check_prior(value: ArrayLike) -> FloatArray:
         raise InputError("prior", "must hold at least one target", f"shape {prior.shape}")
     if prior.shape[1] != prior.shape[2] or prior.shape[1] < 1:
         raise InputError("prior", "must have shape (M, d, d)", f"shape {prior.shape}")
-    prior = _check_symmetric("prior", prior)
+    prior = _check_symmetric("prior", prior, single=_is_single(value))
     for j, eigenvalues in enumerate(np.linalg.eigvalsh(prior)):
         if eigenvalues[0] <= np.finfo(np.float64).eps * abs(eigenvalues[-1]):
             if np.linalg.eigvalsh(_unit_diagonal(prior[j]))[0] > np.finfo(np.float64).eps:
@@ -255,9 +260,9 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
     if information.shape[1:] != (targets, dimension, dimension):
         rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
         raise InputError("information", rule, f"shape {information.shape}")
-    information = _check_symmetric("information", information)
+    information = _check_symmetric("information", information, single=_is_single(value))
     eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
-    if np.asarray(value).dtype == np.float32:
+    if _is_single(value):
         information = _repaired(information, eigenvalues)
         eigenvalues = np.asarray(np.linalg.eigvalsh(information))
     bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))

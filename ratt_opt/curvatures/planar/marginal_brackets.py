@@ -35,6 +35,8 @@ STUCK = 8
 4 and 16 change the regions bounded by 2 %."""
 CONTENDER, LONG_STUCK = 1.1, 40
 """The same where the ratio is more than so many times the smallest one seen; 20 to 80 are alike with 10 robots."""
+MOST_SPARE = 1e100
+"""Finite, so that no product with an end that is 0 or infinite is undefined."""
 PATIENCE = 20
 """Parts bounded on one side before its number of parts counts against it."""
 
@@ -108,7 +110,8 @@ class PlanarBrackets(MarginalBrackets):
         first = low.exhausted or (_pressing(doubt_high, high.nodes) > _pressing(doubt_low, low.nodes))
         side = high if first and not high.exhausted and not self._against_own else low
         aim = side.attained.value * self._spare(x, target) ** (-side.side.sign / (1 if self._against_own else 2))
-        close = self.seen_least[x] <= CONTENDER * self.seen_most[x] * self._shown().min()
+        ratios = self._shown()
+        close = ratios[x] <= CONTENDER * ratios.min()
         if side.nodes >= (STUCK if close else LONG_STUCK):
             side.attained.pairs(self._budget)
         before = side.nodes
@@ -123,7 +126,7 @@ class PlanarBrackets(MarginalBrackets):
         """How many times what is proved of an element may fall short of what is seen: at least 1."""
         if not (self.seen_most[x] > 0 and 0 < target < np.inf):
             return 1.0
-        return max(float(self.seen_least[x] / self.seen_most[x]) / target, 1.0)
+        return min(max(float(self.seen_least[x] / self.seen_most[x]) / target, 1.0), MOST_SPARE)
 
     def _record(self, x: int) -> None:
         low, high = self._searches[x]
