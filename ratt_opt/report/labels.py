@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ratt_opt.report.lettering import lettering
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -45,9 +47,10 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
     for label in labels:
         style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
+        text, style["family"] = lettering(label.text)
         style["path_effects"] = halo()
         word = axes.annotate(
-            label.text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
+            text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
         )
         costs = []
         for x, y, side in SPOTS:
