@@ -16,7 +16,7 @@ import os
 import zlib
 from collections import Counter
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from analysis.studies.versions import VERSIONS, hash_of_modules
 from ratt_opt._files import output_directory, output_file, write_atomically, write_json
@@ -88,10 +88,12 @@ def open_journal(study: Study, folder: Path, *, accept_old_rows: bool = False) -
     InputError : the folder holds something else, another version, damaged rows, or is in use.
     """
     output_directory(folder, MANIFEST, JOURNAL, TABLE)
-    _claim(study, folder, accept_old_rows=accept_old_rows)
+    manifest = _claim(study, folder, accept_old_rows=accept_old_rows)
     path = folder / JOURNAL
     with _opened(path) as stream:
         _lock(stream, folder)
+        if manifest:
+            write_json(folder / MANIFEST, manifest)
         _cut_torn_line(path)
         yield Journal(study, folder, stream, _read(path, study))
 
@@ -132,8 +134,11 @@ def _line(cells: object) -> str:
     return stream.getvalue()
 
 
-def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
-    """Write the manifest into a new folder, or refuse a folder that is not this study's."""
+def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> dict[str, Any]:
+    """The manifest that the folder is to have, if it has another or none; refuse a folder that is not this study's.
+
+    Where no trial was finished, as when the first one raised, any version of the study may begin.
+    """
     manifest = {
         "format": FORMAT,
         "study": study.name,
@@ -145,17 +150,18 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
     }
     path = folder / MANIFEST
     if not path.exists():
-        # A killed run may have left a hidden temporary file, nothing else.
-        if any(not file.name.startswith(".") for file in folder.iterdir()):
+        # A killed run may have left a hidden temporary file, or an empty journal, nothing else.
+        if any(not file.name.startswith(".") and not _is_empty_journal(file) for file in folder.iterdir()):
             raise InputError("out", f"must be an empty folder or hold the {MANIFEST} of this study", folder)
-        write_json(path, manifest)
-        return
+        return manifest
     code = {name: manifest[name] for name in ("made_with", "measured_by")}
     measured = ", ".join(study.modules())
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         old = {name: found[name] for name in code}
         shown = f"study {found['study']!r} version {found['version']}"
+        if found["study"] == study.name and not _has_rows(folder / JOURNAL):
+            return {} if found == manifest else manifest
         same_study = (found["study"], found["version"]) == (study.name, study.version)
         checks = [
             (found["format"] == FORMAT, f"results of format {FORMAT}", f"format {found['format']}"),
@@ -181,8 +187,16 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> None:
     for holds, wanted, got in checks:
         if not holds:
             raise InputError("out", f"must be a new folder or hold {wanted}", f"{got} in {folder}")
-    if old != code:
-        write_json(path, {**manifest, "older_rows_by": [*found.get("older_rows_by", []), old]})
+    return {} if old == code else {**manifest, "older_rows_by": [*found.get("older_rows_by", []), old]}
+
+
+def _has_rows(journal: Path) -> bool:
+    """Whether a trial was finished: a whole line beside the header."""
+    return journal.exists() and journal.read_bytes().count(b"\n") > 1
+
+
+def _is_empty_journal(file: Path) -> bool:
+    return file.name == JOURNAL and file.stat().st_size == 0
 
 
 def _lock(stream: TextIO, folder: Path) -> None:

@@ -278,6 +278,15 @@ def test_a_failing_trial_is_named_in_one_line_and_rows_are_kept(tmp_path: Path) 
     assert kept == {(case.name, str(trial)) for case in STUDY.cases if case != STUDY.cases[1] for trial in (0, 1)}
 
 
+def test_a_study_whose_first_trial_raised_runs_again_once_its_code_is_mended(tmp_path: Path) -> None:
+    broken = replace(STUDY, measure="tests.studies.toy:raise_at_once")
+    with pytest.raises(SweepError, match="nothing works yet"):
+        _threads(tmp_path, 1, broken)
+    assert len(_threads(tmp_path, 1).splitlines()) == 1 + len(STUDY.cases)
+    with pytest.raises(InputError, match="another definition or seed"):
+        _threads(tmp_path, 1, broken)
+
+
 def test_a_worker_process_that_dies_is_one_line(tmp_path: Path) -> None:
     study = replace(STUDY, measure="tests.studies.toy:die")
     text = "a worker process died; finished rows are kept, run the same command to resume"

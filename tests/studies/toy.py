@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.studies.study import Case, Cell, Seeds, Study
 
-__all__ = ["STUDY", "die", "fail", "measure"]
+__all__ = ["STUDY", "die", "fail", "measure", "raise_at_once"]
 
 STUDY = Study(
     name="toy",
@@ -32,6 +32,11 @@ def fail(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     if case == study.cases[1]:
         raise ValueError("no such\nnumber")
     return measure(study, case, seeds)
+
+
+def raise_at_once(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
+    """Fail in every case."""
+    raise ValueError(f"nothing works yet: {study.name}, {case.name}, {seeds.scenario}")
 
 
 def die(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
