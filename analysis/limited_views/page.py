@@ -46,7 +46,8 @@ Every trial draws another team, other targets and other noise, and all planners 
 differences are paired. A cell shows the change of a mean against that of the greedy planner [%] with its 95 % interval.
 It *pays* where the interval is below zero and *costs* where it is above; where neither is said, no difference is seen.
 One interval in twenty misses by chance. Missions have {steps} steps, and their two windows, the first and the last
-half, share no step. Max-min plans are searched for ten nodes a step, so that every machine flies the same missions. The
+half, share no step. Max-min plans are searched for ten nodes a step and refined ones take twenty kicks, so that every
+machine flies the same missions. The
 base case has a view of 60 degrees without a limit of range, the camera's noise, five targets, a complete network and
 attacks that are renewed in every step; main cases are bold.
 """

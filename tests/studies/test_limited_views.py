@@ -95,7 +95,7 @@ def test_words_follow_the_interval():
     assert outcome(relative_change([1.0, 2.0, 3.0], [3.0, 2.0, 1.0])) is Outcome.UNSEEN
 
 
-ONE_STEP = ("greedy", "ratt", "myopic")
+ONE_STEP = one_step.STUDY.planner_names
 
 
 @pytest.fixture(scope="module")
