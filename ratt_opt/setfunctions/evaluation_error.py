@@ -12,7 +12,7 @@ Notation, for one target: ``P`` is the prior, ``X`` the information of a set of 
    triangular solutions (Higham, Accuracy and Stability of Numerical Algorithms, 2002, theorems 8.5, 9.3 and 14.1).
 
 So ``r`` grows with ``|P| |L|``. Where the prior's own condition makes that large, coordinates in which the prior is the
-identity have a smaller one: see ``ratt_opt/solvers/measured_coordinates.py``.
+identity have a smaller one: see ``ratt_opt/coordinates/unit_prior.py``.
 """
 
 from __future__ import annotations
@@ -34,9 +34,8 @@ UNIT = float(np.finfo(np.float64).eps) / 2
 MORE = 1 + 1e-12
 """Factor on bounds for their own rounding."""
 FEW_COORDINATES = {1: 1.0, 2: 1.0}
-"""The same of closed formulas: ``det L = ac - b^2`` is off by at most ``2 u ac + u det L``, and ``ac / det L`` is at
-most
-``(k + 3) / 4`` for matrices of condition ``k``."""
+"""``growth`` of the closed formulas: ``det L = ac - b^2`` is off by at most ``2 u ac + u det L``, and ``ac / det L`` is
+at most ``(k + 3) / 4`` for a matrix of condition ``k``."""
 SIGN = 1e-9
 """Eigenvalues of an element's information are at least minus this times the largest."""
 
@@ -98,7 +97,7 @@ def inverse_error(matrices: FloatArray, inverses: FloatArray) -> FloatArray:
     With ``R = 1 - A Y``, ``Y - A^{-1} = -Y R (1 - R)^{-1}``; ``Y R`` is computed in integers, hence exactly.
     """
     (a, of_a), (y, of_y) = _integers(matrices), _integers(inverses)
-    one = np.array([[1 << -(of_a + of_y) if of_a + of_y < 0 else 0]], dtype=object) * np.eye(a.shape[-1], dtype=int)
+    one = np.eye(a.shape[-1], dtype=np.int64).astype(object) << -(of_a + of_y)  # A Y is about 1, of many more digits
     rest = one - a @ y
     size = _norms(rest, of_a + of_y)
     with np.errstate(divide="ignore", invalid="ignore"):
