@@ -18,14 +18,11 @@ def worst_value(problem, plan):
 def attains(problem, plan, result):
     """Whether the result's upper end is what its attack leaves; 0 is exact where no robot tells anything."""
     value = attained(problem, plan, result)
-    if value == result.upper == 0.0:
-        return not problem.tells_anything(plan, result.attack)
-    return result.upper == problem.outward(0.0, value)[1]
+    is_nothing = value == 0.0 and not problem.tells_anything(problem.check_plan(plan), result.attack)
+    return result.upper == (0.0 if is_nothing else problem.outward(0.0, value)[1])
 
 
 def is_exact(problem, plan, result):
     """Whether both ends are what its attack leaves."""
     value = attained(problem, plan, result)
-    if value == 0.0:
-        return result.lower == 0.0 and attains(problem, plan, result)
-    return (result.lower, result.upper) == problem.outward(value, value)
+    return result.lower == problem.outward(value, value)[0] and attains(problem, plan, result)

@@ -88,7 +88,8 @@ def test_ties_zeros_and_extremes_close(problem):
 def test_a_bracket_that_is_closed_says_so(problem, limit):
     """Whatever ended the search: where the first bounds met, thresholds were decided until the time was up."""
     found = ro.worst_case_attack(problem, ro.myopic(problem).elements, time_limit=limit)
-    width = max(1e-10 * abs(found.upper), problem.objective.rounding)
+    width = max(1e-10 * abs(found.upper), problem.objective.rounding) + 2 * problem.evaluation_error
+    width += 4 * np.spacing(abs(found.upper))  # each end was moved, and rounded
     assert (found.stop in DONE) == (found.lower >= found.upper - width)
 
 

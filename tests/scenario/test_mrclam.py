@@ -25,6 +25,7 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.scenario.mrclam_labels import Sightings
+from tests.brackets import is_exact
 
 REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "mrclam"
 START = 1248272276.0
@@ -262,8 +263,10 @@ def test_the_real_dataset() -> None:
     seen = (np.abs(scenario.information).max(axis=(2, 3)) > 0).sum(axis=1)
     assert seen.max() > 3
     problem = scenario.problem()
-    result = worst_case_attack(problem, ratt(problem).elements)
-    assert 0 < result.lower == result.upper
+    plan = ratt(problem).elements
+    result = worst_case_attack(problem, plan)
+    assert result.lower > 0
+    assert is_exact(problem, plan, result)
 
 
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"the MRCLAM data is not at {REAL}")
