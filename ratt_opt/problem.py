@@ -22,7 +22,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 __all__ = ["Attack", "Plan", "Problem"]
 
@@ -67,6 +67,10 @@ class Plan(ByValue, Shown):
 
     def __iter__(self) -> Iterator[int]:
         return iter(self.elements.tolist())
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """Its elements: a plan can be given wherever elements are asked for."""
+        return np.array(self.elements, dtype=dtype, copy=copy)
 
 
 def _of_threat(name: str) -> Any:

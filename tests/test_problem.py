@@ -276,3 +276,13 @@ def test_a_problem_does_not_change_with_what_it_was_made_of(seed: int) -> None:
     assert answers() == before
     with pytest.raises(nx.NetworkXError, match="rozen"):
         problem.graph.add_edge(0, 2)
+
+
+def test_a_plan_or_a_result_stands_for_its_elements():
+    problem = ro.random_scenario(4, 3, alpha_s=1, alpha_c=1, seed=0).problem()
+    for plan in (ro.ratt(problem), ro.solve_maxmin(problem), ro.refined(problem, time_limit=None, max_kicks=2)):
+        known = ro.worst_case_attack(problem, plan.elements)
+        assert ro.worst_case_attack(problem, plan) == known
+        assert problem.team_value(plan, known.attack) == problem.team_value(plan.elements, known.attack)
+        assert ro.criticality_ranking(problem, plan) == ro.criticality_ranking(problem, plan.elements)
+        assert np.asarray(plan).tolist() == plan.elements.tolist()

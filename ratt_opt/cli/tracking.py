@@ -49,6 +49,10 @@ def track(
         Literal["known velocity", "constant velocity", "coordinated turn"],
         typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
     ] = "known velocity",
+    sensor: Annotated[
+        Literal["range and bearing", "range", "bearing"],
+        typer.Option("--sensor", help="What of the file's sensors is measured."),
+    ] = "range and bearing",
     linearisation: Annotated[
         Literal["first order", "second order", "iterated"],
         typer.Option("--linearisation", help="First order is the textbook EKF, without the second-order term."),
@@ -76,7 +80,7 @@ def track(
         raise InputError("--time-limit", "must come with --planner maxmin or refined", planner)
     scenario = load_scenario(file)
     folder = output_directory(out, *FILES)
-    model = MissionModel(motion=motion, linearisation=linearisation, objective=objective, beam=beam)
+    model = MissionModel(motion=motion, sensor=sensor, linearisation=linearisation, objective=objective, beam=beam)
     chosen: str | MaxMinPlanner | RefinedPlanner = planner
     if time_limit is not None and planner == "maxmin":
         chosen = MaxMinPlanner(time_limit=time_limit, max_nodes=None)

@@ -20,8 +20,8 @@ from ratt_opt.missions.ahead.horizon import (
     output_matrix,
 )
 from ratt_opt.missions.models.robots import robot_motion
-from ratt_opt.missions.models.sensors import robots_by_sensor, sensors_of
-from ratt_opt.missions.models.targets import TargetMotion, target_motion
+from ratt_opt.missions.models.sensors import check_sensor, robots_by_sensor, sensors_of
+from ratt_opt.missions.models.targets import TargetMotion, check_motion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
@@ -48,7 +48,8 @@ class MissionModel:
     ----------
     motion : of the targets: ``"known velocity"`` (the paper's), ``"constant velocity"``, ``"coordinated turn"``, or a
         :class:`TargetMotion`
-    sensor : a :class:`SensorModel` for all robots or one for each; the scenario's range and bearing where ``None``
+    sensor : what of the scenario's sensors is measured, ``"range and bearing"`` (the same as ``None``), ``"range"`` or
+        ``"bearing"``; or a :class:`SensorModel` for all robots, or one for each
     robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
         is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
@@ -62,7 +63,7 @@ class MissionModel:
     """
 
     motion: str | TargetMotion = "known velocity"
-    sensor: SensorModel | Sequence[SensorModel] | None = None
+    sensor: str | SensorModel | Sequence[SensorModel] | None = None
     robot_motion: str = "paper"
     linearisation: Linearisation = "second order"
     objective: str = "trace"
@@ -75,6 +76,10 @@ class MissionModel:
             if getattr(self, name) not in known:
                 raise InputError(name, f"must be {', '.join(known)}", getattr(self, name))
         criterion_called(self.objective)
+        check_sensor(self.sensor)
+        if not isinstance(self.motion, TargetMotion):
+            check_motion(self.motion)
+        robot_motion(self.robot_motion)
         if self.area is not None and not _is_rectangle(self.area):
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
         if self.beam is not None:

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, Shown, plain, shown
 from ratt_opt.attackers.task import outward
 from ratt_opt.problem import Plan
 
 if TYPE_CHECKING:
+    from numpy.typing import DTypeLike, NDArray
+
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.problem import Problem
@@ -59,6 +63,10 @@ class MaxMinResult(ByValue, Shown):
     unattacked: float | None = None
     """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
     ``None`` where plans were enumerated, and for set functions that are no information criterion."""
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """Its plan: a result can be given wherever elements are asked for."""
+        return np.array(self.elements, dtype=dtype, copy=copy)
 
     def outward(self, problem: Problem) -> Self:
         """The result, its ends moved apart by what computing them for ``problem`` may have rounded."""

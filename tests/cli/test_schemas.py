@@ -163,6 +163,9 @@ def test_a_mission(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFi
     _check(found, "mission")
     assert found == json.loads((out / "mission.json").read_text())
     assert len(found["rmse"]) == 2
+    command = ["track", str(scenario_file), "--steps", "2", "--attacker", "greedy", "--sensor", "bearing"]
+    bearings = _printed(capsys, *command, "--out", str(tmp_path / "b"))
+    assert bearings["rmse"] != found["rmse"]
 
 
 def test_a_half_proved_certificate(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

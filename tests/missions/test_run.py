@@ -341,8 +341,15 @@ def test_bad_models_and_journals(tmp_path) -> None:
             MissionModel(area=area)
     with pytest.raises(InputError, match="model must be a MissionModel"):
         run_mission(scenario_of(), steps=1, model=3)
-    with pytest.raises(InputError, match="sensor must be a SensorModel"):
-        run_mission(scenario_of(), steps=1, model=MissionModel(sensor=3))
+    for sensor in (3, "radar", [], [3]):
+        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, a SensorModel, or"):
+            MissionModel(sensor=sensor)
+    with pytest.raises(InputError, match="sensor must be a SensorModel, or one for each of"):
+        run_mission(scenario_of(), steps=1, model=MissionModel(sensor=[PositionSensor(1.0)]))
+    with pytest.raises(InputError, match="motion must be"):
+        MissionModel(motion="teleporting")
+    with pytest.raises(InputError, match="robot_motion must be"):
+        MissionModel(robot_motion="sideways")
     with pytest.raises(InputError, match="planner must return a plan"):
         run_mission(scenario_of(), steps=1, planner=lambda _: 3)
     with pytest.raises(InputError, match="objective must be trace or maxeig where"):

@@ -11,7 +11,7 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
-from ratt_opt.missions.models.range_bearing import RangeBearing
+from ratt_opt.missions.models.range_bearing import BearingOnly, RangeBearing, RangeOnly
 from ratt_opt.missions.models.sensor_model import SensorModel
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["PositionSensor", "robots_by_sensor", "sensors_of"]
+__all__ = ["COMPONENTS", "PositionSensor", "check_sensor", "robots_by_sensor", "sensors_of"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,20 +61,42 @@ class PositionSensor(ByValue, SensorModel):
         return np.asarray(apart <= (np.inf if self.max_range is None else self.max_range))
 
 
+COMPONENTS: dict[str, type[RangeBearing]] = {
+    "range and bearing": RangeBearing,
+    "range": RangeOnly,
+    "bearing": BearingOnly,
+}
+"""What of a scenario's sensors is measured, by name."""
+
+
+def check_sensor(sensor: object) -> None:
+    """InputError : it is neither ``None``, nor a name, nor a SensorModel, nor several of these."""
+    several = tuple(sensor) if isinstance(sensor, Iterable) and not isinstance(sensor, str) else (sensor,)
+    if sensor is None or (isinstance(sensor, str) and sensor in COMPONENTS):
+        return
+    if not several or not all(isinstance(one, SensorModel) for one in several):
+        shown = sensor if isinstance(sensor, str) else type(sensor).__name__
+        raise InputError("sensor", f"must be {', '.join(COMPONENTS)}, a SensorModel, or one for each robot", shown)
+
+
 def sensors_of(
-    scenario: Scenario, sensor: SensorModel | Sequence[SensorModel] | None = None
+    scenario: Scenario, sensor: str | SensorModel | Sequence[SensorModel] | None = None
 ) -> tuple[SensorModel, ...]:
-    """Every robot's sensor: the given one, the given ones robot by robot, or the scenario's range and bearing.
+    """Every robot's sensor: the given one, the given ones robot by robot, or the scenario's, by what it measures.
+
+    ``sensor`` : also ``"range and bearing"`` (the default), ``"range"`` or ``"bearing"``
 
     Raises
     ------
     InputError : ``sensor`` is none of these.
     """
-    if sensor is None:
-        return tuple(RangeBearing(robot.sensor or scenario.sensor) for robot in scenario.robots)
+    check_sensor(sensor)
+    if sensor is None or isinstance(sensor, str):
+        kind = COMPONENTS["range and bearing" if sensor is None else sensor]
+        return tuple(kind(robot.sensor or scenario.sensor) for robot in scenario.robots)
     several = tuple(sensor) if isinstance(sensor, Iterable) else ()
     given = (sensor,) * scenario.n_robots if isinstance(sensor, SensorModel) else several
-    if len(given) != scenario.n_robots or not all(isinstance(one, SensorModel) for one in given):
+    if len(given) != scenario.n_robots:
         rule = f"must be a SensorModel, or one for each of {scenario.n_robots} robots"
         raise InputError("sensor", rule, type(sensor).__name__)
     return given

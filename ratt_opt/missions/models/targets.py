@@ -16,7 +16,15 @@ from ratt_opt.missions.belief import Belief
 if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["TARGET_MOTIONS", "ConstantVelocity", "CoordinatedTurn", "KnownVelocity", "TargetMotion", "target_motion"]
+__all__ = [
+    "TARGET_MOTIONS",
+    "ConstantVelocity",
+    "CoordinatedTurn",
+    "KnownVelocity",
+    "TargetMotion",
+    "check_motion",
+    "target_motion",
+]
 
 VELOCITY_STD = 1.0
 """Standard deviation per axis of what is believed of a target's velocity at first [m/s]; a scenario does not say."""
@@ -217,12 +225,17 @@ TARGET_MOTIONS: dict[str, type[KnownVelocity] | type[ConstantVelocity] | type[Co
 }
 
 
+def check_motion(motion: str) -> None:
+    """InputError : there is no motion of that name."""
+    if motion not in TARGET_MOTIONS:
+        raise InputError("motion", f"must be {', '.join(TARGET_MOTIONS)} or a TargetMotion", motion)
+
+
 def target_motion(motion: str | TargetMotion, scenario: Scenario) -> TargetMotion:
     """The motion of that name for a scenario's targets. InputError : there is none."""
     if isinstance(motion, TargetMotion):
         return motion
-    if motion not in TARGET_MOTIONS:
-        raise InputError("motion", f"must be {', '.join(TARGET_MOTIONS)} or a TargetMotion", motion)
+    check_motion(motion)
     return TARGET_MOTIONS[motion].of(scenario)
 
 
