@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -61,6 +61,10 @@ def bound(
     ] = TIME_LIMIT,
     gap: Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")] = GAP,
     workers: Annotated[int, typer.Option("--workers", help="Processes that search for the best plan.")] = 1,
+    guarantees: Annotated[
+        Literal["none", "quick", "full"],
+        typer.Option("--guarantees", help="What was sure before planning: left out, in two seconds, or in full."),
+    ] = "quick",
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
 ) -> None:
@@ -71,7 +75,7 @@ def bound(
     from ratt_opt.scenario.files import load_input
 
     source = load_input(file)
-    _bound(source, out, objective, time_limit, gap, workers, certificate=certificate, as_json=as_json)
+    _bound(source, out, objective, time_limit, gap, workers, guarantees, certificate=certificate, as_json=as_json)
 
 
 def _bound(
@@ -81,6 +85,7 @@ def _bound(
     time_limit: float = TIME_LIMIT,
     gap: float = GAP,
     workers: int = 1,
+    guarantees: str = "quick",
     *,
     certificate: bool,
     as_json: bool,
@@ -96,7 +101,9 @@ def _bound(
     check_limits(gap, time_limit)
     began = monotonic()
     searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
-    report = main_job(source, objective=objective, time_limit=searching, gap=gap, workers=workers)
+    report = main_job(
+        source, objective=objective, time_limit=searching, gap=gap, workers=workers, guarantees=guarantees
+    )
     left = max(0.0, time_limit - (monotonic() - began))
     wanted = certificate and not report.interrupted
     with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report"):

@@ -87,6 +87,8 @@ theirs comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
+GUARANTEES, QUICK_SECONDS = ("none", "quick", "full"), 2.0
+"""How much time the guarantees have; of six bearing-only drones the curvature took half a minute, the plan a second."""
 RANDOM_SEED = 0
 """Seed of the random baseline, so that a report is reproducible."""
 
@@ -108,6 +110,7 @@ def bound(
     certificate: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
     workers: int | Executor | None = None,
+    guarantees: str = "quick",
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
@@ -124,6 +127,8 @@ def bound(
     certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
     progress : called with one line of text whenever there is something to tell
     workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`
+    guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
+        most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
 
     Raises
     ------
@@ -131,6 +136,8 @@ def bound(
     ProofError : the verifier finds a fault in the search's own proof; its ``report`` holds what was found.
     """
     check_limits(gap, time_limit)
+    if guarantees not in GUARANTEES:
+        raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
     began = datetime.now(UTC)
     problem, source = _problem_of(scenario_or_problem, objective)
     check_workers(problem, workers)
@@ -148,8 +155,12 @@ def bound(
         shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)
         views = _kept(budget, lambda: views_of(problem, shown, part))
     with steps("curvature and guarantees"):
-        k, c = _kept(budget, lambda: _curvatures(problem, budget.part(CURVATURE_SHARE)))
-        guarantees = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, budget, k=k, c=c))
+        k = c = None
+        sure: dict[str, Guarantee] = {}
+        if guarantees != "none":
+            rest = Budget.inside(budget, QUICK_SECONDS) if guarantees == "quick" else budget
+            k, c = _kept(budget, lambda: _curvatures(problem, rest.part(CURVATURE_SHARE)))
+            sure = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
     with steps("certificate"):
         proof, failure = _certified(problem, optimum, certificate, whole, source)
     report = BoundReport(
@@ -161,8 +172,9 @@ def bound(
         best=best,
         curvature=k,
         total_curvature=c,
-        guarantees=guarantees,
-        inapplicable=inapplicable_guarantees(problem, alpha_cs),
+        guarantees=sure,
+        inapplicable={} if guarantees == "none" else inapplicable_guarantees(problem, alpha_cs),
+        omitted=_omitted(baselines, k or c, guarantees),
         certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
@@ -245,6 +257,18 @@ def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
+
+
+def _omitted(baselines: tuple[PlanAssessment, ...], found: Curvature | None, guarantees: str) -> dict[str, str]:
+    """What the report leaves out, and why."""
+    omitted = {}
+    if all(plan.name != "nonrobust" for plan in baselines):
+        omitted["nonrobust"] = "the best plan without attack was not found and proved in its share of the time"
+    if guarantees == "none":
+        omitted["guarantees"] = "not asked for"
+    elif guarantees == "quick" and found is not None and found.stop is Stop.TIME:
+        omitted["a narrower curvature"] = f"guarantees are quick: {QUICK_SECONDS:g} s at most"
+    return omitted
 
 
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:

@@ -58,6 +58,7 @@ def report_document(report: BoundReport) -> dict[str, Any]:
         "hypotheses": {name: list(value.hypotheses) for name, value in report.guarantees.items()},
         "proofs": {name: value.proof for name, value in report.guarantees.items()},
         "inapplicable": dict(report.inapplicable),
+        "omitted": dict(report.omitted),
         "guaranteed_share": report.guaranteed_share,
         "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
         "views": {name: plan_document(view) for name, view in report.views.items()},

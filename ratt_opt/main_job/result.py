@@ -84,7 +84,7 @@ class BoundReport:
     its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
     ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
     ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
-    ``inapplicable`` : the guarantees that do not apply here, and why.
+    ``inapplicable`` : the guarantees that do not apply here, and why; ``omitted`` : what was left out, and why.
     ``certificate`` : the verified proof file of ``optimum``, or why there is none.
     ``seconds`` : wall time of each step; ``created`` : when the call began (UTC, ISO 8601).
     ``source`` : the scenario or model-free input that was given, ``None`` for a problem.
@@ -106,6 +106,7 @@ class BoundReport:
     total_curvature: Curvature | None
     guarantees: Mapping[str, Guarantee]
     inapplicable: Mapping[str, str]
+    omitted: Mapping[str, str] = field(default_factory=dict)
     certificate: Certification
     seconds: Mapping[str, float]
     created: str = ""

@@ -25,6 +25,7 @@ __all__ = [
     "attack_tables",
     "audit_table",
     "guarantee_text",
+    "omitted_texts",
     "report_tables",
     "share_text",
     "verdict_text",
@@ -41,7 +42,8 @@ def report_tables(report: BoundReport) -> Iterable[RenderableType]:
     yield _planners(report)
     yield _plan(report)
     yield _bracket(report)
-    yield _guarantees(report)
+    if "guarantees" not in report.omitted:
+        yield _guarantees(report)
 
 
 def attack_tables(
@@ -126,8 +128,13 @@ def _planners(report: BoundReport) -> Table:
         share = share_text(plan.worst_case.lower, report.upper)
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
         table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
-    table.caption = "* recommended: the best proved worst case"
+    table.caption = "; ".join(["* recommended: the best proved worst case", *omitted_texts(report)])
     return table
+
+
+def omitted_texts(report: BoundReport) -> list[str]:
+    """What was left out, and why, one by one."""
+    return [f"left out: {name} ({why})" for name, why in report.omitted.items()]
 
 
 def _plan(report: BoundReport) -> Table:

@@ -162,3 +162,32 @@ def test_a_criterion_of_ones_own_goes_through(tmp_path):
     assert report.certificate.certificate is None
     assert not (tmp_path / "certificate.json").exists()
     assert {field.name for field in fields(report)} >= {"guarantees", "inapplicable"}
+
+
+def test_guarantees_take_the_time_that_is_asked_for(tmp_path):
+    """Bearings alone: curvatures are hard, the plan is not."""
+    scenario = ro.limited_view_scenario(6, 4, alpha_s=2, alpha_c=4, seed=1, view=360.0)
+    reports = {kind: ro.bound(scenario, guarantees=kind, time_limit=20) for kind in ("none", "quick", "full")}
+    none, quick, full = reports.values()
+    assert (none.guarantees, none.inapplicable, none.total_curvature) == ({}, {}, None)
+    assert none.omitted["guarantees"] == "not asked for"
+    assert set(quick.guarantees) == set(full.guarantees) != set()
+    assert none.optimum.lower == quick.optimum.lower == full.optimum.lower
+    assert full.total_curvature.upper <= quick.total_curvature.upper + 1e-9
+    for kind, report in reports.items():
+        report.save(tmp_path / kind, certificate=False)
+        document = json.loads((tmp_path / kind / "report.json").read_text())
+        assert document["omitted"] == report.omitted
+        page = (tmp_path / kind / "report.html").read_text()
+        assert ("Guaranteed before planning" in page) == (kind != "none")
+        assert all(name in page and why in page for name, why in report.omitted.items())
+    with pytest.raises(ro.InputError, match="guarantees must be none, quick, full; got some"):
+        ro.bound(scenario, guarantees="some")
+
+
+def test_a_baseline_that_is_missing_is_named():
+    report = ro.bound(ro.random_scenario(30, 10, alpha_s=3, alpha_c=30, seed=1), time_limit=0.5)
+    names = {plan.name for plan in report.plans}
+    assert ("nonrobust" in report.omitted) == ("nonrobust" not in names)
+    cramped = ro.bound(ro.random_scenario(12, 10, alpha_s=3, alpha_c=30, seed=1), time_limit=0)
+    assert "in its share of the time" in cramped.omitted["nonrobust"]

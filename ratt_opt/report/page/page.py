@@ -15,7 +15,7 @@ from ratt_opt.report.page.map_drawing import legend_html, map_svg
 from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
-from ratt_opt.report.tables import guarantee_text, share_text, verdict_text
+from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, verdict_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -119,7 +119,10 @@ def _planner_section(report: BoundReport) -> Iterator[str]:
             f'<tr><th scope="row">{escape(plan.name + mark)}</th><td data-lower="{low!r}" data-upper="{high!r}">'
             f"{bracket_text(low, high)}</td><td>{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
         )
-    yield "</tbody></table></div></section>"
+    yield "</tbody></table></div>"
+    for text in omitted_texts(report):
+        yield f"<p>{escape(text[0].upper() + text[1:])}.</p>"
+    yield "</section>"
 
 
 def _trust_section(report: BoundReport) -> Iterator[str]:
@@ -130,6 +133,9 @@ def _trust_section(report: BoundReport) -> Iterator[str]:
         yield "<code>ratt-opt verify certificate.json</code>."
     optimum = bracket_text(report.optimum.lower, report.upper)
     yield f"</p><p>Best possible: {optimum}; the search for it stopped because: {report.optimum.stop.value}.</p>"
+    if "guarantees" in report.omitted:
+        yield "</section>"
+        return
     rows = [(name, down(float(g), 6), "; ".join(g.hypotheses), g.proof) for name, g in report.guarantees.items()]
     rows += [(name, "none", f"does not apply: {why}", "") for name, why in report.inapplicable.items()]
     if said := guarantee_text(report):
