@@ -211,7 +211,7 @@ def _submodularity(domain: Domain, budget: Budget) -> str:
     unchecked = f"{how} (submodularity relied on, not checked)"
     if domain.restricted.n > LARGEST_CHECKED:
         return unchecked
-    found = find_submodularity_violation(domain.restricted, budget=budget.part(ENUMERATION_SHARE))
+    found = find_submodularity_violation(domain.restricted, time_limit=None, budget=budget.part(ENUMERATION_SHARE))
     if isinstance(found, NotFound):
         return unchecked
     if isinstance(found, Violation):

@@ -47,6 +47,9 @@ TOLERANCE = 1e-9
 TABLE_SHARE = 0.5
 """Share of the seconds in which a table has to be complete; of a slower function random sets are tried in the rest."""
 
+SECONDS = 60.0
+"""A table of 2**24 values of a function in plain Python takes ten minutes."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Question:
@@ -106,7 +109,7 @@ def find_negativity(
     tolerance: float = TOLERANCE,
     trials: int = TRIALS,
     seed: int = 0,
-    time_limit: float | None = None,
+    time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Violation | NotFound | None:
@@ -124,7 +127,7 @@ def find_monotonicity_violation(
     tolerance: float = TOLERANCE,
     trials: int = TRIALS,
     seed: int = 0,
-    time_limit: float | None = None,
+    time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Violation | NotFound | None:
@@ -132,7 +135,7 @@ def find_monotonicity_violation(
 
     ``tolerance`` : how negative counts, relative to the largest absolute value of the function
     ``trials``, ``seed`` : of the sampled search, where the ground set has more than 24 elements or time is short
-    ``time_limit``, ``max_evaluations`` : seconds, and values of ``f``; unlimited by default
+    ``time_limit``, ``max_evaluations`` : seconds, a minute by default, and values of ``f``, unlimited by default
     ``budget`` : an outer search's budget: its seconds and interrupts count too
 
     Returns the witness; ``None`` where there is none, by a look at every set (up to 24 elements) or by theory
@@ -165,7 +168,7 @@ def find_submodularity_violation(
     tolerance: float = TOLERANCE,
     trials: int = TRIALS,
     seed: int = 0,
-    time_limit: float | None = None,
+    time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Violation | NotFound | None:
@@ -187,7 +190,7 @@ def find_modularity_violation(
     tolerance: float = TOLERANCE,
     trials: int = TRIALS,
     seed: int = 0,
-    time_limit: float | None = None,
+    time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Violation | NotFound | None:
@@ -206,7 +209,7 @@ def find_subadditivity_violation(
     tolerance: float = TOLERANCE,
     trials: int = TRIALS,
     seed: int = 0,
-    time_limit: float | None = None,
+    time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> Violation | NotFound | None:
