@@ -33,6 +33,6 @@ for dodge, (name, elements) in zip((-0.08, 0.0, 0.08), plans.items(), strict=Tru
 axes.axvline(2, color="#222222", linestyle=":", label="planned for")
 axes.set_xticks(levels)
 axes.set_xlabel("robots blinded")
-axes.set_ylabel("missing to the best possible [%]")
+axes.set_ylabel("shortfall from the best possible [%]")
 axes.legend(frameon=False)
 axes.spines[["top", "right"]].set_visible(False)

@@ -28,16 +28,16 @@ def attack(
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for the exact attack.")] = TIME_LIMIT,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the random attack.")] = 0,
     rank: Annotated[
-        int, typer.Option("--rank", min=0, help="Also rank so many robots and links by what protecting them gains.")
+        int, typer.Option("--rank", min=0, help="Number of robots and links to rank by what protecting them gains.")
     ] = 0,
     below: Annotated[
         float | None,
         typer.Option("--below", help="Also find the smallest budgets that push the plan below this value."),
     ] = None,
     protect: Annotated[
-        int, typer.Option("--protect", min=0, help="Also find so many links whose protection gains most.")
+        int, typer.Option("--protect", min=0, help="Number of links to choose whose protection gains most.")
     ] = 0,
-    add: Annotated[int, typer.Option("--add", min=0, help="Also find so many new links that gain most.")] = 0,
+    add: Annotated[int, typer.Option("--add", min=0, help="Number of new links to choose that gain most.")] = 0,
     reach: Annotated[
         float | None, typer.Option("--reach", help="Longest new link [m]; any by default. Needs robots' positions.")
     ] = None,

@@ -35,7 +35,8 @@ def track(
         Literal["renewed", "persistent", "permanent"], typer.Option("--attacks", help="How long attacks last.")
     ] = "renewed",
     sharing: Annotated[
-        Literal["best group", "all surviving"], typer.Option("--sharing", help="Whose belief lives on.")
+        Literal["best group", "all surviving"],
+        typer.Option("--sharing", help="Whose estimates the next step starts from."),
     ] = "best group",
     horizon: Annotated[int, typer.Option("--horizon", help="Steps that a plan looks ahead.")] = 1,
     beam: Annotated[

@@ -59,7 +59,7 @@ class MissionModel:
         worst axis of the errors of all steps together, over their number
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
         a robot that has no other keeps the one that ends nearest to it.
-    beam : so many control sequences of each robot are planned with, those worth most alone; all where ``None``
+    beam : number of control sequences of each robot to plan with, those worth most alone; ``None`` for all
     """
 
     motion: str | TargetMotion = "known velocity"

@@ -59,6 +59,6 @@ def draw_bars(axes: Axes, report: BoundReport) -> None:
     axes.invert_yaxis()
     axes.set_xlim(0, ROOM * longest)
     unit = f" [{report.unit}]" if report.unit else ""
-    what = "missing to that" if missing else "kept"
-    axes.set_xlabel(f"{report.objective} value {what} under the worst attack{unit}\n(whiskers: not decided)")
+    what = "shortfall from the best possible" if missing else "value kept"
+    axes.set_xlabel(f"{report.objective}: {what} under the worst attack{unit}\n(whiskers: not decided)")
     axes.spines[["top", "right"]].set_visible(False)

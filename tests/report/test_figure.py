@@ -73,7 +73,7 @@ def test_bars_are_what_is_decided_and_whiskers_what_is_not(alpha_s, seconds):
     report = ro.bound(scenario, time_limit=seconds)
     bars = plan_figure(report, picture_of(scenario, report)).axes[1]
     assert [label.get_text() for label in bars.get_yticklabels()] == [plan.name for plan in report.plans]
-    missing = "missing" in bars.get_xlabel()
+    missing = "shortfall" in bars.get_xlabel()
     assert missing == (0 < 0.5 * report.upper <= min(plan.worst_case.lower for plan in report.plans))
     undecided = 0
     for row, (plan, bar) in enumerate(zip(report.plans, bars.patches, strict=True)):

@@ -1,5 +1,5 @@
 """Several steps ahead: control sequences as elements.
 
 Open ``horizon.py`` first: the sequences, the joint state of all steps and the part of it that counts. ``dominance.py``
-drops sequences than which another is nowhere worse.
+drops dominated sequences.
 """

@@ -1,4 +1,4 @@
-"""Elements than which another of the same robot is nowhere worse: dropped, with a proof in exact arithmetic.
+"""Dominated elements are dropped: another one of the same robot tells at least as much, by a proof in exact arithmetic.
 
 Information of two rows differs by ``[[a, b], [b, c]]``, positive semidefinite where ``a >= 0``, ``c >= 0`` and
 ``a c >= b^2``. The difference of two floats has the exact difference's sign, and is off by one rounding; so are both
@@ -28,7 +28,7 @@ NO, OPEN, YES = range(3)
 
 
 def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dict[int, int]]:
-    """Drop elements than which another of the same robot is nowhere worse; the value of no plan is lost by that.
+    """Drop dominated elements; no plan loses value by that.
 
     Element ``e`` is dominated by ``f`` where ``information[f] - information[e]`` is positive semidefinite for every
     target and step: criteria do not decrease, so ``f`` in the place of ``e`` keeps any plan's value under any

@@ -102,7 +102,7 @@ def _caption(name: str, view: PlanAssessment, report: BoundReport) -> str:
 def _planner_section(report: BoundReport) -> Iterator[str]:
     """A bar a planner: filled as far as it is sure, half-tone as far as it is not decided."""
     missing, brackets, longest = bar_ends(report)
-    what = "missing to the best possible" if missing else "kept"
+    what = "shortfall from the best possible" if missing else "kept"
     yield '<section aria-labelledby="planners"><h2 id="planners">What each planner keeps</h2><div class="wide"><table>'
     yield '<thead><tr><th scope="col">planner</th><th scope="col">worst-case value</th><th scope="col">of the best '
     yield f'possible</th><th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
