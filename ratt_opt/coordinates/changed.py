@@ -119,8 +119,8 @@ def change_error(
     ``prior`` : (M,) how far the prior in these coordinates is from the exact one; ``information`` : (M,) the same of
     the information of a whole plan; ``share`` : (M,) of the criterion's size, whatever else was neglected
     """
-    scale = objective.error_scale
-    assert scale is not None
     size, whole = sizes_of(objective.prior), largest_sizes(objective.information, problem.choices)
+    scale = objective.error_scale(size)
+    assert scale is not None
     worst = 1 + np.sqrt(size * whole)
     return float(objective.combine(2 * scale * (worst**2 * prior / size + size * information + share)))

@@ -183,6 +183,7 @@ def _error(
     information = _most_of_plans(problem, rounded)
     size = sizes_of(smaller.prior) * largest_sizes(smaller.information, problem.choices)
     share = np.maximum(SLACK, ROUNDINGS * size)
-    if outputs is not None and smaller.error_scale is not None:
-        share = share + smaller.weights * outputs / smaller.error_scale
+    scale = smaller.error_scale(sizes_of(smaller.prior))
+    if outputs is not None and scale is not None:
+        share = share + smaller.weights * outputs / scale
     return change_error(problem, smaller, prior, information, share)

@@ -31,6 +31,7 @@ __all__ = ["with_unit_prior"]
 
 AnyProblem = TypeVar("AnyProblem", bound=Problem)
 
+KEPT = "_with_unit_prior"
 TOLERABLE = 1e-9
 """Error of values, as a share of the criterion before any measurement, that is no reason to change coordinates."""
 WORTHWHILE = 0.1
@@ -41,10 +42,19 @@ KINDS: tuple[Any, ...] = (TraceObjective, MaxEigenvalueObjective)
 
 def with_unit_prior(problem: AnyProblem) -> AnyProblem | ChangedProblem:
     """The problem in coordinates in which the prior is the identity, if values lose many digits in the given ones."""
+    kept = vars(problem)  # it is asked for by every attack
+    if KEPT not in kept:
+        kept[KEPT] = _chosen(problem)
+    found: AnyProblem | ChangedProblem = kept[KEPT]
+    return found
+
+
+def _chosen(problem: Problem) -> Problem:
     objective = problem.objective
-    if not isinstance(objective, InformationObjective) or objective.error_scale is None:
+    if not isinstance(objective, InformationObjective):
         return problem
-    if problem.evaluation_error <= TOLERABLE * float(objective.combine(objective.error_scale)):
+    scale = objective.error_scale(sizes_of(objective.prior))
+    if scale is None or problem.evaluation_error <= TOLERABLE * float(objective.combine(scale)):
         return problem
     changed = _changed(problem, objective)
     return changed if changed.evaluation_error <= WORTHWHILE * problem.evaluation_error else problem

@@ -202,11 +202,11 @@ class CriterionParts(ProofParts):
         what rounding the information matrices does to their inverses."""
         return VALUE_ROUNDING * self.prior_magnitude + self.inverse_rounding(np.abs(self._baseline))
 
-    @property
-    def error_scale(self) -> FloatArray | None:
-        """(M,) by how much the criterion of each target changes at most, per relative change of its information.
+    def error_scale(self, size: FloatArray) -> FloatArray | None:  # noqa: ARG002
+        """By how much each target's criterion changes at most, per relative change of its information: (..., M).
 
-        ``None``: nothing is known of that. See ``evaluation_error.py``.
+        ``size`` : (..., M) norm of the target's covariance. ``None``: nothing is known of that. See
+        ``evaluation_error.py``.
         """
         return None
 

@@ -5,14 +5,17 @@ Notation, for one target: ``P`` is the prior, ``X`` the information of a set of 
 
 1. What is evaluated is not ``L`` but ``L + D``: the prior's inverse was computed, and sums were rounded. Each rounding
    moves a sum by at most ``u`` times the sizes of its terms.
-2. ``tr C (L + D)^{-1} C'`` differs from ``tr C L^{-1} C'`` by at most ``r / (1 - r) tr C P C'``, ``r = |D| |P|``, as
-   ``L^{-1} <= P``. The same is true of the largest eigenvalue. Log-determinants differ by at most ``d r / (1 - r)``.
+2. ``tr C (L + D)^{-1} C'`` differs from ``tr C L^{-1} C'`` by at most ``r / (1 - r) |C|^2 q``, ``r = |D| q``, where
+   ``L^{-1} <= q``. The same is true of the largest eigenvalue. Log-determinants differ by at most ``d r / (1 - r)``.
+   If nothing is seen of a target, ``q = |P|``. Otherwise, let ``e`` be the largest element of the set: ``L`` is no
+   smaller than ``P^{-1} + X_e``, whose inverse has a norm of at most ``q``, and ``|L| <= |P^{-1}| + N |X_e|``. So the
+   bound is the largest over elements, and a diffuse prior does no harm if each sighting alone locates its target.
 3. The formulas themselves have the error of a matrix moved by ``growth(d) u |L|``: Gauss' elimination with row
    exchanges, whose factors have entries of at most ``2^(k - 1)`` times the matrix's in step ``k``, and three
    triangular solutions (Higham, Accuracy and Stability of Numerical Algorithms, 2002, theorems 8.5, 9.3 and 14.1).
 
-So ``r`` grows with ``|P| |L|``. Where the prior's own condition makes that large, coordinates in which the prior is the
-identity have a smaller one: see ``ratt_opt/coordinates/unit_prior.py``.
+Where elements tell about some directions only, ``r`` grows with ``|P| |L|``. Where the prior's own condition makes that
+large, coordinates in which the prior is the identity have a smaller one: see ``ratt_opt/coordinates/unit_prior.py``.
 """
 
 from __future__ import annotations
@@ -45,11 +48,11 @@ def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray
 
     0 for a criterion of one's own: nothing is known of its formula, so its values count as exact.
     """
-    scale = objective.error_scale
-    if scale is None:
-        return 0.0
     dimension, targets = objective.dimension, objective.n_targets
     prior = np.linalg.norm(objective.prior, axis=(-2, -1)) * MORE
+    scale = objective.error_scale(prior)
+    if scale is None:
+        return 0.0
     inverse = np.linalg.norm(objective.prior_information, axis=(-2, -1)) * MORE
     sizes = largest_sizes(objective.information, choices)
     lowest = SIGN * sizes * prior
@@ -59,11 +62,30 @@ def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray
     largest = prior / np.maximum(1 - lowest, 0.0)
     formula = UNIT * _growth(objective)
     before = _share(prior * (objective.inverse_error + formula * inverse))
-    sums = UNIT * (len(choices) + 2) * (inverse + sizes)
-    after = _share(largest * (objective.inverse_error + sums + formula * (inverse + sizes)))
+    after = _after(objective, largest, lowest / prior, inverse, len(choices))
     logarithms = np.abs(np.log(np.stack([prior, inverse, inverse + sizes]))).max(axis=0)
     own = 2 * UNIT * (4 * dimension + targets + 8) * (1 + logarithms)
-    return float(objective.combine(scale * (before + after + own)) * MORE)
+    return float(objective.combine(scale * (before + own) + after) * MORE)
+
+
+def _after(
+    objective: InformationObjective, largest: FloatArray, lowest: FloatArray, inverse: FloatArray, robots: int
+) -> FloatArray:
+    """(M,) errors of what is left once something was measured.
+
+    ``largest`` : (M,) no covariance is larger; ``lowest`` : (M,) no sum of elements is further below zero
+    ``inverse`` : (M,) size of the prior's inverse
+    """
+    own = np.linalg.norm(objective.information, axis=(-2, -1)) * MORE
+    apart = np.linalg.eigvalsh(objective.prior_information + objective.information)[..., 0]
+    apart -= lowest + objective.inverse_error + 16 * objective.dimension * UNIT * (inverse + own)
+    with np.errstate(divide="ignore"):
+        left = np.where(apart > 0, np.minimum(1 / np.maximum(apart, 0.0), largest), largest) * MORE
+    sums = UNIT * (robots + 2 + _growth(objective))
+    share = _share(left * (objective.inverse_error + sums * (inverse + robots * own)))
+    scale = objective.error_scale(left)
+    assert scale is not None
+    return np.asarray(np.where(own > 0, scale * share, 0.0).max(axis=0))
 
 
 def _share(moved: FloatArray) -> FloatArray:

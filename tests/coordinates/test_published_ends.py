@@ -132,3 +132,16 @@ def test_the_error_of_an_inverse_is_no_larger_than_needed():
             rest = matrix(y.tolist()) - matrix(a.tolist()).inv()
             size = sum(rest[i, j] ** 2 for i in range(3) for j in range(3))
             assert size <= rational(bound) ** 2 <= size * rational(1.1)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_diffuse_prior_costs_no_digits_where_each_sighting_locates_its_target(kind):
+    for seed in range(3):
+        problem = spread_problem(3 * seed, kind, 0, d=2)
+        f = problem.objective
+        information = f.information + 0.01 * np.trace(f.information, axis1=-2, axis2=-1)[..., None, None] * np.eye(2)
+        diffuse = ro.Problem(type(f)(1e8 * f.prior, information, f.weights), problem.robot, None, 1, 1)
+        exact, plan = ExactValues(diffuse), ro.ratt(diffuse).elements
+        found = ro.worst_case_attack(diffuse, plan)
+        assert holds(found.lower, exact.worst_case(plan), found.upper)
+        assert found.upper - found.lower <= 1e-10 * found.upper

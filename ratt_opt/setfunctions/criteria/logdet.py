@@ -40,10 +40,9 @@ class LogDetObjective(InformationObjective):
         """Beside what the prior's log-determinants round off, every logarithm has an error of its own."""
         return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum())) + self.inverse_rounding(self.weights)
 
-    @property
-    def error_scale(self) -> FloatArray:
-        """(M,) the weighted dimension."""
-        return np.asarray(self.weights * self.dimension)
+    def error_scale(self, size: FloatArray) -> FloatArray:
+        """(..., M) the weighted dimension."""
+        return np.broadcast_to(self.weights * self.dimension, size.shape)
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted log-determinants of the posterior covariances."""

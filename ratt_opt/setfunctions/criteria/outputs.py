@@ -49,13 +49,10 @@ class StateCriterion(InformationObjective):
         self.output = _check_output(output, prior) if is_of_part else None
         super().__init__(prior, information, weights)
 
-    @property
-    def error_scale(self) -> FloatArray:
-        """(M,) no less than the weighted trace of what counts of the prior: ``w_j |C_j|^2 |prior_j|`` of an output."""
-        if self.output is None:
-            return np.asarray(self.weights * np.trace(self.prior, axis1=-2, axis2=-1))
-        size = np.square(self.output).sum(axis=(-2, -1)) * np.linalg.norm(self.prior, axis=(-2, -1))
-        return np.asarray(self.weights * size)
+    def error_scale(self, size: FloatArray) -> FloatArray:
+        """(..., M) no less than the weighted trace of what counts of such a covariance: ``w_j |C_j|^2 size_j``."""
+        squares = float(self.dimension) if self.output is None else np.square(self.output).sum(axis=(-2, -1))
+        return np.asarray(self.weights * squares * size)
 
     @property
     def stated(self) -> dict[str, Any]:
