@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ratt_opt._rounding import bracket_text
+from ratt_opt._rounding import down, up
 from ratt_opt._values import Shown, counted, plain
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
@@ -94,7 +94,7 @@ class AttackResult(Shown):
     def __repr__(self) -> str:
         attack = f"{counted(len(self.attack.sensing), 'robot')} blinded, {counted(len(self.attack.links), 'link')} cut"
         cost = f"{self.evaluations} evaluations, {self.nodes} nodes"
-        return f"AttackResult({bracket_text(self.lower, self.upper, digits=6)}, {attack}, {self.stop.value}, {cost})"
+        return f"AttackResult([{down(self.lower, 6)}, {up(self.upper, 6)}], {attack}, {self.stop.value}, {cost})"
 
 
 def outward(problem: Problem, plan: IntArray, found: AttackResult) -> AttackResult:
