@@ -100,6 +100,29 @@ def random_problem(rng, n_robots=None, *, kind=None, protect=True, complete=None
     )
 
 
+def sparse_problem(rng, kind, dimension=2):
+    """Two to four robots of one to four elements, each of which sees few of three to five targets."""
+    n, m = int(rng.integers(2, 5)), int(rng.integers(3, 6))
+    robot = np.concatenate([np.full(rng.integers(1, 5), i) for i in range(n)])
+    root = rng.normal(size=(m, dimension, dimension))
+    prior = root @ root.swapaxes(-1, -2) + 0.3 * np.eye(dimension)
+    sees = rng.random((len(robot), m)) < rng.choice([0.2, 0.4])
+    factor = rng.normal(size=(len(robot), m, dimension, dimension))
+    factor *= (sees * rng.choice([0.3, 1.0, 3.0, 10.0], size=sees.shape))[..., None, None]
+    objective = OBJECTIVES[kind](prior, factor @ factor.swapaxes(-1, -2), rng.choice([1.0, 2.0], size=m))
+    graph = random_graph(rng, n)
+    links = list(graph.edges)
+    return Problem(
+        objective,
+        rng.permutation(robot) if rng.random() < 0.3 else robot,
+        graph,
+        int(rng.integers(0, n + 1)),
+        int(rng.integers(0, len(links) + 1)),
+        protected_robots={i for i in range(n) if rng.random() < 0.2},
+        protected_links={link for link in links if rng.random() < 0.2},
+    )
+
+
 def random_elements(rng, problem):
     """A random plan."""
     return np.array([rng.choice(choice) for choice in problem.choices])

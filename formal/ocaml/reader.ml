@@ -148,6 +148,7 @@ let rec upper_node groups next depth =
           if List.length cuts <> List.length weights then format "leaf weights" "must be one for each cut";
           Leaf (List.combine cuts weights)
       | _ -> assert false)
+  | Record pairs when List.mem_assoc "marginals" pairs -> format "upper proof" "by marginal gains is decided by ratt-opt verify alone"
   | Record pairs as node when List.mem_assoc "attack" pairs ->
       let a = match fields "winner branch" [ "attack" ] node with [ a ] -> index "winner branch" a | _ -> assert false in
       if a >= Array.length groups then format "winner branch" "names no attack";

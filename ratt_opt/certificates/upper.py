@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, UpperProof
+from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, UpperProof
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -113,6 +113,8 @@ class _Nodes:
             listed = node.parts[:-1] if self._covers else node.parts  # the last part is what is left
             return {"robot": node.robot, "parts": [list(part) for part in listed]}
         attack = self._proof.attacks[node.attack]
+        if isinstance(node, MarginalLeaf):
+            return {"marginals": self._pool.attack(attack)}
         assert list(node.parts) == self._pool.groups(attack)
         return {"attack": self._pool.attack(attack)}
 

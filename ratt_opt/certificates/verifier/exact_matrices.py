@@ -19,6 +19,7 @@ __all__ = [
     "is_positive",
     "largest",
     "largest_of_inverse",
+    "missing",
     "output_trace",
     "total",
     "trace",
@@ -93,10 +94,10 @@ def is_positive(matrix: fmpz_mat) -> bool:
     return all(value > 0 for value in signs)
 
 
-def defect_of(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
+def missing(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
     """Return ``delta >= 0`` with ``matrix + delta I`` positive semidefinite; 0 where the matrix is.
 
-    Raises ProofError where the matrix is further from it than rounding explains.
+    ``None`` where the matrix is further from it than rounding explains.
     """
     if definite(matrix) >= 0:
         return fmpq(0)
@@ -104,4 +105,15 @@ def defect_of(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
     for k in range(64, 27, -1):
         if definite(matrix + identity * (delta := enough / 2**k)) >= 0:
             return delta
-    raise ProofError("problem: an information matrix is not positive semidefinite")
+    return None
+
+
+def defect_of(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
+    """Return what is :func:`missing`.
+
+    Raises ProofError where the matrix is further from semidefinite than rounding explains.
+    """
+    delta = missing(matrix, identity)
+    if delta is None:
+        raise ProofError("problem: an information matrix is not positive semidefinite")
+    return delta

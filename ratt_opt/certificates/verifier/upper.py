@@ -5,6 +5,7 @@ Notation, per target: ``<A, B> = tr(A B)`` and ``L(S) = prior^{-1} + sum of the 
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +13,7 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import definite, largest, total, trace
+from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.reading import (
     array,
     exact,
@@ -85,7 +87,8 @@ class UpperCheck:
         The plans of a case are a product of element sets, one per robot. Under attack ``a`` the team value is
         the value of the winning group; a cut of group g may be used where g is the only group or the declared
         winner. So the worst case is at most any weighted average of usable cuts, and that is at most its
-        constant plus, robot by robot, the largest score among the elements left.
+        constant plus, robot by robot, the largest score among the elements left. Leaves of other kinds:
+        :meth:`_cover_leaf`, ``marginals.py``.
         """
         has_covers = isinstance(part, dict) and "covers" in part
         names = "attacks points cuts tree covers" if has_covers else "attacks points cuts tree"
@@ -96,11 +99,15 @@ class UpperCheck:
         points = self._points(given)
         cuts, bounds = self._cuts(groups, points, cut_list), []
         covers = self._covers(groups, points, cover_list[0]) if has_covers else []
+        marginals = cache(lambda: MarginalBounds(self.about))
 
         def expand(node: Any, case: Any) -> Iterator[Any]:
             left, winners = case
             if isinstance(node, dict) and "covers" in node:
                 bounds.append(self._cover_leaf(node, covers, left))
+            elif isinstance(node, dict) and "marginals" in node:
+                a = index("marginal leaf", fields("marginal leaf", node, "marginals")[0], len(groups))
+                bounds.append(marginals().bound(groups[a], left))
             elif isinstance(node, dict) and "weights" in node:
                 bounds.append(self._leaf(node, cuts, groups, left, winners))
                 if isinstance(bounds[-1], fmpq):

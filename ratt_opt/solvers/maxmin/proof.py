@@ -5,7 +5,8 @@ groups win. Children of an :class:`ElementBranch` partition one robot's remainin
 :class:`WinnerBranch` say which group of one attack attains the team value, one child a group. At a leaf, a cut
 on the only group of an attack, or on the group declared to win, bounds the team value under that attack and so the
 worst case; the leaf's convex combination of such cuts bounds every plan that remains. A :class:`CoverLeaf` combines
-conditions on plans that are worth more (``covers/cover.py``); no plan that remains meets the combination.
+conditions on plans that are worth more (``covers/cover.py``); no plan that remains meets the combination. A
+:class:`MarginalLeaf` adds up what robots can gain under one attack.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ __all__ = [
     "CoverLeaf",
     "ElementBranch",
     "Leaf",
+    "MarginalLeaf",
     "Node",
     "Split",
     "TangentCut",
@@ -71,6 +73,17 @@ class CoverLeaf:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MarginalLeaf:
+    """Under one attack no group is worth more, for a submodular function: log-determinants.
+
+    A group is worth at most what its robots of one element left are worth together, and of each other robot the
+    largest gain that an element adds to these alone. Of elements of which one dominates the others it alone counts.
+    """
+
+    attack: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ElementBranch:
     """``parts`` : the elements that remain for ``robot`` in each child, ascending; a partition of what remained."""
 
@@ -86,7 +99,7 @@ class WinnerBranch:
     parts: tuple[tuple[int, ...], ...]
 
 
-Node = Leaf | CoverLeaf | ElementBranch | WinnerBranch
+Node = Leaf | CoverLeaf | MarginalLeaf | ElementBranch | WinnerBranch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

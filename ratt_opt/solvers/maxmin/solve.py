@@ -19,7 +19,6 @@ from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin.both_searches import BothSearches
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
@@ -29,6 +28,7 @@ from ratt_opt.solvers.maxmin.search import Known
 from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.turns import Turns
+from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
@@ -116,18 +116,18 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     start: ArrayLike | Plan | MaxMinResult | None = None,
     workers: int | Executor | None = None,
     *,
-    by_covers: bool = True,
+    in_depth: bool = True,
 ) -> MaxMinResult:
     """The same for an information criterion, in the coordinates given.
 
-    ``by_covers`` : whether the proof may have covers
+    ``in_depth`` : whether the proof may be that of a search in depth
     """
     warm = WarmStart.of(problem, start)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
-    search: BothSearches | None = None
+    search: UpperEnds | None = None
     try:
         pool.list_all()
         outcomes = warm.add_outcomes(pool)
@@ -136,7 +136,7 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
         incumbent.start(_first_plans(problem, first, warm, pairs, budget))
         with open_crew(workers) as crew:
             # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-            search = BothSearches(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew, by_covers=by_covers)
+            search = UpperEnds(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew, in_depth=in_depth)
             search.concave.first.use(warm.add_cuts(search.concave.first.cuts, outcomes))
             stop = _search_and_prove(search, Turns(budget, incumbent), progress)
         if incumbent.is_proved and not budget.is_over:
@@ -158,7 +158,7 @@ def _first_plans(
     return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
 
 
-def _search_and_prove(search: BothSearches, turns: Turns, progress: Progress) -> Stop:
+def _search_and_prove(search: UpperEnds, turns: Turns, progress: Progress) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
@@ -168,9 +168,7 @@ def _search_and_prove(search: BothSearches, turns: Turns, progress: Progress) ->
             return stop
 
 
-def _result(
-    problem: Problem, incumbent: Incumbent, search: BothSearches | None, stop: Stop, gap: float
-) -> MaxMinResult:
+def _result(problem: Problem, incumbent: Incumbent, search: UpperEnds | None, stop: Stop, gap: float) -> MaxMinResult:
     proved = incumbent.proved
     lower = proved.lower
     if search is not None and np.isfinite(search.upper):

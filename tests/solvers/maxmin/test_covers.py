@@ -21,41 +21,19 @@ from ratt_opt import (
     verify_certificate,
     worst_case_attack,
 )
-from ratt_opt.solvers.maxmin.both_searches import BothSearches
 from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
-from ratt_opt.solvers.maxmin.covers.elements import Elements
 from ratt_opt.solvers.maxmin.covers.separation import Separation
+from ratt_opt.solvers.maxmin.levels.elements import Elements
+from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
+from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
 from ratt_opt.stopping import Stop
 from tests.oracles import brute_force_worst_case
-from tests.strategies import OBJECTIVES, random_graph
+from tests.strategies import sparse_problem
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 CASES = 40
-
-
-def sparse_problem(rng: np.random.Generator, kind: str, dimension: int = 2) -> Problem:
-    """Two to four robots of one to four elements, each of which sees few of three to five targets."""
-    n, m = int(rng.integers(2, 5)), int(rng.integers(3, 6))
-    robot = np.concatenate([np.full(rng.integers(1, 5), i) for i in range(n)])
-    root = rng.normal(size=(m, dimension, dimension))
-    prior = root @ root.swapaxes(-1, -2) + 0.3 * np.eye(dimension)
-    sees = rng.random((len(robot), m)) < rng.choice([0.2, 0.4])
-    factor = rng.normal(size=(len(robot), m, dimension, dimension))
-    factor *= (sees * rng.choice([0.3, 1.0, 3.0, 10.0], size=sees.shape))[..., None, None]
-    objective = OBJECTIVES[kind](prior, factor @ factor.swapaxes(-1, -2), rng.choice([1.0, 2.0], size=m))
-    graph = random_graph(rng, n)
-    links = list(graph.edges)
-    return Problem(
-        objective,
-        rng.permutation(robot) if rng.random() < 0.3 else robot,
-        graph,
-        int(rng.integers(0, n + 1)),
-        int(rng.integers(0, len(links) + 1)),
-        protected_robots={i for i in range(n) if rng.random() < 0.2},
-        protected_links={link for link in links if rng.random() < 0.2},
-    )
 
 
 def all_plans(problem: Problem) -> list[tuple[int, ...]]:
@@ -64,9 +42,10 @@ def all_plans(problem: Problem) -> list[tuple[int, ...]]:
 
 @pytest.fixture
 def by_covers_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No concave relaxation is searched, and covers are looked for however much robots see."""
-    monkeypatch.setattr(BothSearches, "_run_concave", lambda *_: Stop.NODES)
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.covers.levels.UNSEEN", 0.0)
+    """No other search runs, and covers are looked for however much robots see."""
+    monkeypatch.setattr(UpperEnds, "_run_concave", lambda *_: Stop.NODES)
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.upper_ends.UNSEEN", 0.0)
+    monkeypatch.setattr(MarginalSearch, "of", lambda *_: None)
 
 
 @pytest.mark.usefixtures("by_covers_alone")
@@ -89,7 +68,7 @@ def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tm
 
 
 @pytest.mark.usefixtures("by_covers_alone")
-@pytest.mark.parametrize(("name", "most"), [("levels.MOST_COVERS", 4), ("dive.MOST_RECORDED", 8)])
+@pytest.mark.parametrize(("name", "most"), [("cover_search.MOST_COVERS", 4), ("dive.MOST_RECORDED", 8)])
 def test_forgetting_covers_and_searches_makes_no_bracket_false(name: str, most: int, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(f"ratt_opt.solvers.maxmin.covers.{name}", most)
     for seed in range(CASES // 2):

@@ -28,7 +28,7 @@ from ratt_opt import (
 )
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
-from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, UpperProof, WinnerBranch
 from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_problem
@@ -68,6 +68,26 @@ def kept_bound(problem: Problem, cover) -> float:
     return max(bounds)
 
 
+def marginal_leaf_bound(problem: Problem, attack: Attack, choices) -> float:
+    """By the definition of the leaf: submodular, so what robots without a strongest element add is at most a sum."""
+    assert isinstance(problem.objective, LogDetObjective)
+    problem.check_attack(attack)
+    information = problem.objective.information
+    bounds = [0.0]
+    for group in groups_left(problem, attack.links):
+        fixed, free = [], []
+        for i in sorted(group - attack.sensing):
+            strongest = [
+                e
+                for e in choices[i]
+                if all(np.linalg.eigvalsh(information[e] - information[o]).min() > -1e-9 for o in choices[i])
+            ]
+            (fixed if strongest else free).append(strongest[0] if strongest else choices[i])
+        base = problem.objective(fixed)
+        bounds.append(base + sum(max(problem.objective([*fixed, e]) - base for e in own) for own in free))
+    return max(bounds)
+
+
 def proved_upper(problem: Problem, proof: UpperProof) -> float:
     """Walk the tree and bound every leaf from the matrices; assert that it covers all plans."""
     f = problem.objective
@@ -96,6 +116,8 @@ def proved_upper(problem: Problem, proof: UpperProof) -> float:
             return share @ np.array([b[0] for b in bounds]) + sum(max(total[e] for e in c) for c in choices)
         if isinstance(node, CoverLeaf):
             return cover_leaf_bound(problem, proof, node, choices)
+        if isinstance(node, MarginalLeaf):
+            return marginal_leaf_bound(problem, proof.attacks[node.attack], choices)
         if isinstance(node, ElementBranch):
             assert set().union(*node.parts) == set(choices[node.robot])
             assert sum(map(len, node.parts)) == len(choices[node.robot])

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.covers.loops.tables import Outcome, Record, Stack
+from ratt_opt.solvers.maxmin.covers.loops.tables import Record, Stack
+from ratt_opt.solvers.maxmin.levels.level_search import Outcome
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray

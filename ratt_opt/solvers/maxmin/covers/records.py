@@ -12,7 +12,7 @@ from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.covers.cover import Cover
-    from ratt_opt.solvers.maxmin.covers.elements import Elements
+    from ratt_opt.solvers.maxmin.levels.elements import Elements
 
 __all__ = ["DiveProof"]
 

@@ -16,7 +16,7 @@ from ratt_opt.solvers.maxmin.covers.pool import CoverPool
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.covers.elements import Elements
+    from ratt_opt.solvers.maxmin.levels.elements import Elements
 
 __all__ = ["Separation"]
 

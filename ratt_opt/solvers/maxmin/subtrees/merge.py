@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, Split, TreeNode
+from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, Split, TreeNode
 from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def hang_below(search: BranchAndBound, node: TreeNode, proof: UpperProof) -> Non
     places: list[TreeNode | None] = [node]
     for given in proof.tree:
         place = places.pop()
-        assert not isinstance(given, CoverLeaf)  # workers search by cuts
+        assert not isinstance(given, CoverLeaf | MarginalLeaf)  # workers search by cuts
         if isinstance(given, Leaf):
             if place is not None:
                 _end(search, place, Leaf(cuts=tuple(cuts[k] for k in given.cuts), weights=given.weights))

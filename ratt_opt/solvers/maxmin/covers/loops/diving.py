@@ -14,7 +14,8 @@ from ratt_opt.compiling import numba
 from ratt_opt.solvers.maxmin.covers.loops.attacking import new_cover
 from ratt_opt.solvers.maxmin.covers.loops.forbidding import ask_covers, ask_sums, forbid
 from ratt_opt.solvers.maxmin.covers.loops.leaving import leave
-from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM, Outcome
+from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM
+from ratt_opt.solvers.maxmin.levels.level_search import Outcome
 
 __all__ = ["dive"]
 

@@ -2,26 +2,12 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import Any, NamedTuple
 
-__all__ = ["BY_COVER", "BY_SUM", "TRIED", "Outcome", "Record", "Stack", "Sums", "Team", "Ways"]
+__all__ = ["BY_COVER", "BY_SUM", "TRIED", "Record", "Stack", "Sums", "Team", "Ways"]
 
 BY_COVER, BY_SUM, TRIED = 0, 1, 2
 """What forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
-
-
-class Outcome(IntEnum):
-    """How a run of the search in depth ends."""
-
-    PROVED = 0
-    """Nothing is left."""
-    SPENT = 1
-    """Its nodes are spent."""
-    PLAN = 2
-    """One plan is left."""
-    FULL = 3
-    """An array is full."""
 
 
 class Team(NamedTuple):

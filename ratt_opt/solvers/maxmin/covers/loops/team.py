@@ -12,7 +12,17 @@ import numpy as np
 from ratt_opt.compiling import numba
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
-__all__ = ["add", "bound_robot", "group_values", "raised", "strongest_of", "tells", "total_of", "value_of"]
+__all__ = [
+    "add",
+    "bound_robot",
+    "group_values",
+    "log_determinant",
+    "raised",
+    "strongest_of",
+    "tells",
+    "total_of",
+    "value_of",
+]
 
 PLANAR = 3
 TRACE = TraceObjective.compiled_code
@@ -118,6 +128,14 @@ def value_of(team: Any, j: int, matrix: Any) -> float:
     else:
         determinant, trace = _of_any_dimension(matrix)
     return float(team.baseline[j] - team.weights[j] * (trace if team.code == TRACE else -np.log(determinant)))
+
+
+@numba.njit(cache=True)
+def log_determinant(matrix: Any) -> float:
+    """Of a packed matrix."""
+    if len(matrix) == PLANAR:
+        return float(np.log(matrix[0] * matrix[2] - matrix[1] * matrix[1]))
+    return float(np.log(_of_any_dimension(matrix)[0]))
 
 
 @numba.njit(cache=True)
