@@ -33,13 +33,14 @@ OPENING = """# Where robust planning pays: limited views
 
 Six robots with cameras that turn among eight headings, drive at 0 or 2 m/s and see only a part of the area; slow
 targets in a square of 60 m; an adversary who blinds two robots and cuts four links (`limited_view_scenario`). Each
-robot must choose what to look at, and a target that few robots watch is a target that the adversary can hide. One
-command flies everything and writes this page; killed, it resumes:
+robot must choose what to look at, and a target that few robots watch is a target that the adversary can hide. Two
+commands fly everything, 60 trials of the main cases, 20 of the varied ones, and write this page; killed, they resume:
 
 <!-- slow -->
 ```bash
-python -m analysis.limited_views --trials 60 --out results
-cp results/limited_views.md docs/limited_views.md
+python -m analysis.limited_views --trials 20 --only limited_views_varied --out results
+python -m analysis.limited_views --trials 60 --only limited_views_main limited_views_one_step --out results
+python -m analysis.limited_views.page results > docs/limited_views.md
 ```
 
 Every trial draws another team, other targets and other noise, and all planners fly it: trials share nothing, and

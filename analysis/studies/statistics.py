@@ -40,8 +40,9 @@ class Estimate:
         return Estimate(self.mean, self.mean - wider, self.mean + wider, self.n)
 
     def show(self, scale: float = 1.0) -> str:
-        """Return ``mean [low, high]``, times ``scale``, to three digits."""
-        return f"{scale * self.mean:+.3g} [{scale * self.low:+.3g}, {scale * self.high:+.3g}]"
+        """Return ``mean [low, high]``, times ``scale``, to three digits and no more than twelve decimals."""
+        mean, low, high = (round(scale * number, 12) + 0.0 for number in (self.mean, self.low, self.high))
+        return f"{mean:+.3g} [{low:+.3g}, {high:+.3g}]"
 
 
 class Verdict(Enum):

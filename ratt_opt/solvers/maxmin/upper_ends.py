@@ -1,4 +1,4 @@
-"""The upper ends of a search in turns: concave relaxations, and searches in depth where robots see few targets."""
+"""The upper ends of a search in turns: concave relaxations, and a search in depth where robots see few targets."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ __all__ = ["UpperEnds"]
 SUMS = frozenset((TraceObjective.compiled_code, LogDetObjective.compiled_code))
 """Criteria that are sums over targets."""
 UNSEEN = 0.25
-"""Least share of pairs of an element and a target without information for searches in depth."""
+"""Least share of pairs of an element and a target without information for a search in depth."""
 TURN, GROWTH = 20, 2.0
 """Nodes of the concave search's second turn, after its root, and how many times as many each later one has."""
 NODES_IN_DEPTH = 10
-"""Nodes that searches in depth have for each of the other's."""
+"""Nodes that the search in depth has for each of the concave one's."""
 
 
 class UpperEnds:
@@ -40,31 +40,28 @@ class UpperEnds:
     def __init__(self, known: Known, crew: Crew | None, *, in_depth: bool = True) -> None:
         self.concave = Descent(known, crew)
         self._known = known
-        self._in_depth = _searches_in_depth(known) if in_depth else []
+        self._in_depth = _search_in_depth(known) if in_depth else None
         self._turn = float(TURN)
 
     @property
     def upper(self) -> float:
         """Proved upper bound on the optimum."""
-        return min([self.concave.upper, *(search.upper for search in self._in_depth)])
+        return min(end.upper for end in self._ends())
 
     def proof(self) -> UpperProof:
         """The proof of :attr:`upper`."""
-        ends: list[Descent | SearchByLevels] = [self.concave, *self._in_depth]
-        return min(ends, key=lambda end: end.upper).proof()
+        return min(self._ends(), key=lambda end: end.upper).proof()
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
-        if not self._in_depth:
+        if self._in_depth is None:
             return self.concave.run(turns, progress)
         most = 1.0
         while True:
             before = turns.budget.nodes
             stop = self._run_concave(turns, progress, int(most))
-            for search in self._in_depth:
-                if stop is not Stop.NODES or turns.budget.stop() is not None:
-                    return stop
-                stop = search.run(turns, progress, self.upper, int(NODES_IN_DEPTH * self._turn))
+            if stop is Stop.NODES and turns.budget.stop() is None:
+                stop = self._in_depth.run(turns, progress, self.upper, int(NODES_IN_DEPTH * self._turn))
             if stop is not Stop.NODES or turns.budget.stop() is not None:
                 return stop
             if turns.budget.nodes == before:  # all that is left is what margins for rounding leave
@@ -72,19 +69,21 @@ class UpperEnds:
             most = self._turn
             self._turn *= GROWTH
 
+    def _ends(self) -> list[Descent | SearchByLevels]:
+        return [self.concave] if self._in_depth is None else [self.concave, self._in_depth]
+
     def _run_concave(self, turns: Turns, progress: Progress, nodes: int) -> Stop:
         until = turns.budget.nodes + nodes
         return self.concave.run(TurnsUntil(turns, lambda: turns.budget.nodes >= until), progress)
 
 
-def _searches_in_depth(known: Known) -> list[SearchByLevels]:
-    """Searches where robots see few targets, and the criterion is a sum over targets: trace or log-det."""
+def _search_in_depth(known: Known) -> SearchByLevels | None:
+    """The search where robots see few targets, if the criterion is a sum over targets: trace or log-det."""
     objective = known.task.objective
     if objective.compiled_code not in SUMS:
-        return []
+        return None
     seen = np.trace(objective.information, axis1=-2, axis2=-1) > 0
     if seen.mean() > 1 - UNSEEN:
-        return []
+        return None
     elements = Elements(known.task.problem)
-    searches = (MarginalSearch.of(known, elements), CoverSearch.of(known, elements))
-    return [search for search in searches if search is not None]
+    return MarginalSearch.of(known, elements) or CoverSearch.of(known, elements)
