@@ -136,9 +136,10 @@ let consume name nodes build =
 
 let deepest = 2500
 
-let rec upper_node groups next depth =
+(* [named]: the parts that the last branch on a robot names; a branch that names none has the same. *)
+let rec upper_node groups named next depth =
   if depth > deepest then format "upper tree" "is too deep";
-  let again () = upper_node groups next (depth + 1) in
+  let again () = upper_node groups named next (depth + 1) in
   let rec children k = if k = 0 then [] else let first = again () in first :: children (k - 1) in
   match next () with
   | Record pairs as node when List.mem_assoc "weights" pairs -> (
@@ -153,13 +154,17 @@ let rec upper_node groups next depth =
       let a = match fields "winner branch" [ "attack" ] node with [ a ] -> index "winner branch" a | _ -> assert false in
       if a >= Array.length groups then format "winner branch" "names no attack";
       OnWinner (nat_of_int a, children groups.(a))
-  | node -> (
-      match fields "element branch" [ "robot"; "parts" ] node with
-      | [ robot; parts ] ->
-          let blocks = List.map (nats "element branch") (array "parts" parts) in
-          let kids = children (List.length blocks) in
-          OnElement (nat "element branch robot" robot, List.combine blocks kids)
-      | _ -> assert false)
+  | node ->
+      let names = match node with Record pairs when not (List.mem_assoc "parts" pairs) -> [ "robot" ] | _ -> [ "robot"; "parts" ] in
+      let given = fields "element branch" names node in
+      let robot = index "element branch robot" (List.hd given) in
+      List.iter (fun parts -> Hashtbl.replace named robot (List.map (nats "element branch") (array "parts" parts))) (List.tl given);
+      let blocks =
+        match Hashtbl.find_opt named robot with
+        | Some blocks -> blocks
+        | None -> format "element branch" "follows none that names the parts of its robot" in
+      let kids = children (List.length blocks) in
+      OnElement (nat_of_int robot, List.combine blocks kids)
 
 let rec size_node next depth =
   if depth > deepest then format "lower tree" "is too deep";
@@ -237,7 +242,7 @@ let proofs pb prior_range upper lower =
   | [ attacks; points; cuts; tree ] ->
       let listed = List.map attack (array "attacks" attacks) in
       let arity a = if attack_ok pb.net a then List.length (seeing_groups pb.net a) else raise (Fault "upper proof: an attack is not allowed") in
-      let groups = Array.of_list (List.map arity listed) in
+      let groups = Array.of_list (List.map arity listed) and named = Hashtbl.create 16 in
       let zero = { man = Big.zero; sc = Big.zero } in
       let low, high =
         match (pb.objective, exacts "prior_eigenvalue" prior_range) with
@@ -246,7 +251,7 @@ let proofs pb prior_range upper lower =
         | _ -> format "prior_eigenvalue" "must be a list of two entries, of none but for maxeig" in
       { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
-        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups next 0);
+        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups named next 0);
         lower_part = lower_proof lower }
   | _ -> assert false
 

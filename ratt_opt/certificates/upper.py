@@ -97,10 +97,11 @@ class _Pool:
 
 
 class _Nodes:
-    """Nodes as the record has them; ``cuts``, ``covers`` : the numbers there of those that the proof has."""
+    """Nodes as the record has them, in order; ``cuts``, ``covers`` : the numbers there of those that the proof has."""
 
     def __init__(self, pool: _Pool, proof: UpperProof, *, cuts: dict[int, int], covers: dict[int, int]) -> None:
         self._pool, self._proof, self._cuts, self._covers = pool, proof, cuts, covers
+        self._parts: dict[int, list[list[int]]] = {}
 
     def node(self, node: Node) -> dict[str, Any]:
         if isinstance(node, Leaf):
@@ -111,7 +112,11 @@ class _Nodes:
             return {"covers": [self._covers[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
         if isinstance(node, ElementBranch):
             listed = node.parts[:-1] if self._covers else node.parts  # the last part is what is left
-            return {"robot": node.robot, "parts": [list(part) for part in listed]}
+            parts = [list(part) for part in listed]
+            if parts == self._parts.get(node.robot):
+                return {"robot": node.robot}
+            self._parts[node.robot] = parts
+            return {"robot": node.robot, "parts": parts}
         attack = self._proof.attacks[node.attack]
         if isinstance(node, MarginalLeaf):
             return {"marginals": self._pool.attack(attack)}

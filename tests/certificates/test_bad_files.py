@@ -86,6 +86,7 @@ PROOFS = {
     "repeated or follows": lambda d: d["upper"]["tree"].append(first(d, "weights")),
     "do not partition": lambda d: first(d, "robot")["parts"].pop(),
     "partition its elements": lambda d: first(d, "robot")["parts"].append([0]),
+    "no branch before names the parts": lambda d: first(d, "robot").pop("parts"),
     "exceeds its budget": lambda d: d["upper"]["attacks"][0].update(robots=[0, 1]),
     "lower is above upper": lambda d: d["claim"].update(lower=d["claim"]["upper"] * 2),
     "more than the claim": lambda d: d["claim"].update(lower=0.0, upper=d["claim"]["upper"] * 0.999999),

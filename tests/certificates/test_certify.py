@@ -46,6 +46,20 @@ def closes(written, expected, scale):
     assert written.verified.upper - written.verified.lower <= 1e-8 * scale
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_parts_are_named_once_and_may_be_named_again(seed, tmp_path):
+    problem = random_problem(np.random.default_rng([22, seed]), 3, kind=KINDS[seed % 3])
+    written, document = certified(problem, tmp_path / "c.json")
+    before: dict[int, list[list[int]]] = {}
+    branches = [node for node in document["upper"]["tree"] if "robot" in node]
+    assert any("parts" not in node for node in branches)
+    for node in branches:
+        before[node["robot"]] = node.setdefault("parts", before.get(node["robot"]))
+    (tmp_path / "named.json").write_text(json.dumps(document))
+    named = verify_certificate(tmp_path / "named.json")
+    assert (named.lower, named.upper) == (written.verified.lower, written.verified.upper)
+
+
 @pytest.mark.parametrize("seed", range(60))
 def test_certifies_the_optimum_without_the_solver(seed, tmp_path):
     rng = np.random.default_rng([21, seed])

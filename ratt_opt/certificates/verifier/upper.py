@@ -100,6 +100,7 @@ class UpperCheck:
         cuts, bounds = self._cuts(groups, points, cut_list), []
         covers = self._covers(groups, points, cover_list[0]) if has_covers else []
         marginals = cache(lambda: MarginalBounds(self.about))
+        before: dict[int, list[tuple[int, ...]]] = {}
 
         def expand(node: Any, case: Any) -> Iterator[Any]:
             left, winners = case
@@ -117,9 +118,7 @@ class UpperCheck:
                 need(a not in winners, "upper proof: an attack's winner is declared twice")
                 yield from ((left, {**winners, a: group}) for group in groups[a])
             else:
-                robot, parts = fields("element branch", node, "robot parts")
-                i = index("element branch robot", robot, self.about.n)
-                blocks = [indices("element branch", block, len(self.about.owner)) for block in array("parts", parts)]
+                i, blocks = self._parts(node, before)
                 named = sorted(chain(*blocks))
                 rest = tuple(sorted(set(left[i]) - set(named))) if has_covers else ()
                 exact_cover = all(blocks) and sorted([*named, *rest]) == list(left[i])
@@ -129,6 +128,17 @@ class UpperCheck:
 
         walk("upper", tree, (self.about.choices, {}), expand)
         return bounds
+
+    def _parts(self, node: Any, before: dict[int, list[tuple[int, ...]]]) -> tuple[int, list[tuple[int, ...]]]:
+        """The robot of an element branch and the parts that it names, or those that were named for it ``before``."""
+        robot, *given = fields(
+            "element branch", node, "robot" if isinstance(node, dict) and "parts" not in node else "robot parts"
+        )
+        i = index("element branch robot", robot, self.about.n)
+        if given:
+            before[i] = [indices("element branch", block, len(self.about.owner)) for block in array("parts", given[0])]
+        need(i in before, f"upper proof: no branch before names the parts of robot {i}")
+        return i, list(before[i])
 
     def _leaf(self, node: Any, cuts: list[_Cut], groups: list[Any], left: Any, winners: Any) -> Any:
         chosen, given = fields("leaf", node, "cuts weights")
