@@ -7,7 +7,6 @@ group; the links between groups may exceed the budget at a price.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,11 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackTask
 
-__all__ = ["anneal_for_a_share", "annealed_attacks"]
-
-ANNEALING_SHARE = 0.5
-"""Of the seconds and values left for annealed attacks; then all are searched. Without them attacks on 24 and 30 robots
-with a criterion of one's own were 0.6 to 6 % milder than the worst one after 5 s; with them 0 to 1 %."""
+__all__ = ["annealed_attacks"]
 
 MOVES, IN_VAIN = 200, 8
 """Moves per robot of the first starts, twice as many after two in vain; starts in a row that find nothing worse before
@@ -42,17 +37,6 @@ PRICE = 0.02
 
 REMEMBERED = 200_000
 """Values of groups that are kept from start to start."""
-
-
-def anneal_for_a_share(task: AttackTask) -> None:
-    """Offer annealed attacks within their share of the budget.
-
-    Raises
-    ------
-    OutOfBudget : the whole budget is spent.
-    """
-    with task.budget.stage(ANNEALING_SHARE) as part:
-        annealed_attacks(replace(task, budget=part))
 
 
 def annealed_attacks(task: AttackTask, seed: int = 0) -> None:

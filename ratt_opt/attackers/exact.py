@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.annealed_values import anneal_for_a_share
-from ratt_opt.attackers.any_function import any_bound, exchange_attack, metered_problem
-from ratt_opt.attackers.any_graph import any_graph, last_stage
+from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.attack_tree import AttackTree
-from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.relaxed_teams import unprotected_bound
-from ratt_opt.attackers.few_attacks import try_every_attack
-from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackResult, AttackTask, MeetsAim, PlanValues, outward
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
+from ratt_opt.attackers.staging import recorded, run_stages
+from ratt_opt.attackers.task import (
+    AttackBracket,
+    AttackMemory,
+    AttackResult,
+    AttackTask,
+    MeetsAim,
+    PlanValues,
+    StageRecord,
+    outward,
+)
+from ratt_opt.attackers.team_attack import TeamAttack, has_table, last_stage
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.errors import InputError
-from ratt_opt.graph.few_cuts import attacks_are_few
-from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.problem import Attack
 from ratt_opt.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
@@ -32,27 +33,13 @@ from ratt_opt.stopping import Stop
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.graph.separable_groups import SeparableGroups
     from ratt_opt.problem import Problem
 
 __all__ = ["strongest_attack", "worst_case_attack"]
 
-THRESHOLDS_FASTER = 15
-"""Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-FEW_GROUPS, MANY_GROUPS, LISTING_SHARE = 10_000, 300_000, 0.1
-"""Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else; and
-of the seconds left, for listing them. It takes a second on sparse graphs of 50 robots, four on dense ones."""
-
 RENEWED = 4
 """Times as many seconds as an earlier attack on the plan had, from which its first stages, which had shares of them,
 are run again before its last one goes on."""
-
-GREEDY_SHARE = 0.05
-"""Of the time left for greedy steps on networks, which at 500 robots of disk-6 took 36 of 40 seconds; annealed attacks,
-which come later, are worse for the team."""
-
-SPATIAL_SHARE = 0.6
-"""Of the time left for families by their sizes where targets are not in the plane, before prices."""
 
 UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
 
@@ -162,6 +149,7 @@ def strongest_attack(
     memory.check(problem, values.plan)
     problem = memory.searched_of(problem)
     values.objective = problem.objective
+    records: list[StageRecord] = []
     try:
         asked = problem
         if not isinstance(problem.objective, InformationObjective):
@@ -178,7 +166,7 @@ def strongest_attack(
             memory.bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
         memory.bracket.check_aim()
         is_inner = budget is not None or max_nodes is not None
-        task = AttackTask(asked, values, memory.bracket, own, memory)
+        task = AttackTask(asked, values, memory.bracket, own, memory, records)
         stop = _search(task, is_inner=is_inner)
     except OutOfBudget as out:
         stop = out.stop
@@ -193,7 +181,13 @@ def strongest_attack(
         bracket = AttackBracket(Attack(), _unattacked(problem, values), values(()))
     attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
     return AttackResult(
-        attack=attack, lower=lower, upper=upper, stop=stop, evaluations=values.evaluations, nodes=own.nodes
+        attack=attack,
+        lower=lower,
+        upper=upper,
+        stop=stop,
+        evaluations=values.evaluations,
+        nodes=own.nodes,
+        stages=tuple(records),
     )
 
 
@@ -202,98 +196,15 @@ def _unattacked(problem: Problem, values: PlanValues) -> float:
 
 
 def _search(task: AttackTask, *, is_inner: bool) -> Stop:
-    problem, plan = task.problem, task.values.plan
+    is_criterion = isinstance(task.problem.objective, InformationObjective)
     begun = task.memory.search
     if isinstance(begun, AttackTree):
-        goes_on = isinstance(problem.objective, InformationObjective) or not _has_table(task)
+        goes_on = is_criterion or not has_table(task)
     else:
         goes_on = task.budget.seconds_left <= RENEWED * task.memory.seconds
     if begun is not None and goes_on:
-        return last_stage(task, begun)
+        with recorded(task, "earlier search, resumed"):
+            return last_stage(task, begun)
     task.memory.seconds = task.budget.seconds_left
-    if not isinstance(problem.objective, InformationObjective):
-        return _any_function(task, is_inner=is_inner)
-    if problem.n_robots <= LARGEST_PLAIN:
-        try:
-            return threshold_search(task)
-        except (OutOfBudget, KeyboardInterrupt):
-            task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
-            raise
-    task.bracket.raise_lower(first_bound(problem.objective, plan, problem.threat))
-    if task.budget.is_interrupted:
-        return Stop.INTERRUPTED
-    return Stop.CLOSED if task.bracket.is_closed else _larger_team(task, is_inner=is_inner)
-
-
-def _are_tried_one_by_one(problem: Problem) -> bool:
-    """Whether attacks are few; where links are alike, sizes of groups are fewer still."""
-    return not problem.threat.links_alike and attacks_are_few(problem.threat)
-
-
-def _larger_team(task: AttackTask, *, is_inner: bool) -> Stop:
-    """More robots than thresholds are decided for at once, under a criterion of information matrices."""
-    problem, plan = task.problem, task.values.plan
-    if _are_tried_one_by_one(problem):
-        return try_every_attack(task)
-    team = PackedTeam.of(problem.objective, plan)
-    if team is not None and problem.threat.links_alike:
-        from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
-
-        if team.is_planar:
-            return SizeVectorSearch(task, team).run()
-        with task.budget.stage(SPATIAL_SHARE) as part:
-            SizeVectorSearch(replace(task, budget=part), team).run()
-        if task.bracket.is_closed:
-            return Stop.CLOSED
-    with task.budget.stage(GREEDY_SHARE) as part:
-        task.offer(greedy_attack(problem, plan, budget=part).attack)
-    groups = _few_groups(task, team)
-    if problem.n_robots <= LARGEST_COMPILED and groups is None:
-        return threshold_search(task)
-    if team is not None and problem.communication.is_complete:
-        unprotected_bound(task, team)
-    is_brief = is_inner and math.isinf(task.budget.seconds_left)
-    return any_graph(task, team, groups, is_brief=is_brief)
-
-
-def _any_function(task: AttackTask, *, is_inner: bool) -> Stop:
-    """Thresholds where all sets of robots can be valued; where that is limited, and beyond, first what is quick."""
-    n_robots, budget = task.problem.n_robots, task.budget
-    if n_robots > LARGEST_COMPILED and _are_tried_one_by_one(task.problem):
-        any_bound(task)
-        return Stop.CLOSED if task.bracket.is_closed else try_every_attack(task)
-    is_limited = min(budget.seconds_left, budget.evaluations_left) < math.inf
-    has_table = _has_table(task)
-    if n_robots > LARGEST_COMPILED or is_limited:
-        any_bound(task)
-        exchange_attack(task)
-        if is_limited and not (task.bracket.is_closed or has_table or is_inner):
-            anneal_for_a_share(task)
-        if task.bracket.is_closed:
-            return Stop.CLOSED
-    if has_table:
-        return threshold_search(task)
-    if task.bracket.is_closed or not is_limited:
-        return Stop.CLOSED if task.bracket.is_closed else Stop.HEURISTIC
-    budget.check()
-    tree = AttackTree(task)
-    if is_inner:  # of many attacks: whoever asks again, with its memory, wants to know
-        task.memory.search = tree
-        return budget.stop() or Stop.HEURISTIC
-    return last_stage(task, tree)
-
-
-def _has_table(task: AttackTask) -> bool:
-    """Whether all sets of robots can be valued."""
-    return task.problem.n_robots <= LARGEST_COMPILED and 2**task.problem.n_robots <= task.budget.evaluations_left
-
-
-def _few_groups(task: AttackTask, team: PackedTeam | None) -> SeparableGroups | None:
-    """The groups an attack may leave, where they are few enough, and soon listed, to search partitions of the team."""
-    problem = task.problem
-    if team is None or problem.n_robots <= THRESHOLDS_FASTER:
-        return None
-    from ratt_opt.graph.separable_groups import separable_groups  # compiles
-
-    few = FEW_GROUPS if problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
-    return separable_groups(problem.threat, few, task.budget.part(LISTING_SHARE))
+    stages = CRITERION if is_criterion else USER_FUNCTION
+    return run_stages(stages, TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC

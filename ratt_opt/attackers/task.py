@@ -32,6 +32,7 @@ __all__ = [
     "MeetsAim",
     "PlanValues",
     "Resumable",
+    "StageRecord",
     "outward",
 ]
 
@@ -70,12 +71,30 @@ class PlanValues(SetFunction):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class StageRecord(Shown):
+    """What one stage of an attack did: seconds, nodes, and the bracket before and after [unit of the objective]."""
+
+    name: str
+    seconds: float
+    nodes: int
+    lower_before: float
+    lower: float
+    upper_before: float
+    upper: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """The record as plain data: an end that is not known is ``None``."""
+        ends = {name: plain(getattr(self, name)) for name in ("lower_before", "lower", "upper_before", "upper")}
+        return {"stage": self.name, "seconds": self.seconds, "nodes": self.nodes, **ends}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AttackResult(Shown):
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
     ``attack`` leaves no more than ``upper``, and less only by what computing its value may have rounded. ``lower`` is
     proved when ``stop`` is ``EXHAUSTED`` or ``CLOSED``, by computations whose error it makes up for; it is 0 (the value
-    of no measurement) for a heuristic. Results are equal when all their fields are.
+    of no measurement) for a heuristic. Results are equal when all their fields but ``stages`` are.
     """
 
     attack: Attack
@@ -84,6 +103,8 @@ class AttackResult(Shown):
     stop: Stop
     evaluations: int
     nodes: int = 0
+    stages: tuple[StageRecord, ...] = field(default=(), compare=False)
+    """What ran, in order; of an exact attack."""
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data: unknown numbers are ``None``."""
@@ -198,7 +219,7 @@ class AttackMemory:
 class AttackTask:
     """Narrow ``bracket`` for the plan of ``values`` within ``budget``; the bracket holds the answer.
 
-    ``memory`` : where a search that can go on later is left
+    ``memory`` : where a search that can go on later is left; ``records`` : what stages did, in order
     """
 
     problem: Problem
@@ -206,6 +227,7 @@ class AttackTask:
     bracket: AttackBracket
     budget: Budget
     memory: AttackMemory = field(default_factory=AttackMemory)
+    records: list[StageRecord] = field(default_factory=list)
 
     def offer(self, attack: Attack) -> bool:
         """Value an attack and keep it if it is the worst so far; return whether it is."""

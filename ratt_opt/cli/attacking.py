@@ -41,6 +41,9 @@ def attack(
     reach: Annotated[
         float | None, typer.Option("--reach", help="Longest new link [m]; any by default. Needs robots' positions.")
     ] = None,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Also say which stages of the exact attack ran, and what each proved.")
+    ] = False,
     as_json: JsonFlag = False,
 ) -> None:
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect.
@@ -74,9 +77,9 @@ def attack(
         links["add"] = _found(budget, lambda: links_to_add(problem, elements, add, candidates=near, **within))
     found = {name: best for name, best in links.items() if best is not None}
     if as_json:
-        print_json(attack_document(objective, elements, results, critical, budgets, best_links=found))
+        print_json(attack_document(objective, elements, results, critical, budgets, best_links=found, explains=explain))
     else:
-        print_tables(attack_tables(results, critical, budgets, below, best_links=found))
+        print_tables(attack_tables(results, critical, budgets, below, best_links=found, explains=explain))
     if budget.is_over:
         raise WorkInterrupted("interrupted; printed is what was found until then")
 

@@ -76,10 +76,12 @@ def attack_document(
     budgets: Sequence[BreakingBudget] | None = None,
     *,
     best_links: Mapping[str, BestLinks] | None = None,
+    explains: bool = False,
 ) -> dict[str, Any]:
     """Return the attacks on one plan as JSON-ready values, and what to protect or add where that was asked for.
 
     ``best_links`` : by what is done with them, "protect" and "add"
+    ``explains`` : also which stages of the exact attack ran, and what each did
     """
     document = {
         "format": "ratt-opt attack",
@@ -88,6 +90,8 @@ def attack_document(
         "elements": elements.tolist(),
         "attacks": {name: result.to_dict() for name, result in results.items()},
     }
+    if explains:
+        document["stages"] = [row.to_dict() for row in results["exact"].stages]
     if critical:
         document["critical"] = [_critical(row) for row in critical]
     if budgets is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from rich.console import RenderableType
     from rich.table import Table
@@ -53,12 +54,16 @@ def attack_tables(
     below: float | None,
     *,
     best_links: Mapping[str, BestLinks] | None = None,
+    explains: bool = False,
 ) -> Iterable[Table]:
     """Yield the attacks on a plan, and, where asked for, what to protect or add and what pushes it ``below`` a value.
 
     ``best_links`` : by what is done with them, "protect" and "add"
+    ``explains`` : also which stages of the exact attack ran, and what each did
     """
     yield _attacks(results)
+    if explains:
+        yield _stages(results["exact"])
     if critical is not None:
         yield _critical(critical)
     if budgets is not None:
@@ -91,6 +96,22 @@ def _attacks(results: Mapping[str, AttackResult]) -> Table:
         proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
         table.add_row(name, up(result.upper, 8), proved, _robots(result.attack), _links(result.attack))
     return table
+
+
+def _stages(exact: AttackResult) -> Table:
+    """One row a stage that ran: how long, and which ends of the bracket it moved."""
+    table = _table("how the exact attack came to this", "stage", "seconds", "nodes", "worst case at least", "at most")
+    for row in exact.stages:
+        lower, upper = _moved(row.lower_before, row.lower, down), _moved(row.upper_before, row.upper, up)
+        table.add_row(row.name, f"{row.seconds:.3f}", f"{row.nodes:,}", lower, upper)
+    table.caption = "stages that do not apply to this problem are not shown; within the search, before rounding outward"
+    return table
+
+
+def _moved(before: float, after: float, rounded: Callable[[float, int], str]) -> str:
+    """An end of a bracket, and what it was where it moved; a dash where it is not known."""
+    old, new = (rounded(end, 8) if math.isfinite(end) else "-" for end in (before, after))
+    return new if old == new else f"{old} → {new}"
 
 
 def _critical(ranking: Iterable[Criticality]) -> Table:

@@ -7,6 +7,7 @@ what is left of it. So whatever a search had in hand when it ended must still co
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import any_graph, exact
+from ratt_opt.attackers import exact, schedule, team_attack
 from ratt_opt.attackers.by_partition import settled_partitions
 from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
 from ratt_opt.attackers.task import AttackMemory
@@ -32,18 +33,24 @@ SECONDS = 1000.0
 """Of every limit: it is chance that ends them."""
 CALLS = 12
 
+SOON_OVER = tuple(
+    replace(stage, max_nodes=20) if stage.name == "partitions" and stage.max_nodes else stage
+    for stage in schedule.CRITERION
+)
+"""Partitions are searched for at most 20 nodes at first."""
+
 WAYS = {
     "partitions": {},
     "sharp partitions": {
-        (any_graph, "SOON_NODES"): 20,
+        (exact, "CRITERION"): SOON_OVER,
         (settled_partitions, "PLAIN_NODES"): 3,
         (settled_partitions, "AXIS_NODES"): 3,
         (settled_partitions, "SHARPER_AFTER"): (0, 5),
     },
-    "covers": {(any_graph, "PARTITIONED"): 0},
-    "prices": {(exact, "MANY_GROUPS"): 0},
-    "dense": {(any_graph, "DENSE"): 0.0},
-    "dense prices": {(any_graph, "DENSE"): 0.0, (exact, "MANY_GROUPS"): 0},
+    "covers": {(team_attack, "PARTITIONED"): 0},
+    "prices": {(team_attack, "MANY_GROUPS"): 0},
+    "dense": {(team_attack, "DENSE"): 0.0},
+    "dense prices": {(team_attack, "DENSE"): 0.0, (team_attack, "MANY_GROUPS"): 0},
     "no lists": {
         (size_vector_search, "MAYBE_SHORT"): -1,
         (size_vector_search, "LISTED_WHOLE"): 0,
@@ -57,7 +64,7 @@ WAYS = {
     },
 }
 """What makes small teams go each way of large ones."""
-LARGE = {(exact, "LARGEST_PLAIN"): 0, (exact, "LARGEST_COMPILED"): 0, (exact, "THRESHOLDS_FASTER"): 0}
+LARGE = {(team_attack, name): 0 for name in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER")}
 
 
 @pytest.fixture

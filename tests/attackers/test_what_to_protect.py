@@ -133,7 +133,7 @@ def test_after_an_interrupt_nothing_more_is_searched(monkeypatch):
             raise KeyboardInterrupt
         return threshold_search(task)
 
-    monkeypatch.setattr("ratt_opt.attackers.exact.threshold_search", interrupted_once)
+    monkeypatch.setattr("ratt_opt.attackers.team_attack.threshold_search", interrupted_once)
     for row in criticality_ranking(problem, plan):
         assert row.gain_lower <= exact[row.target].gain_lower + 1e-12
         assert row.gain_upper >= exact[row.target].gain_upper - 1e-12

@@ -298,6 +298,21 @@ def test_new_links_are_drawn_where_a_model_free_file_places_its_robots(
     refused(command, capsys, "reach needs an input that says where the robots are")
 
 
+def test_attack_explains_its_bracket(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Stages that ran, with the ends that they moved."""
+    plan = tmp_path / "plan.json"
+    plan.write_text('{"controls": [0, 4, 11]}')
+    command = ["attack", str(scenario_file), "--plan", str(plan)]
+    assert run([*command, "--explain", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["stages"]
+    assert document["stages"][-1]["upper"] == pytest.approx(document["attacks"]["exact"]["upper"])
+    assert run([*command, "--explain"]) == 0
+    assert document["stages"][0]["stage"] in capsys.readouterr().out
+    assert run([*command, "--json"]) == 0
+    assert "stages" not in json.loads(capsys.readouterr().out)
+
+
 def test_attack_evaluates_the_users_plan(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -149,7 +149,7 @@ def test_attacks_with_all_that_may_be_asked_for(
     plan = tmp_path / "plan.json"
     plan.write_text('{"controls": [0, 1, 2]}')
     command = ["attack", str(scenario_file), "--plan", str(plan)]
-    _check(_printed(capsys, *command), "attack")
+    _check(_printed(capsys, *command, "--explain"), "attack")
     found = _printed(capsys, *command, "--rank", "9", "--below", "1e9", "--protect", "1", "--add", "1")
     assert {"robot", "link"} <= {name for row in found["critical"] for name in row}
     assert found["breaking_budgets"]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.possible_sizes import PossibleSizes
 
-__all__ = ["largest_groups_bound", "weak_sets"]
+__all__ = ["WeakSets", "largest_groups_bound", "weak_sets"]
 
 MOST_SETS = 20_000
 """Sets to ask about: a thousand take 2 to 7 seconds at 24 and 30 robots."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 from math import comb
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.by_size.largest_groups import largest_groups_bound, weak_sets
+from ratt_opt.attackers.by_size.largest_groups import WeakSets, largest_groups_bound, weak_sets
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.graph.link_scores import link_scores
@@ -22,11 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
-__all__ = ["possible_sizes_bound", "unprotected_bound"]
-
-SIZES_SHARE, SIZES_NODES = 0.2, 3_000_000
-"""Of the seconds left, and of the nodes, at most so many, for groups of possible sizes. Lists of weak sets take most of
-them: at 50 robots of a dense graph, 10 blinded and 128 links cut, 2 million nodes and six seconds."""
+__all__ = ["PossibleGroups", "unprotected_bound"]
 
 MOST_POSSIBLE = 1_000
 """Vectors of sizes to search: 10 at dense graphs, hundreds at 50 robots of sparser ones."""
@@ -48,36 +44,54 @@ def unprotected_bound(task: AttackTask, team: PackedTeam) -> None:
             task.offer(start.attack)
 
 
-def possible_sizes_bound(task: AttackTask, team: PackedTeam | None, least: int, *, asked: float = 1.0) -> int:
-    """Raise the lower bound to the least that groups of possible sizes leave, whichever robots are in them.
+class PossibleGroups:
+    """Lower bounds from the sizes that groups of an attack may have, whichever robots are in them.
 
-    ``least`` : seeing robots that are known to be left in some group; ``asked`` : share of the seconds left to ask of
-    each weak set whether an attack can leave it. Returns how many are left, by sizes too.
-
-    Raises
-    ------
-    OutOfBudget : the time is up, or no node is left to begin with; the bracket keeps what was proved.
+    ``least`` : seeing robots that are known to be left in some group, by sizes too
     """
-    threat, budget = task.problem.threat, task.budget
-    n_seeing = threat.graph.n_robots - threat.n_blinded
-    if n_seeing == 0 or threat.graph.n_robots > LARGEST or task.bracket.is_closed:
-        return least
-    sets = None
-    with budget.stage(SIZES_SHARE, max_nodes=SIZES_NODES) as part:
-        possible = PossibleSizes(link_scores(threat.graph, threat.alpha_c, part), threat.n_blinded, least)
-        least = possible.forced
-        vectors = possible.vectors(part, MOST_POSSIBLE)
+
+    def __init__(self, team: PackedTeam | None, least: int) -> None:
+        self._team, self.least = team, least
+        self._possible: PossibleSizes | None = None
+        self._sets: WeakSets | None = None
+
+    @staticmethod
+    def apply(task: AttackTask) -> bool:
+        """Whether sizes are looked at in a team that large."""
+        threat = task.problem.threat
+        return threat.n_blinded < threat.graph.n_robots <= LARGEST
+
+    @property
+    def has_sets(self) -> bool:
+        """Whether every weak set of these sizes is listed."""
+        return self._sets is not None
+
+    def bound(self, task: AttackTask, *, lists_sets: bool = True) -> None:
+        """Raise the lower end to the least that groups of possible sizes leave.
+
+        ``lists_sets`` : also list the weak sets to :meth:`ask` about, where they are few
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or no node is left to begin with; the bracket keeps what was proved.
+        """
+        threat, budget = task.problem.threat, task.budget
+        possible = PossibleSizes(link_scores(threat.graph, threat.alpha_c, budget), threat.n_blinded, self.least)
+        self.least = possible.forced
+        vectors = possible.vectors(budget, MOST_POSSIBLE)
         if vectors is None:
-            return least
-        least = vectors[0][0]
-        if team is not None:
-            within = replace(task, budget=part)
-            _sizes_bound(within, team, vectors)
-            sets = weak_sets(within, team, possible) if asked else None
-    if sets is not None:
-        with budget.stage(asked, max_nodes=SIZES_NODES) as rest:
-            largest_groups_bound(replace(task, budget=rest), possible, sets)
-    return least
+            return
+        self.least = vectors[0][0]
+        if self._team is not None:
+            _sizes_bound(task, self._team, vectors)
+            if lists_sets:
+                self._possible, self._sets = possible, weak_sets(task, self._team, possible)
+
+    def ask(self, task: AttackTask) -> None:
+        """Raise the lower end by asking of each weak set whether an attack can leave it."""
+        assert self._possible is not None
+        assert self._sets is not None
+        largest_groups_bound(task, self._possible, self._sets)
 
 
 def _sizes_bound(task: AttackTask, team: PackedTeam, vectors: list[Sizes]) -> None:
@@ -94,6 +108,6 @@ def _search(
 ) -> None:
     """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
     try:
-        SizeVectorSearch(replace(task, problem=relaxed, bracket=start), team, vectors).run()
+        SizeVectorSearch(replace(task, problem=relaxed, bracket=start, records=[]), team, vectors).run()
     finally:
         task.bracket.raise_lower(min(start.lower, start.upper))

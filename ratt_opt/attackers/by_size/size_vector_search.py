@@ -11,8 +11,6 @@ alike, or there are too many vectors, ``family_prices`` bounds all families at o
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import replace
-from functools import partial
 from itertools import islice
 from math import comb
 from operator import attrgetter
@@ -26,6 +24,7 @@ from ratt_opt.attackers.by_size.largest_first import LargestFirst
 from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
+from ratt_opt.attackers.staging import Stage, run_stages
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import (
     FIRST,
@@ -38,7 +37,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
     from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
     from ratt_opt.attackers.task import AttackTask
@@ -97,39 +96,86 @@ class SizeVectorSearch:
         self.lists = LowLists(team, np.argsort(-team.single, kind="stable"))
         self.bounds: dict[Sizes, float] = {}
         """What the families of each vector that is open are worth at least."""
+        self.families: list[GroupExchanges] = []
+        self._is_about_families = False
         self._by_largest = LargestFirst(task, team, self._accept)
 
     def run(self) -> Stop:
         """Search every vector; the bracket is valid whenever this stops."""
-        if self.vectors == [()]:
-            self._accept((frozenset(),))
-            self.bracket.lower = self.bracket.upper
-            return Stop.CLOSED
-        if self._closes_at_once():
-            return Stop.CLOSED
-        families = self.weak.exchanged(self.vectors if self.has_all_vectors else self._some_vectors())
-        self._accept(weakest_of(families))
-        if self.bracket.is_closed:
-            return Stop.CLOSED
-        if not self.has_all_vectors:
-            return FamilySearch(self.task, self.team, families, self._priced_vectors()).run()
-        self.bounds = dict.fromkeys(self.vectors, -np.inf)
-        is_about_families = self._is_about_families(families)
-        has_share = is_about_families and len(self.team.single) > LISTED_WHOLE
-        if has_share:
-            self._decide_in_share(LISTED_SHARE, partial(self._decide_listed, families))
-        else:
-            self._decide_listed(families)
-        if not self.bracket.is_closed and is_about_families:
-            self._decide_in_share(LARGEST_SHARE[0], self._decide_by_largest)
-            if self.bracket.upper - self.bracket.lower <= NEARLY * abs(self.bracket.upper):
-                self._decide_in_share(LARGEST_SHARE[1], self._decide_by_largest)
-            FamilySearch(self.task, self.team, families, list(self.bounds)).narrow()
-        if not self.bracket.is_closed and has_share:
-            self._decide_listed(families)
-        return Stop.CLOSED if self.bracket.is_closed else self._decide_by_largest()
+        stop = run_stages(STAGES, self)
+        assert stop is not None, "the last stage ends it"
+        return stop
 
-    def _is_about_families(self, families: list[GroupExchanges]) -> bool:
+    # -- what the stages ask -------------------------------------------------------------------------------------
+
+    def blinds_everyone(self) -> bool:
+        """Everybody may be blinded."""
+        return self.vectors == [()]
+
+    def has_few_vectors(self) -> bool:
+        """Vectors of sizes can be searched one by one."""
+        return self.has_all_vectors
+
+    def has_many_vectors(self) -> bool:
+        """Too many vectors of sizes."""
+        return not self.has_all_vectors
+
+    def lists_in_share(self) -> bool:
+        """Several groups about alike, more than 34 robots."""
+        return self.is_about_families() and len(self.team.single) > LISTED_WHOLE
+
+    def lists_at_once(self) -> bool:
+        """One group decides, or at most 34 robots."""
+        return not self.lists_in_share()
+
+    def is_about_families(self) -> bool:
+        """Several groups about alike, limit of time."""
+        return self._is_about_families
+
+    def is_nearly_closed(self) -> bool:
+        """Several groups about alike, at most 2 % left."""
+        return self._is_about_families and self.bracket.upper - self.bracket.lower <= NEARLY * abs(self.bracket.upper)
+
+    # -- the stages ----------------------------------------------------------------------------------------------
+
+    def blind_everyone(self) -> Stop:
+        """Nobody sees anything."""
+        self._accept((frozenset(),))
+        self.bracket.lower = self.bracket.upper
+        return Stop.CLOSED
+
+    def list_least(self) -> None:
+        """The least sets that decide, where they are listed in no time, and families around the weakest of them."""
+        self._closes_at_once()
+
+    def exchange(self) -> None:
+        """The weakest families that exchanges find, of each vector or of some."""
+        self.families = self.weak.exchanged(self.vectors if self.has_all_vectors else self._some_vectors())
+        self._accept(weakest_of(self.families))
+        self.bounds = dict.fromkeys(self.vectors, -np.inf)
+        self._is_about_families = self._are_alike(self.families)
+
+    def families_without_vectors(self) -> Stop:
+        """What knows no vectors."""
+        return FamilySearch(self.task, self.team, self.families, self._priced_vectors()).run()
+
+    def narrow_families(self) -> None:
+        """The same for the vectors that are open, as long as it proves something."""
+        FamilySearch(self.task, self.team, self.families, list(self.bounds)).narrow()
+
+    def decide_listed(self) -> None:
+        """Decide the families of every vector, as far as its sets can be listed."""
+        self._decide_listed(self.families)
+
+    def decide_by_largest(self) -> None:
+        """The vectors that are open, by their largest group, for a share."""
+        self._decide_by_largest()
+
+    def decide_all_by_largest(self) -> Stop:
+        """The vectors that are open, by their largest group."""
+        return self._decide_by_largest()
+
+    def _are_alike(self, families: list[GroupExchanges]) -> bool:
         """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
         budget = self.task.budget
         if self._given is not None or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
@@ -252,12 +298,18 @@ class SizeVectorSearch:
         self.vectors = list(self.bounds)
         return self._by_largest.run(self.vectors, self.task.budget)
 
-    def _decide_in_share(self, share: float, decide: Callable[[], object]) -> None:
-        """Either of both within a share of the time; what is still open then begins anew."""
-        task = self.task
-        with task.budget.stage(share) as part:
-            self.task = replace(task, budget=part)
-            try:
-                decide()
-            finally:
-                self.task = task
+
+STAGES: tuple[Stage[SizeVectorSearch], ...] = (
+    Stage("nobody left", SizeVectorSearch.blind_everyone, SizeVectorSearch.blinds_everyone),
+    Stage("least sets", SizeVectorSearch.list_least, SizeVectorSearch.has_few_vectors),
+    Stage("exchanges of families", SizeVectorSearch.exchange),
+    Stage("families", SizeVectorSearch.families_without_vectors, SizeVectorSearch.has_many_vectors),
+    Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_in_share, LISTED_SHARE),
+    Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_at_once),
+    Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.is_about_families, LARGEST_SHARE[0]),
+    Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.is_nearly_closed, LARGEST_SHARE[1]),
+    Stage("families", SizeVectorSearch.narrow_families, SizeVectorSearch.is_about_families),
+    Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_in_share),
+    Stage("largest group", SizeVectorSearch.decide_all_by_largest),
+)
+"""Of an attack on a complete graph, by vectors of sizes."""

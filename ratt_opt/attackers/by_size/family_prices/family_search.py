@@ -10,6 +10,7 @@ from ratt_opt.attackers.by_size.annealed_families import AnnealedFamilies, Cooli
 from ratt_opt.attackers.by_size.family_prices.family_dive import FamilyDive
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST, ThresholdBound
+from ratt_opt.attackers.staging import Stage, run_stages
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size
@@ -58,68 +59,99 @@ class FamilySearch:
         vectors: Sequence[Sizes] | None = None,
     ) -> None:
         self._vectors = vectors
-        self._task, self._team, self._threat = task, team, task.problem.threat
+        self.task, self._team, self._threat = task, team, task.problem.threat
         self._known = [group for family in families for group in family.groups()]
         self._prices: ThresholdBound | None = None
         self._rng = np.random.default_rng(SEED)
         self._finder = SetFinder(team, len(team.single) - self._threat.n_blinded)
         self._dives = FamilyDive(team, self._threat, self._finder)
         self._annealed = AnnealedFamilies(team, self._threat)
+        self._has_dived_deeper = False
 
     def run(self) -> Stop:
         """All of them, the attacks as long as there is time."""
-        with self._task.budget.stage(FORCED_SHARE) as part:
-            self._weakest_of_forced_size(part)
-        if np.isfinite(self._task.budget.seconds_left):
-            self.narrow(is_last=True)
-        else:
-            self.price(1.0)
-        return Stop.CLOSED if self._task.bracket.is_closed else self._task.budget.stop() or Stop.HEURISTIC
+        if stop := run_stages(FORCED, self):
+            return stop
+        self.narrow(is_last=True)
+        return Stop.CLOSED if self.task.bracket.is_closed else self.task.budget.stop() or Stop.HEURISTIC
 
     def narrow(self, *, is_last: bool = False) -> None:
-        """Attacks and prices in turn within a limit of time, until it is up or the bracket closed.
+        """Attacks and prices in turn within a limit of time, until it is up or the bracket closed; without one, prices.
 
         ``is_last`` : nothing else is there for the time left; else this ends where prices prove nothing at first and
         leave a threshold open, or neither end moves in a few turns
         """
-        bracket = self._task.bracket
-        self.anneal(ANNEALED_SHARE, ANNEALED_STARTS)
-        self.dive(DIVED_SHARE)
+        bracket = self.task.bracket
         proved, vain = bracket.lower, 0
-        self.price(PRICED_SHARE if self._finder.is_quick else 1.0)
+        run_stages(FIRST_TURN, self)
         may_prove = bracket.lower > proved or (self._prices is not None and not self._prices.has_left_open)
-        while not bracket.is_closed and (is_last or (may_prove and vain < MOST_VAIN)):
+        goes_on = self.is_limited() and (is_last or may_prove)
+        while not bracket.is_closed and goes_on and (is_last or vain < MOST_VAIN):
             before = bracket.lower, bracket.upper
-            if not self.dive(LATER_SHARE):
-                self.anneal(LATER_SHARE, 1)
-            self.price(1.0)
+            run_stages(LATER_TURNS, self)
             vain = vain + 1 if (bracket.lower, bracket.upper) == before else 0
 
-    def anneal(self, share: float, starts: int) -> None:
-        """A few annealed attacks, each longer than those before, in a share of the time left; the prices know them."""
-        bracket, part = self._task.bracket, self._task.budget.part(share)
-        if bracket.is_closed:
-            return
+    # -- what the stages ask -------------------------------------------------------------------------------------
+
+    def is_limited(self) -> bool:
+        """Limit of time."""
+        return bool(np.isfinite(self.task.budget.seconds_left))
+
+    def may_dive(self) -> bool:
+        """Limit of time, planar targets, sets found quickly."""
+        return self.is_limited() and self._finder.is_quick and not self._is_out_of_reach()
+
+    def is_priced(self) -> bool:
+        """Limit of time, planar targets, sets not found quickly."""
+        return self.is_limited() and not self._finder.is_quick and not self._is_out_of_reach()
+
+    def is_priced_later(self) -> bool:
+        """Planar targets."""
+        return not self._is_out_of_reach()
+
+    def is_priced_without_limit(self) -> bool:
+        """No limit of time, planar targets."""
+        return not (self.is_limited() or self._is_out_of_reach())
+
+    def has_dived_in_vain(self) -> bool:
+        """Dives, if any, found nothing."""
+        return not (self._has_dived_deeper and self.may_dive())
+
+    # -- the stages ----------------------------------------------------------------------------------------------
+
+    def anneal_first(self) -> None:
+        """A few annealed attacks, each longer than those before; the prices know them."""
+        self._anneal(ANNEALED_STARTS)
+
+    def anneal_once(self) -> None:
+        """One more."""
+        self._anneal(1)
+
+    def _anneal(self, starts: int) -> None:
         for _ in range(starts):
-            if groups := self._annealed.start(part):
+            if groups := self._annealed.start(self.task.budget):
                 self._offer(groups)
                 self._learn(groups)
-        self._task.budget.check()
 
-    def dive(self, share: float) -> bool:
-        """Attacks from prices, in a share of the time left, where sets are found quickly; whether any was better.
+    def dive(self) -> None:
+        """Attacks from prices, where sets are found quickly.
 
         With log-det dives found no better attacks than annealing from random families, and took time from the bound.
         """
-        if self._finder.is_quick and not self._is_out_of_reach():
-            before = self._task.bracket.upper
-            with self._task.budget.stage(share) as part:
-                self._dive(part)
-            return self._task.bracket.upper < before
-        return False
+        before = self.task.bracket.upper
+        try:
+            self._dive(self.task.budget)
+        finally:
+            self._has_dived_deeper = self.task.bracket.upper < before
+
+    def price(self) -> None:
+        """Raise the lower end by prices, as far as they reach."""
+        if self._prices is None:
+            self._prices = ThresholdBound(self._team, self._threat, self._vectors, [*self._known, *self._dives.sets()])
+        self._prices.run(self.task.bracket, self.task.budget)
 
     def _dive(self, budget: Budget) -> None:
-        bracket = self._task.bracket
+        bracket = self.task.bracket
         vain = 0
         while not (bracket.is_closed or budget.is_over or vain >= MOST_VAIN):
             vain, before = vain + 1, bracket.upper
@@ -140,32 +172,38 @@ class FamilySearch:
 
     def _is_out_of_reach(self) -> bool:
         """Whether nothing is left for prices, which are of the plane, or they would take too long."""
-        bracket, team = self._task.bracket, self._team
+        bracket, team = self.task.bracket, self._team
         return bracket.is_closed or not team.is_planar or len(team.single) > LARGEST or not bracket.upper > 0
-
-    def price(self, share: float) -> None:
-        """Raise the lower end by prices, as far as they reach in a share of the time left."""
-        budget, bracket = self._task.budget, self._task.bracket
-        if self._is_out_of_reach():
-            return
-        if self._prices is None:
-            self._prices = ThresholdBound(self._team, self._threat, self._vectors, [*self._known, *self._dives.sets()])
-        prices = self._prices
-        most = None if np.isfinite(budget.seconds_left) else PRICED_NODES
-        with budget.stage(share, max_nodes=most) as part:
-            prices.run(bracket, part)
 
     def _offer(self, groups: Iterable[frozenset[int]]) -> bool:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
-        return self._task.offer(Attack(*realise(self._threat, outcome)))
+        return self.task.offer(Attack(*realise(self._threat, outcome)))
 
-    def _weakest_of_forced_size(self, budget: Budget) -> None:
+    def weakest_of_forced_size(self) -> None:
         """Some group has the forced size at least, so the weakest set of that size is a bound."""
-        bracket = self._task.bracket
+        bracket = self.task.bracket
         size = forced_group_size(len(self._team.single), self._threat.n_blinded, self._threat.alpha_c)
         search = WeakestSetSearch(self._team, size, bracket.goal, bracket.lower)
-        for found in search.run(budget):
+        for found in search.run(self.task.budget):
             if found is not None:
                 search.threshold = min(search.threshold, self._team.value(found))
             bracket.raise_lower(min(search.lower, search.threshold))
         bracket.raise_lower(search.threshold)
+
+
+FORCED: tuple[Stage[FamilySearch], ...] = (
+    Stage("forced size", FamilySearch.weakest_of_forced_size, share=FORCED_SHARE),
+)
+FIRST_TURN: tuple[Stage[FamilySearch], ...] = (
+    Stage("annealed families", FamilySearch.anneal_first, FamilySearch.is_limited, ANNEALED_SHARE),
+    Stage("dives", FamilySearch.dive, FamilySearch.may_dive, DIVED_SHARE),
+    Stage("family prices", FamilySearch.price, FamilySearch.may_dive, PRICED_SHARE),
+    Stage("family prices", FamilySearch.price, FamilySearch.is_priced, 1.0),
+    Stage("family prices", FamilySearch.price, FamilySearch.is_priced_without_limit, 1.0, PRICED_NODES),
+)
+LATER_TURNS: tuple[Stage[FamilySearch], ...] = (
+    Stage("dives", FamilySearch.dive, FamilySearch.may_dive, LATER_SHARE),
+    Stage("annealed families", FamilySearch.anneal_once, FamilySearch.has_dived_in_vain, LATER_SHARE),
+    Stage("family prices", FamilySearch.price, FamilySearch.is_priced_later, 1.0),
+)
+"""Of an attack on a complete graph, without vectors of sizes; the last turn by turn."""
