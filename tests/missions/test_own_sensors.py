@@ -116,7 +116,7 @@ def test_missions_draw_the_noise_that_it_implies() -> None:
     expected = by_noise.noise_covariance(pose, point)
     np.testing.assert_allclose(np.cov(drawn.T), expected, rtol=0.1, atol=0.1 * np.sqrt(np.linalg.det(expected)))
     missions = [run_mission(team(kind(share=0.3)), steps=4) for kind in (Share, Noisy)]
-    np.testing.assert_allclose(missions[0].traces, missions[1].traces, rtol=1e-2)
+    np.testing.assert_allclose(missions[0].traces, missions[1].traces, rtol=1e-9)
 
 
 def test_a_sighting_outside_its_own_reach_counts_as_where_it_points() -> None:

@@ -85,7 +85,8 @@ class RangeBearing(ByValue, SensorModel):
             return super().disturbance(poses, points, luck)
         values, vectors = np.linalg.eigh(self.weights(poses, points))
         scale = np.where(values > SILENT * values[..., -1:], 1 / np.sqrt(np.maximum(values, np.finfo(float).tiny)), 0.0)
-        return np.asarray((vectors @ (scale * luck)[..., None])[..., 0])
+        along = np.swapaxes(vectors, -1, -2) @ luck[..., None]  # the symmetric root: vectors have no sign of their own
+        return np.asarray((vectors @ (scale[..., None] * along))[..., 0])
 
     def pose_jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., 2, 3)."""
