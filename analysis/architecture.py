@@ -34,7 +34,7 @@ HOUSE, ROOM, ARROW, FLOWS = "#1f2937", "#eef2f7", "#64748b", "#0f5f8f"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Room:
-    """One module or package directly under ``ratt_opt``.
+    """One module or package directly under ``ratt_opt``, or ``ratt_audit``.
 
     ``says`` : first sentence of its docstring; ``uses`` : names of the rooms it imports, at any place.
     """
@@ -51,12 +51,10 @@ def rooms(root: Path = ROOT) -> list[Room]:
     contracts = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     layers = next(c for c in contracts["contracts"] if c["type"] == "layers")["layers"]
     parts = [part.strip(" ()") for layer in layers for part in layer.split("|")]
-    names = [part.removeprefix("ratt_opt.") for part in parts]
-    return [_room(root / "ratt_opt", name) for name in names]
+    return [_room(root.joinpath(*part.split(".")), part.removeprefix("ratt_opt.")) for part in parts]
 
 
-def _room(package: Path, name: str) -> Room:
-    folder = package / name
+def _room(folder: Path, name: str) -> Room:
     first = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
     files = sorted(folder.rglob("*.py")) if folder.is_dir() else [first]
     trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in files}
@@ -76,8 +74,12 @@ def _imported(tree: ast.AST) -> Iterator[str]:
         for inner in ast.walk(node)
     }
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node not in skipped and (node.module or "").startswith("ratt_opt."):
-            yield str(node.module).split(".")[1]
+        if isinstance(node, ast.ImportFrom) and node not in skipped:
+            package, *inside = str(node.module).split(".")
+            if package == "ratt_opt" and inside:
+                yield inside[0]
+            elif package == "ratt_audit":
+                yield package
 
 
 def _draw(axes: Axes, layers: Sequence[Room]) -> None:

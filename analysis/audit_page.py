@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from analysis.worst_ratio import theorem1
-from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.report.chains import chain_lines
-from ratt_opt.audit.report.findings import (
+from ratt_audit.report.chains import chain_lines
+from ratt_audit.report.findings import (
     BY_ATTACK,
     BY_READING,
     FAILS,
@@ -25,13 +24,14 @@ from ratt_opt.audit.report.findings import (
     line_outcomes,
     title,
 )
-from ratt_opt.audit.report.pages import finding_lines
-from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
+from ratt_audit.report.pages import finding_lines
+from ratt_opt import caa, worst_case_ratio
+from ratt_opt.worst_ratio.closed_form import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ratt_opt.audit.report.records import LedgerDocument, WorstRecord
+    from ratt_audit.report.records import LedgerDocument, WorstRecord
 
 __all__ = ["CASES", "page", "ratio_table", "realistic_table"]
 

@@ -14,13 +14,13 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ratt_opt import WorstCaseRatio, worst_case_ratio
-from ratt_opt.audit.worst_ratio.best_of import best_of_three
-from ratt_opt.audit.worst_ratio.closed_form import KnownRatio, known_ratio
-from ratt_opt.audit.worst_ratio.coverage_program import coverage_instance
-from ratt_opt.audit.worst_ratio.shared_plan import shared_plan_ratio
-from ratt_opt.audit.worst_ratio.witness import RatioQuestion
 from ratt_opt.bounds.survivors import survivor_share
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
+from ratt_opt.worst_ratio.best_of import best_of_three
+from ratt_opt.worst_ratio.closed_form import KnownRatio, known_ratio
+from ratt_opt.worst_ratio.coverage_program import coverage_instance
+from ratt_opt.worst_ratio.shared_plan import shared_plan_ratio
+from ratt_opt.worst_ratio.witness import RatioQuestion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

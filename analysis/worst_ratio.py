@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt import caa, worst_case_ratio
-from ratt_opt.audit.worst_ratio.closed_form import pattern_free_ratio
 from ratt_opt.report.palette import PLANNERS
+from ratt_opt.worst_ratio.closed_form import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

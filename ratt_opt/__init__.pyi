@@ -90,7 +90,8 @@ from .missions.replay.replay import (
     ReplaySettings as ReplaySettings,
     replay_mrclam as replay_mrclam,
 )
-from .missions.result import Mission as Mission, MissionStep as MissionStep
+from .missions.mission import Mission as Mission
+from .missions.result import MissionStep as MissionStep
 from .missions.run import run_mission as run_mission
 from .missions.live.tracker import Tracker as Tracker
 from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
@@ -179,9 +180,9 @@ from .graph.outcomes import (
 )
 
 # == The audit of the paper's proof
-from .audit.ledger import run_audit as run_audit, Ledger as Ledger
-from .audit.worst_ratio.ratio import worst_case_ratio as worst_case_ratio, WorstCaseRatio as WorstCaseRatio
-from .audit.worst_ratio.witness import RatioWitness as RatioWitness
+from .audit import run_audit as run_audit, Ledger as Ledger
+from .worst_ratio.ratio import worst_case_ratio as worst_case_ratio, WorstCaseRatio as WorstCaseRatio
+from .worst_ratio.witness import RatioWitness as RatioWitness
 
 # == Errors
 from .errors import InputError as InputError, FileFormatError as FileFormatError, ProofError as ProofError

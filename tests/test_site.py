@@ -12,7 +12,7 @@ from urllib.parse import unquote, urlparse
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.audit.appendix.printed import printed_lines
+from ratt_audit.appendix.printed import printed_lines
 from ratt_opt.report.schemas import OUTPUTS
 from tests.documents import ROOT
 

@@ -19,12 +19,12 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
 from ratt_opt import caa, run_audit, worst_case_ratio
-from ratt_opt.audit.worst_ratio.search import skeleton
+from ratt_opt.worst_ratio.search import skeleton
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ratt_opt.audit.worst_ratio.search import Groups, Skeleton
+    from ratt_opt.worst_ratio.search import Groups, Skeleton
 
 CURVATURE = Fraction(1, 2)
 SMALL = ((3, 1, 0), (3, 0, 2), (4, 1, 0), (4, 0, 3))

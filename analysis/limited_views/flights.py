@@ -19,8 +19,8 @@ from ratt_opt.scenario.sensor import Sensor, measure
 if TYPE_CHECKING:
     from analysis.studies.study import Cell, Seeds
     from ratt_opt._validation import BoolArray
+    from ratt_opt.missions.mission import Mission
     from ratt_opt.missions.players.planners import Planner
-    from ratt_opt.missions.result import Mission
     from ratt_opt.scenario.model import Scenario
 
 __all__ = ["ENTRIES", "MAIN", "METRICS", "PLANNERS", "STEPS", "STUDIES", "VARIED", "case_of", "scenario_of", "sighted"]

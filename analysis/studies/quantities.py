@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.audit.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.bounds.guarantees import pattern_free_bound, theorem1_bound
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
+from ratt_opt.worst_ratio.ratio import worst_case_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Callable

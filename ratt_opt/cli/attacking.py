@@ -54,7 +54,7 @@ def attack(
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
     from ratt_opt.attackers.survey import attack_survey
     from ratt_opt.budget import Budget
-    from ratt_opt.main_job.document import attack_document
+    from ratt_opt.report.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan

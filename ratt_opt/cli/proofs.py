@@ -84,7 +84,7 @@ def audit(
 
     An interrupt (Ctrl-C) writes what is decided so far, marked incomplete, and exits with 130.
     """
-    from ratt_opt.audit.ledger import FILES, run_audit
+    from ratt_audit.ledger import FILES, run_audit
     from ratt_opt.report.tables import audit_table
 
     ledger = run_audit(out, quick=quick)

@@ -14,7 +14,7 @@ from ratt_opt.progress import Step
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.missions.result import Mission
+    from ratt_opt.missions.mission import Mission
 
 __all__ = ["track"]
 
@@ -71,10 +71,10 @@ def track(
     An interrupt (Ctrl-C) keeps the steps flown and exits with 130; the same command goes on from there.
     """
     from ratt_opt._files import output_directory
+    from ratt_opt.missions.drawing.write import FILES, write_mission
     from ratt_opt.missions.players.planners import MaxMinPlanner, RefinedPlanner
     from ratt_opt.missions.run import run_mission
     from ratt_opt.missions.world import MissionModel
-    from ratt_opt.report.mission.write import FILES, write_mission
     from ratt_opt.scenario.files import load_scenario
 
     if time_limit is not None and planner not in {"maxmin", "refined"}:

@@ -14,22 +14,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
 from ratt_opt._validation import FloatArray, readonly
 from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.evaluation_error import UNIT, evaluation_error, largest_sizes
+from ratt_opt.setfunctions.evaluation_error import evaluation_error
 from ratt_opt.setfunctions.information import symmetric_inverse
+from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["ChangedProblem", "change_error", "product_error", "sizes_of"]
+
+
+class WithProof(Protocol):
+    """A dataclass with a proof: a result of :func:`ratt_opt.solve_maxmin`."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    @property
+    def proof(self) -> Any:
+        """The proof of its upper end, or ``None``."""
+
+
+Proved = TypeVar("Proved", bound=WithProof)
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -75,14 +88,14 @@ class ChangedProblem(Problem):
         """The same as of any problem, against the exact values of ``whole``."""
         return evaluation_error(self.information_objective, self.choices) + self.change_error
 
-    def lifted(self, result: MaxMinResult) -> MaxMinResult:
+    def lifted(self, result: Proved) -> Proved:
         """A result of this problem with the proof as one of ``whole``: it touches at the same information."""
         if not self.is_changed:
             return result
         proof = result.proof
         return result if proof is None else replace(result, proof=proof.moved(self._lifted))
 
-    def lowered(self, result: MaxMinResult) -> MaxMinResult:
+    def lowered(self, result: Proved) -> Proved:
         """An earlier result of ``whole``, or of a similar problem, as one of this problem: to start from it."""
         proof, shape = result.proof, self.whole.information_objective.prior.shape
         if not self.is_changed or proof is None:

@@ -32,8 +32,8 @@ from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.evaluation_error import UNIT, largest_sizes
 from ratt_opt.setfunctions.information import symmetric_inverse
+from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

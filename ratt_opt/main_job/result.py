@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._files import output_directory
@@ -11,7 +11,8 @@ from ratt_opt.budget import Budget
 from ratt_opt.certificates.certification import CERTIFICATE, NOT_ASKED_FOR, Certification
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.errors import ProofError
-from ratt_opt.main_job.document import plan_document, report_document
+from ratt_opt.findings.bound import AssessedPlan, Findings
+from ratt_opt.report.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.notebook import plan_view, report_view
 from ratt_opt.report.picture import picture_of
@@ -23,18 +24,11 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.task import AttackResult
-    from ratt_opt.bounds.guarantees import Guarantee
-    from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.problem import Problem
-    from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["BoundReport", "PlanAssessment"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class PlanAssessment:
+class PlanAssessment(AssessedPlan):
     """One planner's plan and its worst case; equal to another that says the same.
 
     ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
@@ -44,15 +38,7 @@ class PlanAssessment:
     functions that are no criterion of information matrices.
     """
 
-    name: str
-    elements: IntArray
-    controls: tuple[int, ...]
-    bait: tuple[int, ...]
-    worst_case: AttackResult
-    evaluations: int
-    groups: tuple[frozenset[int], ...]
-    best_group: frozenset[int]
-    posterior: FloatArray | None
+    __slots__ = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The plan as plain data, as ``report.json`` has it."""
@@ -76,8 +62,7 @@ class PlanAssessment:
 SECONDS = 60.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class BoundReport:
+class BoundReport(Findings):
     """What to do now, the worst that can follow, and how far that is from the best possible.
 
     Claims, all in floating point unless a certificate says more: each plan's worst case lies in
@@ -96,97 +81,21 @@ class BoundReport:
     Two reports are equal when they say the same, whenever that was and whatever time it took.
     """
 
-    problem: Problem
-    alpha_cs: int
-    ratt: PlanAssessment
-    baselines: tuple[PlanAssessment, ...]
-    optimum: MaxMinResult
-    best: PlanAssessment
-    curvature: Curvature | None
-    total_curvature: Curvature | None
-    guarantees: Mapping[str, Guarantee]
-    inapplicable: Mapping[str, str]
-    omitted: Mapping[str, str] = field(default_factory=dict)
-    certificate: Certification
-    seconds: Mapping[str, float]
-    created: str = ""
-    source: object = None
-    views: Mapping[str, PlanAssessment] = field(default_factory=dict)
-    seeds: Mapping[str, int] = field(default_factory=dict)
-    interrupted: bool = False
+    __slots__ = ()
 
-    @property
-    def objective(self) -> str:
-        """Name of the criterion, or the class of a set function that has none."""
-        f = self.problem.objective
-        return getattr(f, "name", "") or type(f).__name__
+    if TYPE_CHECKING:  # its plans show themselves, too
+        ratt: PlanAssessment
+        best: PlanAssessment
+        baselines: tuple[PlanAssessment, ...]
+        views: Mapping[str, PlanAssessment]
 
-    @property
-    def unit(self) -> str:
-        """Unit of the objective; empty where none is stated."""
-        return getattr(self.problem.objective, "unit", "")
+        @property
+        def plans(self) -> tuple[PlanAssessment, ...]:
+            """RATT's, the best one found, and the baselines'."""
 
-    @property
-    def n_targets(self) -> int | None:
-        """Number of targets M; ``None`` for set functions that are no criterion of information matrices."""
-        return getattr(self.problem.objective, "n_targets", None)
-
-    @property
-    def n_max(self) -> int:
-        """Size of the largest group that link attacks are taken to leave, ``N - alpha_cs``: on networks a bound."""
-        return self.problem.n_robots - self.alpha_cs
-
-    @property
-    def plans(self) -> tuple[PlanAssessment, ...]:
-        """RATT's, the best one found, and the baselines'."""
-        return (self.ratt, self.best, *self.baselines)
-
-    @property
-    def recommended(self) -> PlanAssessment:
-        """The plan with the best proved worst case; RATT's among equals. ``views`` are of this one."""
-        if "worst" in self.views:
-            return next(plan for plan in self.plans if plan.name == self.views["worst"].name)
-        return max(self.plans, key=lambda plan: plan.worst_case.lower)
-
-    @property
-    def upper(self) -> float:
-        """Proved upper bound on what any plan can keep."""
-        return float(max(self.optimum.upper, *(plan.worst_case.lower for plan in self.plans)))
-
-    def share(self, plan: PlanAssessment) -> float:
-        """What a plan keeps at least, as a share of the best possible; 1 when both are 0."""
-        return float(plan.worst_case.lower) / self.upper if self.upper > 0 else 1.0
-
-    @property
-    def certified_ratio(self) -> float:
-        """RATT's proved worst-case value over the optimum's upper bound; 1 when both are 0."""
-        return self.share(self.ratt)
-
-    @property
-    def guaranteed_share(self) -> float:
-        """The largest share of the optimum that was guaranteed before planning; 0 where nothing was."""
-        return max((float(guarantee) for guarantee in self.guarantees.values()), default=0.0)
-
-    def with_certificate(self, certification: Certification) -> BoundReport:
-        """The report with its certificate: none of its ends goes beyond what that states."""
-        if certification.certificate is None:
-            return replace(self, certificate=certification)
-        stated = certification.certificate.verified
-
-        def supported(plan: PlanAssessment) -> PlanAssessment:
-            """The plan's lower end, no higher than that of the best plan."""
-            worst = plan.worst_case
-            return replace(plan, worst_case=replace(worst, lower=min(worst.lower, stated.lower)))
-
-        return replace(
-            self,
-            certificate=certification,
-            optimum=self.optimum.within(self.problem, stated.lower, stated.upper),
-            ratt=supported(self.ratt),
-            best=supported(self.best),
-            baselines=tuple(map(supported, self.baselines)),
-            views={name: supported(view) for name, view in self.views.items()},
-        )
+        @property
+        def recommended(self) -> PlanAssessment:
+            """The plan with the best proved worst case."""
 
     def to_dict(self) -> dict[str, Any]:
         """The report as plain data, which is what ``report.json`` holds: unknown numbers are ``None``."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -15,9 +15,28 @@ from ratt_opt.setfunctions.information import symmetric_inverse
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ratt_opt.missions.models.targets import TargetMotion
+__all__ = ["Belief", "Innovation", "Motion"]
 
-__all__ = ["Belief"]
+
+class Motion(Protocol):
+    """How states (..., M, d) move over a period; ``time`` is that of the state given [s]."""
+
+    def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
+        """(..., M, d) states one period later, without noise."""
+
+    def transition(self, states: FloatArray, period: float) -> FloatArray:
+        """(..., M, d, d) derivative of :meth:`predict` by the state."""
+
+    def noise(self, period: float) -> FloatArray:
+        """(M, d, d) covariance of the motion noise of one period."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Innovation:
+    """Sum of the normalised innovations squared of a group's measurements, and how many numbers that were."""
+
+    squared: float = 0.0
+    count: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -69,7 +88,7 @@ class Belief(ByValue, Shown):
         error = self.mean - truth
         return np.asarray(np.einsum("mi,mij,mj->m", error, symmetric_inverse(self.covariance), error))
 
-    def predicted(self, motion: TargetMotion, period: float, time: float) -> Belief:
+    def predicted(self, motion: Motion, period: float, time: float) -> Belief:
         """One period later: ``F P F' + Q`` at the mean's motion."""
         step = motion.transition(self.mean, period)
         moved = step @ self.covariance @ np.swapaxes(step, -1, -2)

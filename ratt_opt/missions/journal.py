@@ -19,7 +19,6 @@ from ratt_opt._files import output_file
 from ratt_opt._validation import IntArray, readonly
 from ratt_opt.errors import FileFormatError, InputError
 from ratt_opt.problem import Attack
-from ratt_opt.scenario.own_sensors import own_sensors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -59,7 +58,7 @@ class Journal:
         if path is None:
             return cls(None)
         file = output_file(path)
-        own = {name: [kind, scenario.digest] for name, kind in own_sensors(scenario).items()}
+        own = {name: [kind, scenario.digest] for name, kind in scenario.own_sensors.items()}
         text = json.dumps([scenario.model_dump(mode="json"), dict(settings) | own], sort_keys=True)
         head = {
             "format": FORMAT,

@@ -13,14 +13,11 @@ from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.sensing import Innovation
+    from ratt_opt.missions.belief import Belief, Innovation
     from ratt_opt.problem import Attack
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["GroupTrack", "Mission", "MissionStep"]
+__all__ = ["FlownMission", "GroupTrack", "MissionStep"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -66,7 +63,7 @@ class MissionStep(ByValue):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Mission(ByValue):
+class FlownMission(ByValue):
     """A mission as it went; equal missions are equal to the bit.
 
     ``start`` : the poses (N, 3) it began at; ``settings`` : its arguments by name, for people; ``decisions`` : the
@@ -84,7 +81,7 @@ class Mission(ByValue):
         return hash((self.scenario, self.steps))
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Mission):
+        if not isinstance(other, FlownMission):
             return NotImplemented
         same = self.scenario == other.scenario and self.settings == other.settings
         return same and self.steps == other.steps
@@ -161,24 +158,6 @@ class Mission(ByValue):
             "attacks": [step.attack.to_dict() for step in self.steps],
             "groups": [[sorted(group.robots) for group in step.groups] for step in self.steps],
         }
-
-    def save(self, directory: str | Path) -> list[Path]:
-        """Write ``mission.json``, ``mission.csv``, ``tracks.csv``, figures, the animation and the player.
-
-        InputError : the folder cannot be written.
-        """
-        from ratt_opt.report.mission.write import write_mission
-
-        return write_mission(self, directory)
-
-    def animate(self, path: str | Path) -> Path:
-        """Write the animation: ``.gif``, ``.html`` for a player that needs nothing else, ``.mcap`` for log viewers.
-
-        InputError : another ending, a library that is not installed, or the file cannot be written.
-        """
-        from ratt_opt.report.mission.write import write_animation
-
-        return write_animation(self, path)
 
 
 def _chi_square(probability: float, freedom: FloatArray | int) -> FloatArray:

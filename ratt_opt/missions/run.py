@@ -17,11 +17,12 @@ from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.missions.journal import Journal
 from ratt_opt.missions.memory import Memory, Pieces
+from ratt_opt.missions.mission import Mission
 from ratt_opt.missions.planning import plan_team
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
 from ratt_opt.missions.players.attackers import attack_of, attacker_called
 from ratt_opt.missions.players.planners import elements_of, planner_called
-from ratt_opt.missions.result import GroupTrack, Mission, MissionStep
+from ratt_opt.missions.result import GroupTrack, MissionStep
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.problem import Attack
@@ -30,10 +31,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    from ratt_opt.missions.belief import Innovation
     from ratt_opt.missions.planning import TeamPlan
     from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
     from ratt_opt.missions.players.planners import Planner
-    from ratt_opt.missions.sensing import Innovation, Reading
+    from ratt_opt.missions.sensing import Reading
     from ratt_opt.missions.world import Threatened
     from ratt_opt.scenario.model import Scenario
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.missions.belief import Innovation
 from ratt_opt.missions.memory import Pieces
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.models.sensor_model import SensorModel
     from ratt_opt.missions.world import World
 
-__all__ = ["Innovation", "Reading", "group_pieces", "simulated_readings"]
+__all__ = ["Reading", "group_pieces", "simulated_readings"]
 
 ROUNDS = 4
 """Linearisations of an iterated update; on the paper's settings the estimate no longer moves visibly after three."""
@@ -31,14 +32,6 @@ class Reading:
 
     values: FloatArray
     seen: BoolArray
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Innovation:
-    """Sum of the normalised innovations squared of a group's measurements, and how many numbers that were."""
-
-    squared: float = 0.0
-    count: int = 0
 
 
 def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck: FloatArray) -> list[Reading]:

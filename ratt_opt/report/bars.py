@@ -11,7 +11,7 @@ from ratt_opt.report.tables import share_text
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ratt_opt.main_job.result import BoundReport
+    from ratt_opt.findings.bound import Findings
 
 __all__ = ["bar_ends", "draw_bars"]
 
@@ -25,7 +25,7 @@ NOTHING = 1e-9
 """Less than this share of the bound is rounding: no whisker shows it, and it must not fill the axis."""
 
 
-def bar_ends(report: BoundReport) -> tuple[bool, list[tuple[float, float]], float]:
+def bar_ends(report: Findings) -> tuple[bool, list[tuple[float, float]], float]:
     """Return whether bars show what is missing to the bound, the ends of each planner's bar, and the full length."""
     ends = [(plan.worst_case.lower, plan.worst_case.upper) for plan in report.plans]
     missing = min(low for low, _ in ends) >= CLOSE * report.upper > 0
@@ -35,7 +35,7 @@ def bar_ends(report: BoundReport) -> tuple[bool, list[tuple[float, float]], floa
     return missing, ends, longest if longest > NOTHING * report.upper else max(report.upper, 1.0)
 
 
-def draw_bars(axes: Axes, report: BoundReport) -> None:
+def draw_bars(axes: Axes, report: Findings) -> None:
     """Draw one bar a planner and its number: what it surely keeps, or, where all keep much, what it surely misses.
 
     A whisker spans what is not decided of it, so a search that ran out of time shows a whisker, never a value.

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ratt_opt.main_job.result import BoundReport
+    from ratt_opt.findings.bound import Findings
     from ratt_opt.report.picture import Picture
 
 __all__ = ["plan_figure", "save_figure"]
 
 
-def plan_figure(report: BoundReport, picture: Picture) -> Figure:
+def plan_figure(report: Findings, picture: Picture) -> Figure:
     """Return the figure: the map beside the bars."""
     plan = report.recommended
     attack = plan.worst_case.attack

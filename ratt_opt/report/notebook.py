@@ -15,7 +15,7 @@ from ratt_opt.report.tables import share_text
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+    from ratt_opt.findings.bound import AssessedPlan, Findings
 
 __all__ = ["html_table", "plan_view", "report_view"]
 
@@ -27,7 +27,7 @@ def html_table(caption: str, columns: Iterable[str], rows: Iterable[Iterable[obj
     return f"<table><caption>{escape(caption)}</caption><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def plan_view(plan: PlanAssessment) -> str:
+def plan_view(plan: AssessedPlan) -> str:
     """Return one plan as a table: what each robot does, and what is left of it."""
     attack = plan.worst_case.attack
     rows = [
@@ -40,7 +40,7 @@ def plan_view(plan: PlanAssessment) -> str:
     return html_table(title, ("robot", "element", "bait", "under attack"), rows)
 
 
-def report_view(report: BoundReport) -> str:
+def report_view(report: Findings) -> str:
     """Return the planners' table and the figure, which needs no file beside it."""
     rows = [
         (

@@ -11,7 +11,7 @@ from ratt_opt.report.description import View, describe
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
-    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+    from ratt_opt.findings.bound import AssessedPlan, Findings
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.report.description import Description
 
@@ -74,7 +74,7 @@ class Picture:
         return frozenset(np.flatnonzero(~self.watched[sorted(self.seeing)].any(axis=0)).tolist())
 
 
-def picture_of(source: object, report: BoundReport, view: PlanAssessment | None = None) -> Picture:
+def picture_of(source: object, report: Findings, view: AssessedPlan | None = None) -> Picture:
     """Put together what :func:`draw_map` draws; ``view``: one of the report's views, by default the worst."""
     plan = report.recommended if view is None else view
     problem, known = report.problem, describe(report.problem, source)
@@ -108,12 +108,12 @@ def _views(known: Description) -> tuple[View, ...] | None:
     return known.views if limited else None
 
 
-def _watched(problem: Problem, plan: PlanAssessment) -> BoolArray | None:
+def _watched(problem: Problem, plan: AssessedPlan) -> BoolArray | None:
     told = np.asarray(problem.information_objective.information[plan.elements].any(axis=(2, 3)))
     return None if told.all() else told
 
 
-def _places(report: BoundReport, plan: PlanAssessment, known: Description) -> FloatArray:
+def _places(report: Findings, plan: AssessedPlan, known: Description) -> FloatArray:
     """(N, 2) where to draw the robots: after their controls, now, or by a layout of the graph."""
     if known.poses_after is not None:
         return known.poses_after[plan.elements][:, :2]

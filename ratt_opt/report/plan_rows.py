@@ -9,14 +9,14 @@ from ratt_opt.report.description import describe
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.main_job.result import BoundReport
+    from ratt_opt.findings.bound import Findings
 
 __all__ = ["PLAN_COLUMNS", "plan_rows"]
 
 PLAN_COLUMNS = ("robot", "name", "element", "control", "x", "y", "heading", "bait", "under attack", "group")
 
 
-def plan_rows(report: BoundReport) -> Iterator[tuple[object, ...]]:
+def plan_rows(report: Findings) -> Iterator[tuple[object, ...]]:
     """Yield one row of ``PLAN_COLUMNS`` a robot: the recommended plan, and its role under the worst attack.
 
     Positions [m] and headings [rad] are those after the control; empty where the source does not tell.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.certificates.certification import Certification
-    from ratt_opt.main_job.result import BoundReport
+    from ratt_opt.findings.bound import Findings
     from ratt_opt.problem import Attack
 
 __all__ = [
@@ -38,7 +38,7 @@ LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
 
-def report_tables(report: BoundReport) -> Iterable[RenderableType]:
+def report_tables(report: Findings) -> Iterable[RenderableType]:
     """Yield the tables of a bound report: planners, plan, bracket, guarantees."""
     yield _planners(report)
     yield _plan(report)
@@ -143,7 +143,7 @@ def _best_links(found: Mapping[str, BestLinks]) -> Table:
     return table
 
 
-def _planners(report: BoundReport) -> Table:
+def _planners(report: Findings) -> Table:
     table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(plan.worst_case.lower, report.upper)
@@ -153,12 +153,12 @@ def _planners(report: BoundReport) -> Table:
     return table
 
 
-def omitted_texts(report: BoundReport) -> list[str]:
+def omitted_texts(report: Findings) -> list[str]:
     """What was left out, and why, one by one."""
     return [f"left out: {name} ({why})" for name, why in report.omitted.items()]
 
 
-def _plan(report: BoundReport) -> Table:
+def _plan(report: Findings) -> Table:
     plan, known = report.recommended, describe(report.problem, report.source)
     table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
     home = {i: k for k, group in enumerate(plan.groups) for i in group}
@@ -171,7 +171,7 @@ def _plan(report: BoundReport) -> Table:
     return table
 
 
-def _bracket(report: BoundReport) -> Table:
+def _bracket(report: Findings) -> Table:
     table = _table("how good that is", "quantity", "value")
     optimum, problem = report.optimum, report.problem
     table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
@@ -201,7 +201,7 @@ def verdict_text(given: Certification) -> str:
     return f"verified, upper end proved in {found.arithmetic}, lower end searched in floating point: {bracket}"
 
 
-def _guarantees(report: BoundReport) -> Table:
+def _guarantees(report: Findings) -> Table:
     table = _table("what was guaranteed before planning", "guarantee", "value", "needs", "proved at")
     best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
@@ -216,7 +216,7 @@ def _guarantees(report: BoundReport) -> Table:
     return table
 
 
-def guarantee_text(report: BoundReport) -> str:
+def guarantee_text(report: Findings) -> str:
     """What the strongest guarantee says where that is all or nothing, else nothing."""
     best = report.guaranteed_share
     if best == 1:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 from ratt_opt._files import output_directory, write_atomically, write_json, write_together
 from ratt_opt.certificates.certification import CERTIFICATE
 from ratt_opt.report.csv_file import write_csv
+from ratt_opt.report.document import report_document
 from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.page.page import report_page
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 
 if TYPE_CHECKING:
-    from ratt_opt.main_job.result import BoundReport
+    from ratt_opt.findings.bound import Findings
 
 __all__ = ["FIGURES", "FILES", "write_figures", "write_numbers", "write_report", "write_verdict"]
 
@@ -24,7 +25,7 @@ FILES = (*NUMBERS, *FIGURES)
 """All that :func:`write_report` writes beside the certificate."""
 
 
-def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
+def write_report(report: Findings, folder: str | Path) -> list[Path]:
     """Write ``report.json``, ``report.html``, ``plan.csv``, ``plan.png``, ``plan.svg`` and return the files.
 
     The certificate, where there is one, is copied beside them. Drawing takes a second or two; an interrupt, or a fault,
@@ -45,28 +46,28 @@ def write_report(report: BoundReport, folder: str | Path) -> list[Path]:
     return files
 
 
-def write_numbers(report: BoundReport, folder: str | Path) -> list[Path]:
+def write_numbers(report: Findings, folder: str | Path) -> list[Path]:
     """Write all but the figures, and remove those of an earlier report: milliseconds."""
     page = report_page(report)
     writers = (
-        lambda file: write_json(file, report.to_dict()),
+        lambda file: write_json(file, report_document(report)),
         lambda file: file.write_text(page, encoding="utf-8"),
         lambda file: write_csv(file, PLAN_COLUMNS, plan_rows(report)),
     )
     return write_together(output_directory(folder), dict(zip(NUMBERS, writers, strict=True)), outdated=FIGURES)
 
 
-def write_figures(report: BoundReport, folder: str | Path) -> list[Path]:
+def write_figures(report: Findings, folder: str | Path) -> list[Path]:
     """Draw the figures of a report whose numbers are there: a second or two, most of them to load what draws."""
     figure = plan_figure(report, picture_of(report.source, report))
     return write_together(Path(folder), dict.fromkeys(FIGURES, lambda file: save_figure(figure, file)))
 
 
-def write_verdict(report: BoundReport, folder: Path) -> None:
+def write_verdict(report: Findings, folder: Path) -> None:
     """Write again what shows the certificate's verdict: ``report.json`` and ``report.html``."""
     page = report_page(report)
     writers = (
-        lambda file: write_json(file, report.to_dict()),
+        lambda file: write_json(file, report_document(report)),
         lambda file: file.write_text(page, encoding="utf-8"),
     )
     write_together(folder, dict(zip(NUMBERS[: len(writers)], writers, strict=True)))

@@ -18,7 +18,6 @@ from ratt_opt._files import write_json
 from ratt_opt.errors import FileFormatError, InputError
 from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.model import Scenario
-from ratt_opt.scenario.own_sensors import own_sensors
 
 if TYPE_CHECKING:
     from ratt_opt.scenario.record import Record
@@ -80,7 +79,7 @@ def save_scenario(scenario: Scenario | InformationInput, path: str | Path) -> No
         ``scenario.to_information()`` can be saved then.
     """
     if isinstance(scenario, Scenario):
-        for field, kind in own_sensors(scenario).items():
+        for field, kind in scenario.own_sensors.items():
             rule = (
                 "must be the library's Sensor to be saved in a scenario file (save scenario.to_information() instead)"
             )

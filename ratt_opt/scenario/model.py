@@ -13,7 +13,7 @@ from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.motion import move_robots, predict_targets
-from ratt_opt.scenario.own_sensors import own_sensors
+from ratt_opt.scenario.own_sensors import replaced_methods
 from ratt_opt.scenario.problem_record import Link, ProblemRecord, near_pairs
 from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
@@ -182,9 +182,17 @@ class Scenario(ProblemRecord):
         return tuple(f"{speed:g} m/s, {turn:.4g} rad/s" for speed, turn in self.controls)
 
     @property
+    def own_sensors(self) -> dict[str, str]:
+        """Fields that hold a sensor with behaviour of its own, and in words which."""
+        fields = {"sensor": self.sensor}
+        fields |= {f"robots[{i}].sensor": own for i, robot in enumerate(self.robots) if (own := robot.sensor)}
+        found = {name: (type(sensor).__name__, replaced_methods(sensor)) for name, sensor in fields.items()}
+        return {name: f"{kind} with its own {', '.join(own)}" for name, (kind, own) in found.items() if own}
+
+    @property
     def storable(self) -> Scenario | InformationInput:
         """This scenario, or its matrices if a sensor has behaviour that no scenario file can name."""
-        return self.to_information() if own_sensors(self) else self
+        return self.to_information() if self.own_sensors else self
 
     def to_information(self) -> InformationInput:
         """The same one-step problem as matrices: what a sensor class of your own tells goes into a file this way."""

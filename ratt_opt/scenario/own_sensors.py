@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from inspect import isfunction
-from typing import TYPE_CHECKING
 
 from ratt_opt.scenario.sensor import Sensor
 
-if TYPE_CHECKING:
-    from ratt_opt.scenario.model import Scenario
-
-__all__ = ["own_sensors", "replaced_methods", "tells_itself"]
+__all__ = ["replaced_methods", "tells_itself"]
 
 
 def replaced_methods(sensor: Sensor) -> tuple[str, ...]:
@@ -22,11 +18,3 @@ def replaced_methods(sensor: Sensor) -> tuple[str, ...]:
 def tells_itself(sensor: Sensor) -> bool:
     """Whether the sensor states its information itself, whatever its noise fields say."""
     return "information" in replaced_methods(sensor)
-
-
-def own_sensors(scenario: Scenario) -> dict[str, str]:
-    """Fields of a scenario that hold a sensor with behaviour of its own, and in words which."""
-    fields = {"sensor": scenario.sensor}
-    fields |= {f"robots[{i}].sensor": own for i, robot in enumerate(scenario.robots) if (own := robot.sensor)}
-    found = {name: (type(sensor).__name__, replaced_methods(sensor)) for name, sensor in fields.items()}
-    return {name: f"{kind} with its own {', '.join(own)}" for name, (kind, own) in found.items() if own}

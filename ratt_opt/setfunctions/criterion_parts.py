@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
+    from ratt_opt.setfunctions.planar_levels import PlanarLevels
 
 __all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent"]
 

@@ -20,9 +20,11 @@ large, coordinates in which the prior is the identity have a smaller one: see ``
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from ratt_opt.setfunctions.rounding_errors import MORE, UNIT, largest_sizes, most_of_plans
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,12 +32,8 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["UNIT", "evaluation_error", "inverse_error", "largest_sizes"]
+__all__ = ["evaluation_error"]
 
-UNIT = float(np.finfo(np.float64).eps) / 2
-"""Unit roundoff of float64."""
-MORE = 1 + 1e-12
-"""Factor on bounds for their own rounding."""
 FEW_COORDINATES = {1: 1.0, 2: 1.0}
 """``growth`` of the closed formulas: ``det L = ac - b^2`` is off by at most ``2 u ac + u det L``, and ``ac / det L`` is
 at most ``(k + 3) / 4`` for a matrix of condition ``k``."""
@@ -58,7 +56,7 @@ def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray
     lowest = SIGN * sizes * prior
     if lowest.max() > SIGN * 1e6:  # information may be negative by rounding: then more is left than the prior
         lowest = np.maximum(0.0, -np.linalg.eigvalsh(objective.information)[..., 0])
-        lowest = _most_of_plans(lowest, choices) * prior + UNIT * dimension * sizes * prior
+        lowest = most_of_plans(lowest, choices) * prior + UNIT * dimension * sizes * prior
     largest = prior / np.maximum(1 - lowest, 0.0)
     formula = UNIT * _growth(objective)
     before = _share(prior * (objective.inverse_error + formula * inverse))
@@ -102,42 +100,3 @@ def _growth(objective: InformationObjective) -> float:
     k = np.arange(1, dimension + 1)
     entries = np.sqrt(((2 * (dimension - k) + 1) * (2.0**k - 1) ** 2).sum())  # |L||U|, of factors L and U
     return float(3 * dimension * entries) + 2 * dimension
-
-
-def largest_sizes(information: FloatArray, choices: Sequence[IntArray]) -> FloatArray:
-    """(M,) the largest sums of the sizes of a plan's elements, of (E, M, d, d) ``information``."""
-    return _most_of_plans(np.linalg.norm(information, axis=(-2, -1)) * MORE, choices)
-
-
-def _most_of_plans(sizes: FloatArray, choices: Sequence[IntArray]) -> FloatArray:
-    return np.asarray(np.sum([sizes[choice].max(axis=0) for choice in choices], axis=0))
-
-
-def inverse_error(matrices: FloatArray, inverses: FloatArray) -> FloatArray:
-    """(M,) bounds of ``|Y - A^{-1}|`` for (M, d, d) matrices ``A`` and computed inverses ``Y``.
-
-    With ``R = 1 - A Y``, ``Y - A^{-1} = -Y R (1 - R)^{-1}``; ``Y R`` is computed in integers, hence exactly.
-    """
-    (a, of_a), (y, of_y) = _integers(matrices), _integers(inverses)
-    one = np.eye(a.shape[-1], dtype=np.int64).astype(object) << -(of_a + of_y)  # A Y is about 1, of many more digits
-    rest = one - a @ y
-    size = _norms(rest, of_a + of_y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(size < 1, _norms(y @ rest, of_a + 2 * of_y) * MORE / (1 - size), np.inf)
-
-
-def _integers(matrices: FloatArray) -> tuple[Any, int]:
-    """The matrices as integers times a power of two, exactly: an object array and the exponent."""
-    digits, exponents = np.frexp(matrices)
-    exponents = np.where(matrices == 0, exponents.max(), exponents)
-    lowest = int(exponents.min())
-    shifts = (exponents - lowest).astype(object)
-    return (digits * 2.0**53).astype(np.int64).astype(object) << shifts, lowest - 53
-
-
-def _norms(integers: Any, exponent: int) -> FloatArray:
-    """Frobenius' norms of integer matrices times a power of two, rounded up."""
-    largest = max(abs(x) for x in integers.ravel())
-    excess = max(0, largest.bit_length() - 64)
-    mantissas = (np.abs(integers) >> excess).astype(np.float64) + (1.0 if excess else 0.0)
-    return np.asarray(np.linalg.norm(np.ldexp(mantissas, excess + exponent), axis=(-2, -1)) * MORE)

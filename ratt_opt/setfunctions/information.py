@@ -17,7 +17,7 @@ import numpy as np
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
-from ratt_opt.setfunctions.evaluation_error import inverse_error
+from ratt_opt.setfunctions.rounding_errors import inverse_error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

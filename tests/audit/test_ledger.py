@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ratt_opt.audit import ledger as ledger_module
-from ratt_opt.audit.appendix.entry import ClaimEntry, Entry
-from ratt_opt.audit.appendix.misprints import MISPRINTS
-from ratt_opt.audit.ledger import all_entries, decide_entry, run_audit
-from ratt_opt.audit.report.pages import html_report, markdown_report
+from ratt_audit import ledger as ledger_module
+from ratt_audit.appendix.entry import ClaimEntry, Entry
+from ratt_audit.appendix.misprints import MISPRINTS
+from ratt_audit.ledger import all_entries, decide_entry, run_audit
+from ratt_audit.report.pages import html_report, markdown_report
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
 

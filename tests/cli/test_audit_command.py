@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from ratt_opt.audit import ledger
-from ratt_opt.audit.ledger import all_entries
+from ratt_audit import ledger
+from ratt_audit.ledger import all_entries
 from ratt_opt.cli import run
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
+from ratt_audit import ledger
+from ratt_audit.ledger import all_entries
 from ratt_opt import Problem, TableFunction, bound
-from ratt_opt.audit import ledger
-from ratt_opt.audit.ledger import all_entries
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.cli import run
 from ratt_opt.cli.exit_codes import FAULT, UPPER_ONLY

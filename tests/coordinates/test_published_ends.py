@@ -10,7 +10,7 @@ from flint import ctx
 
 import ratt_opt as ro
 from ratt_opt.coordinates.unit_prior import with_unit_prior
-from ratt_opt.setfunctions.evaluation_error import inverse_error
+from ratt_opt.setfunctions.rounding_errors import inverse_error
 from tests.exact_values import DIGITS, ExactValues, holds, matrix, rational
 from tests.strategies import OBJECTIVES
 

@@ -7,8 +7,8 @@ from itertools import combinations_with_replacement
 import pytest
 
 from analysis.caa_conjecture import SETTINGS
+from ratt_audit.enumeration.setting import splits
 from ratt_opt import caa
-from ratt_opt.audit.enumeration.setting import splits
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 
 

@@ -13,8 +13,8 @@ import pytest
 from ratt_opt import InputError, random_scenario, run_mission, save_scenario, solve_maxmin
 from ratt_opt.budget import Budget
 from ratt_opt.cli import run
+from ratt_opt.missions.drawing.frames import SIGMAS, frames_of
 from ratt_opt.missions.players import planners
-from ratt_opt.report.mission.frames import SIGMAS, frames_of
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,6 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
-from ratt_opt.scenario.own_sensors import own_sensors
 
 
 class Nothing(Sensor):
@@ -193,6 +192,6 @@ def test_fields_of_a_subclass_without_behaviour_are_no_sensor_of_ones_own(tmp_pa
         maker: str = "unknown"
 
     scenario = team(Labelled(maker="us"))
-    assert own_sensors(scenario) == {}
+    assert scenario.own_sensors == {}
     save_scenario(scenario, tmp_path / "team.json")
     assert np.array_equal(load_scenario(tmp_path / "team.json").information, scenario.information)

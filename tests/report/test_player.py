@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.report.mission.frames import MOST_LINKS, frames_of
+from ratt_opt.missions.drawing.frames import MOST_LINKS, frames_of
 from tests.report.browser import opened
 
 

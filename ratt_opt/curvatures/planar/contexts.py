@@ -1,6 +1,6 @@
 """What the contexts of one element consist of, the levels and marginals they lead to, and descent to an extreme one.
 
-Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.criteria.planar_levels.PlanarLevels`.
+Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.planar_levels.PlanarLevels`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
+    from ratt_opt.setfunctions.planar_levels import PlanarLevels
 
 __all__ = ["Options", "PlanarDescent", "along", "levels", "marginals"]
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+    from ratt_opt.findings.bound import AssessedPlan, Findings
     from ratt_opt.report.picture import Picture
 
 __all__ = ["legend_html", "map_svg"]
@@ -26,7 +26,7 @@ MOST_LINKS = 400
 """More links of groups than this are not drawn: they would be one blot, and make the page large. Cut ones are."""
 
 
-def map_svg(picture: Picture, report: BoundReport, view: PlanAssessment) -> str:
+def map_svg(picture: Picture, report: Findings, view: AssessedPlan) -> str:
     """Return one drawing; lengths are in proportion, north is up."""
     place = _frame(picture)
     at = [place(x) for x in picture.places]
@@ -178,9 +178,7 @@ def _ellipse(x: float, y: float, covariance: FloatArray, scale: float, kind: str
     return f'<ellipse rx="{rx:.1f}" ry="{ry:.1f}" {where} class="{kind}"/>'
 
 
-def _robots(
-    picture: Picture, at: list[tuple[float, float]], report: BoundReport, view: PlanAssessment
-) -> Iterator[str]:
+def _robots(picture: Picture, at: list[tuple[float, float]], report: Findings, view: AssessedPlan) -> Iterator[str]:
     known = describe(report.problem, report.source)
     for i, (x, y) in enumerate(at):
         hit, best = i in picture.attack.sensing, i in picture.best

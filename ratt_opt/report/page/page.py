@@ -20,7 +20,7 @@ from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, ve
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.main_job.result import BoundReport, PlanAssessment
+    from ratt_opt.findings.bound import AssessedPlan, Findings
 
 __all__ = ["report_page"]
 
@@ -32,7 +32,7 @@ VIEW_TITLES = {
 }
 
 
-def report_page(report: BoundReport) -> str:
+def report_page(report: Findings) -> str:
     """Return the whole page as HTML."""
     folder = resources.files("ratt_opt.report.page")
     style, script = ((folder / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
@@ -49,7 +49,7 @@ def report_page(report: BoundReport) -> str:
     )
 
 
-def _sections(report: BoundReport) -> Iterator[str]:
+def _sections(report: Findings) -> Iterator[str]:
     plan = report.recommended
     unit = f" {report.unit}" if report.unit else ""
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
@@ -69,7 +69,7 @@ def _sections(report: BoundReport) -> Iterator[str]:
     yield f"<footer>ratt-opt, {escape(report.created)}. Every number in full precision: report.json.</footer>"
 
 
-def _map_section(report: BoundReport) -> Iterator[str]:
+def _map_section(report: Findings) -> Iterator[str]:
     """The map once for each attack, of which one is shown; on paper the worst."""
     yield '<section aria-labelledby="map-h"><h2 id="map-h">Map</h2><fieldset><legend>Show the team under</legend>'
     for k, name in enumerate(report.views):
@@ -91,7 +91,7 @@ def _map_section(report: BoundReport) -> Iterator[str]:
     yield "Point at a robot or target, or tab to it.</p></section>"
 
 
-def _caption(name: str, view: PlanAssessment, report: BoundReport) -> str:
+def _caption(name: str, view: AssessedPlan, report: Findings) -> str:
     attack, known = view.worst_case.attack, describe(report.problem, report.source)
     blinded = ", ".join(known.robot(i) for i in sorted(attack.sensing)) or "none"
     cut = " ".join(f"{i}-{j}" for i, j in sorted(attack.links)) or "none"
@@ -99,7 +99,7 @@ def _caption(name: str, view: PlanAssessment, report: BoundReport) -> str:
     return f"{VIEW_TITLES[name]}: {left}; blinded robots: {blinded}; cut links: {cut}"
 
 
-def _planner_section(report: BoundReport) -> Iterator[str]:
+def _planner_section(report: Findings) -> Iterator[str]:
     """A bar a planner: filled as far as it is sure, half-tone as far as it is not decided."""
     missing, brackets, longest = bar_ends(report)
     what = "shortfall from the best possible" if missing else "kept"
@@ -125,7 +125,7 @@ def _planner_section(report: BoundReport) -> Iterator[str]:
     yield "</section>"
 
 
-def _trust_section(report: BoundReport) -> Iterator[str]:
+def _trust_section(report: Findings) -> Iterator[str]:
     yield '<section aria-labelledby="trust"><h2 id="trust">How far to trust that</h2>'
     yield f"<p>Certificate: {escape(verdict_text(report.certificate))}."
     if report.certificate.certificate is not None:
@@ -144,7 +144,7 @@ def _trust_section(report: BoundReport) -> Iterator[str]:
     yield "</section>"
 
 
-def _plan_section(report: BoundReport) -> Iterator[str]:
+def _plan_section(report: Findings) -> Iterator[str]:
     rows = [[f"{x:.4g}" if isinstance(x, float) else x for x in row] for row in plan_rows(report)]
     yield '<section aria-labelledby="plan"><h2 id="plan">The plan</h2><div class="wide">'
     yield html_table("Positions are those after the control", PLAN_COLUMNS, rows)

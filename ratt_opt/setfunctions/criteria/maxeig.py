@@ -19,11 +19,11 @@ import numpy as np
 
 from ratt_opt.setfunctions.criteria.maxeig_marginals import MARGIN, marginal_ends
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
-from ratt_opt.setfunctions.criteria.planar_levels import PlanarLevels
 from ratt_opt.setfunctions.criteria.two_by_two import eigenvalues as eigenvalues_of
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
 from ratt_opt.setfunctions.criterion_parts import Tangent
 from ratt_opt.setfunctions.information import symmetric_inverse
+from ratt_opt.setfunctions.planar_levels import PlanarLevels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,7 +162,9 @@ class MaxEigenvalueObjective(StateCriterion):
 
     def planar_levels(self) -> PlanarLevels | None:
         """The data as levels, for targets with at most two coordinates."""
-        return PlanarLevels.of(self) if self.dimension <= 2 else None
+        if self.dimension > 2:
+            return None
+        return PlanarLevels.of(self.prior_information, self.information, self.weights)
 
 
 class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):

@@ -27,7 +27,7 @@ for ``a``. As ``L_j >= P0^{-1}``, ``v'X_j v`` is at most ``q v'L_j v`` with ``q`
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -36,7 +36,6 @@ from ratt_opt.highs import LinearProgram, rows_of
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 
 __all__ = ["MARGIN", "marginal_ends"]
 
@@ -49,7 +48,34 @@ MARGIN = 1e-9
 """Relative safety margin for rounding."""
 
 
-def marginal_ends(f: MaxEigenvalueObjective, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:
+class Levels(Protocol):
+    """What is asked of a criterion whose value is one over its lowest level (``maxeig.py``)."""
+
+    @property
+    def n(self) -> int:
+        """Number of elements."""
+
+    weights: FloatArray
+    information: FloatArray
+    prior_information: FloatArray
+
+    def criterion(self, posterior_information: FloatArray) -> FloatArray:
+        """(..., M) of (..., M, d, d)."""
+
+    def singletons(self) -> FloatArray:
+        """(n,) values of each element alone."""
+
+    def weakest_axes(self, matrices: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Level and axis of each matrix."""
+
+    def least_levels(self) -> FloatArray:
+        """(n, M) levels of each element's information, from below."""
+
+    def largest_alone(self) -> FloatArray:
+        """(n, M) no marginal of an element exceeds this where target ``j`` is the worst before it is added."""
+
+
+def marginal_ends(f: Levels, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:
     """(n,) bounds below the smallest and above the largest marginals, over sets with at most one element an owner."""
     tau = _tau(f, owners, budget) * (1 + MARGIN)
     before = f.criterion(f.prior_information)
@@ -62,7 +88,7 @@ def marginal_ends(f: MaxEigenvalueObjective, owners: IntArray, budget: Budget) -
     return floor, np.maximum(ceiling, f.singletons())
 
 
-def _tau(f: MaxEigenvalueObjective, owners: IntArray, budget: Budget) -> FloatArray:
+def _tau(f: Levels, owners: IntArray, budget: Budget) -> FloatArray:
     """(n,) upper bounds, for each ``x``, on the largest ``min_i l(L_i) / w_i`` of sets with ``x``, one an owner."""
     groups = [np.flatnonzero(owners == i) for i in np.unique(owners)]
     scores, constants, multipliers = _cuts(f, groups, budget)
@@ -75,9 +101,7 @@ def _tau(f: MaxEigenvalueObjective, owners: IntArray, budget: Budget) -> FloatAr
     return np.asarray(total - best + combined)
 
 
-def _cuts(
-    f: MaxEigenvalueObjective, groups: list[IntArray], budget: Budget
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _cuts(f: Levels, groups: list[IntArray], budget: Budget) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Cuts ``constant + scores[e] + ...`` above the levels, and weights that make them strong."""
     n = f.n
     one_each = rows_of([(own.tolist(), [1.0] * len(own)) for own in groups], 1.0, 1.0)

@@ -16,7 +16,7 @@ from ratt_opt.solvers.maxmin.task import with_choice
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.frontier import Frontier
     from ratt_opt.solvers.maxmin.proof import Split, TreeNode
-    from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
+    from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
 
 __all__ = ["Backjumps"]
 

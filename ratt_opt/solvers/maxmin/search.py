@@ -23,7 +23,8 @@ from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
 from ratt_opt.solvers.maxmin.plans.kicks import Kicks
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
-from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds, CutStore
+from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
+from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
 from ratt_opt.stopping import Stop
 

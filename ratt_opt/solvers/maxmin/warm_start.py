@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
     from ratt_opt.solvers.maxmin.proof import TangentCut, UpperProof
-    from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
+    from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
 
 __all__ = ["WarmStart"]
 

@@ -9,9 +9,9 @@ from xml.etree import ElementTree
 import pytest
 from latex2mathml.converter import convert
 
-from ratt_opt.audit.appendix.entry import EntryKind
-from ratt_opt.audit.appendix.printed import Formula, printed_line
-from ratt_opt.audit.ledger import all_entries
+from ratt_audit.appendix.entry import EntryKind
+from ratt_audit.appendix.printed import Formula, printed_line
+from ratt_audit.ledger import all_entries
 
 PAPER = Path(__file__).resolve().parents[4] / "shared" / "paper" / "ratt.tex"
 LINES = sorted({entry.label for entry in all_entries() if entry.kind is EntryKind.STEP})

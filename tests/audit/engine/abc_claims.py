@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ratt_opt.audit.engine.claim import Claim, FunctionClass, Ground, Inequality, Linear
+from ratt_audit.engine.claim import Claim, Ground, Inequality, Linear
+from ratt_opt.worst_ratio.function_class import FunctionClass
 
 ABC = Ground(("a", "b", "c"), (0, 1, 2))
 ANY, ND, SUB = FunctionClass.NON_DECREASING, FunctionClass.TOTAL_CURVATURE, FunctionClass.CURVATURE

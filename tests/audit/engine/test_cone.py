@@ -7,9 +7,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ratt_opt.audit.engine.claim import FunctionClass, elementary, elementary_keys
-from ratt_opt.audit.engine.evidence import check_class
+from ratt_audit.engine.claim import elementary, elementary_keys
 from ratt_opt.errors import ProofError
+from ratt_opt.worst_ratio.function_class import FunctionClass, check_class
 from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB
 
 

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import pytest
 
-from ratt_opt.audit.engine.claim import Inequality
-from ratt_opt.audit.engine.decide import Decision, decide
-from ratt_opt.audit.engine.evidence import check_witness
+from ratt_audit.engine.claim import Inequality
+from ratt_audit.engine.decide import Decision, decide
+from ratt_audit.engine.evidence import check_witness
 from ratt_opt.errors import ProofError
 from tests.audit.engine.abc_claims import ND, claim, f
 

@@ -8,14 +8,15 @@ from fractions import Fraction
 
 import pytest
 
-from ratt_opt.audit.appendix.roles import Team
-from ratt_opt.audit.engine.claim import Claim, FunctionClass, Inequality, Linear
-from ratt_opt.audit.engine.decide import Verdict, decide
-from ratt_opt.audit.engine.evidence import check_proof
-from ratt_opt.audit.engine.prover import find_proof
-from ratt_opt.audit.engine.rationals import ONE, T, constant
-from ratt_opt.audit.engine.refuter import find_witness
+from ratt_audit.appendix.roles import Team
+from ratt_audit.engine.claim import Claim, Inequality, Linear
+from ratt_audit.engine.decide import Verdict, decide
+from ratt_audit.engine.evidence import check_proof
+from ratt_audit.engine.polynomials import ONE, T, constant
+from ratt_audit.engine.prover import find_proof
+from ratt_audit.engine.refuter import find_witness
 from ratt_opt.errors import ProofError
+from ratt_opt.worst_ratio.function_class import FunctionClass
 from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB, claim, f
 
 SUBADDITIVE = f("a") + f("b") + f("c") - f("a", "b", "c")

@@ -7,7 +7,7 @@ from fractions import Fraction
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ratt_opt.audit.engine.rationals import ONE, Polynomial, T, constant
+from ratt_audit.engine.polynomials import ONE, Polynomial, T, constant
 
 coefficients = st.lists(st.fractions(min_value=-3, max_value=3, max_denominator=7), max_size=5)
 polynomials = coefficients.map(Polynomial)

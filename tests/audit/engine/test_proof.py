@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import pytest
 
-from ratt_opt.audit.engine.claim import Claim, Elementary, Ground, Linear
-from ratt_opt.audit.engine.decide import Decision, decide
-from ratt_opt.audit.engine.evidence import ProofStep, check_proof
-from ratt_opt.audit.engine.prover import find_proof
-from ratt_opt.audit.engine.rationals import ONE, T, constant
+from ratt_audit.engine.claim import Claim, Elementary, Ground, Linear
+from ratt_audit.engine.decide import Decision, decide
+from ratt_audit.engine.evidence import ProofStep, check_proof
+from ratt_audit.engine.polynomials import ONE, T, constant
+from ratt_audit.engine.prover import find_proof
 from ratt_opt.errors import ProofError
 from tests.audit.engine.abc_claims import ANY, ND, claim, f
 

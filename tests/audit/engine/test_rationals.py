@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ratt_opt.audit.engine.rationals import solve_exactly, solve_square
+from ratt_opt.worst_ratio.rationals import solve_exactly, solve_square
 
 
 def test_square_systems_are_solved_exactly():

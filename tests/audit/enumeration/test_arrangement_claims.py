@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from ratt_opt.audit.appendix.readings import SETTINGS
-from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.arrangement_claims import (
+from ratt_audit.appendix.readings import SETTINGS
+from ratt_audit.engine.decide import Verdict
+from ratt_audit.enumeration.arrangement_claims import (
     arrangement_entries,
     arrangements,
     first_occurrence,
@@ -14,8 +14,8 @@ from ratt_opt.audit.enumeration.arrangement_claims import (
     is_pattern2,
     smallest_team_entries,
 )
-from ratt_opt.audit.enumeration.setting import Setting, caa_groups, counted, splits
-from ratt_opt.audit.enumeration.size_claims import size_entries
+from ratt_audit.enumeration.setting import Setting, caa_groups, counted, splits
+from ratt_audit.enumeration.size_claims import size_entries
 
 SIZES = {entry.label: entry for entry in size_entries()}
 OCCURS = {entry.label: entry for entry in smallest_team_entries()}

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, Problem, TableFunction, random_scenario, ratt
-from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.running_time import (
+from ratt_audit.engine.decide import Verdict
+from ratt_audit.enumeration.running_time import (
     count_orders,
     evaluation_bound,
     evaluation_count,
@@ -15,6 +14,7 @@ from ratt_opt.audit.enumeration.running_time import (
     lazy_greedy_picks,
     measured_growth,
 )
+from ratt_opt import InputError, Problem, TableFunction, random_scenario, ratt
 from ratt_opt.setfunctions.base import SetFunction
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ratt_opt.audit.engine.decide import Verdict
-from ratt_opt.audit.enumeration.tightness import tightness_entries
+from ratt_audit.engine.decide import Verdict
+from ratt_audit.enumeration.tightness import tightness_entries
 
 
 def test_verdicts() -> None:

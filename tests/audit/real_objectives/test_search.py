@@ -10,13 +10,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from ratt_audit.appendix.entry import ClaimEntry
+from ratt_audit.appendix.roles import Team
+from ratt_audit.ledger import all_entries
+from ratt_audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
+from ratt_audit.real_objectives.search import Origin, Trial, exact_violation, search_real_objectives
+from ratt_audit.report.records import real_record
 from ratt_opt import InputError, MaxEigenvalueObjective, TraceObjective, exhaustive_optimum, random_scenario, ratt
-from ratt_opt.audit.appendix.entry import ClaimEntry
-from ratt_opt.audit.appendix.roles import Team
-from ratt_opt.audit.ledger import all_entries
-from ratt_opt.audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
-from ratt_opt.audit.real_objectives.search import Origin, Trial, exact_violation, search_real_objectives
-from ratt_opt.audit.report.records import real_record
 from ratt_opt.scenario.model import Scenario
 
 ENTRIES = [entry for entry in all_entries() if isinstance(entry, ClaimEntry)]

@@ -6,10 +6,10 @@ import re
 
 import pytest
 
-from ratt_opt.audit import ledger
-from ratt_opt.audit.appendix.entry import EntryKind
-from ratt_opt.audit.ledger import all_entries, run_audit
-from ratt_opt.audit.report.chains import chain_lines
+from ratt_audit import ledger
+from ratt_audit.appendix.entry import EntryKind
+from ratt_audit.ledger import all_entries, run_audit
+from ratt_audit.report.chains import chain_lines
 from ratt_opt.report.palette import VERDICTS
 
 CHAIN = "nd_p1d1v1"

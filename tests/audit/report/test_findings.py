@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from ratt_opt.audit.appendix.entry import EntryName
-from ratt_opt.audit.ledger import all_entries, run_audit
-from ratt_opt.audit.report.findings import findings, line_outcomes
-from ratt_opt.audit.report.pages import html_report, markdown_report
+from ratt_audit.appendix.entry import EntryName
+from ratt_audit.ledger import all_entries, run_audit
+from ratt_audit.report.findings import findings, line_outcomes
+from ratt_audit.report.pages import html_report, markdown_report
 
 
 def record(label: str, kind: str, verdict: str, reading: str = "", **more: Any) -> dict[str, Any]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
-from ratt_opt.solvers.maxmin.division import divide_elements, mixing_gains
 from ratt_opt.solvers.maxmin.proof import Leaf
+from ratt_opt.solvers.maxmin.relaxed.mixtures import divide_elements, mixing_gains
 from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.frontier import ClosingRule
     from ratt_opt.solvers.maxmin.proof import TreeNode
-    from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CutStore
+    from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
     from ratt_opt.solvers.maxmin.task import Choices, Task
 
 __all__ = ["ClosedGroup", "GroupProofs", "close_group"]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.evaluation_error import UNIT
+from ratt_opt.setfunctions.rounding_errors import UNIT
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

@@ -1,0 +1,228 @@
+"""The JSON data of ``audit.json``, typed, also for ledgers read from disk, and an entry's record from its decision."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
+
+from ratt_audit.engine.evidence import step_inequality
+
+if TYPE_CHECKING:
+    from ratt_audit.appendix.entry import Entry
+    from ratt_audit.appendix.roles import SizedClaim
+    from ratt_audit.engine.claim import Claim
+    from ratt_audit.engine.decide import BestFactor, Decision, Verdict
+    from ratt_audit.engine.evidence import Proof, Witness
+    from ratt_audit.real_objectives.search import RealSearch
+
+__all__ = ["ClaimRecord", "EntryHead", "EntryRecord", "FactorRecord", "LedgerDocument", "OtherEntry",
+           "RealRecord", "WitnessRecord", "WorstRecord", "begun", "claim_record", "factor_record",
+           "real_record"]  # fmt: skip
+
+
+class ProofRecord(TypedDict):
+    """A proof; a step is [multiplier, reason, inequality], and the steps sum to the claim.
+
+    ``curvature`` : the one value it holds for, ``None`` for all; ``curvature_domain`` : feasible sets or all sets.
+    """
+
+    curvature: str | None
+    curvature_domain: str
+    steps: list[list[str]]
+
+
+class WitnessRecord(TypedDict):
+    """A function that breaks a claim: its values on all subsets, by bit mask over ``elements``.
+
+    ``ratt_chooses_the_roles`` : whether RATT itself, run on the function with this many baits,
+    picks the elements named as its choices (``None`` where the elements have no roles).
+    """
+
+    elements: list[str]
+    robot: list[int]
+    values: list[int]
+    values_in_play: dict[str, int]
+    auxiliary: dict[str, str]
+    curvature: str | None
+    violation: str
+    premises: list[str]
+    ratt_chooses_the_roles: bool | None
+
+
+class ClaimRecord(TypedDict):
+    """One size of an entry with its proof or counterexample."""
+
+    size: str
+    robots: int
+    claim: str
+    premises: int
+    verdict: str
+    scope: str
+    proofs: list[ProofRecord]
+    witness: WitnessRecord | None
+
+
+FactorRecord = TypedDict(
+    "FactorRecord", {"curvature": "str | None", "factor": "str", "cannot_exceed_by_1/1000": "bool"}
+)
+"""Best factor of a refuted step at one curvature."""
+
+
+class WorstRecord(TypedDict):
+    """The worst EKF instance, complete: the scenario file's content, the roles, and the sign of the violation."""
+
+    origin: str
+    claim: str
+    relative_violation: float
+    violated_exactly: bool
+    elements: dict[str, int]
+    scenario: dict[str, Any]
+
+
+class RealRecord(TypedDict):
+    """What trying an entry on EKF objectives found."""
+
+    objective: str
+    section_vi_instances: int
+    section_vi_violations: int
+    worst: WorstRecord | None
+
+
+class OtherEntry(TypedDict):
+    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` where readings differ)."""
+
+    entry: str
+    verdict: str | None
+
+
+class EntryHead(TypedDict):
+    """What an entry states, and how it was decided."""
+
+    label: str
+    kind: str
+    chain: str
+    reading: str
+    statement: str
+    hypotheses: str
+    decided_by: str
+    verdict: str
+
+
+class EntryRecord(EntryHead):
+    """One entry with its evidence.
+
+    ``detail``, ``counterexamples`` : of entries decided by enumeration; ``function_class``, ``curvature`` : of the
+    others, and, where they were looked for, ``best_factors``, ``realistic`` and ``follows_from``.
+    """
+
+    sizes: str
+    claims: list[ClaimRecord]
+    seconds: float
+    detail: NotRequired[str]
+    counterexamples: NotRequired[list[str]]
+    function_class: NotRequired[str]
+    curvature: NotRequired[list[str]]
+    best_factors: NotRequired[list[FactorRecord]]
+    realistic: NotRequired[RealRecord | None]
+    follows_from: NotRequired[str | None]
+    conclusion_without_it: NotRequired[OtherEntry]
+    weaker_step_that_serves: NotRequired[OtherEntry]
+
+
+class LedgerDocument(TypedDict):
+    """The whole file."""
+
+    format: str
+    complete: bool
+    quick: bool
+    curvature_grid: list[str]
+    counts: dict[str, int]
+    seconds: float
+    entries: list[EntryRecord]
+
+
+def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:
+    """A record without its evidence, which the caller adds in the order of the file."""
+    head: EntryHead = {
+        "label": entry.label,
+        "kind": entry.kind.value,
+        "chain": entry.chain,
+        "reading": entry.reading,
+        "statement": entry.statement,
+        "hypotheses": entry.hypotheses,
+        "decided_by": decided_by,
+        "verdict": verdict.value,
+    }
+    return cast("EntryRecord", head)
+
+
+def claim_record(sized: SizedClaim, decision: Decision, chooses_roles: bool | None) -> ClaimRecord:
+    """One size with its evidence; ``chooses_roles`` as in :class:`WitnessRecord`."""
+    claim = sized.claim
+    return {
+        "size": sized.size,
+        "robots": sized.robots,
+        "claim": claim.text(),
+        "premises": len(claim.premises),
+        "verdict": decision.verdict.value,
+        "scope": decision.scope,
+        "proofs": [_proof(claim, proof) for proof in decision.proofs],
+        "witness": None if decision.witness is None else _witness(claim, decision.witness, chooses_roles),
+    }
+
+
+def _proof(claim: Claim, proof: Proof) -> ProofRecord:
+    """Multiplier, reason and inequality of every step; the steps sum to the claim."""
+    steps = []
+    for step in proof.steps:
+        inequality = step_inequality(claim, step)
+        multiplier = step.multiplier.form_text(claim.function_class.symbol)
+        steps.append([multiplier, inequality.reason, claim.text(inequality.expression)])
+    return {
+        "curvature": None if proof.curvature is None else str(proof.curvature),
+        "curvature_domain": "feasible sets" if proof.feasible else "all sets",
+        "steps": steps,
+    }
+
+
+def _witness(claim: Claim, witness: Witness, chooses_roles: bool | None) -> WitnessRecord:
+    return {
+        "elements": list(witness.names),
+        "robot": list(claim.ground.owner),
+        "values": list(witness.values),
+        "values_in_play": {claim.ground.text(mask): witness.values[mask] for mask in claim.sets},
+        "auxiliary": {name: str(value) for name, value in witness.auxiliary.items()},
+        "curvature": None if witness.curvature is None else str(witness.curvature),
+        "violation": str(witness.violation),
+        "premises": [premise.reason for premise in claim.premises],
+        "ratt_chooses_the_roles": chooses_roles,
+    }
+
+
+def factor_record(best: BestFactor) -> FactorRecord:
+    """The best factor at one curvature."""
+    curvature = None if best.curvature is None else str(best.curvature)
+    return {"curvature": curvature, "factor": str(best.factor), "cannot_exceed_by_1/1000": best.is_best}
+
+
+def real_record(found: RealSearch) -> RealRecord:
+    """What trying an entry on EKF objectives found, complete: the worst instance can be replayed from it."""
+    return {
+        "objective": found.objective,
+        "section_vi_instances": found.applied,
+        "section_vi_violations": found.broken,
+        "worst": _worst(found),
+    }
+
+
+def _worst(found: RealSearch) -> WorstRecord | None:
+    worst = found.worst
+    if worst is None or worst.sized.team is None:
+        return None
+    return {
+        "origin": str(worst.origin),
+        "claim": worst.sized.size,
+        "relative_violation": worst.violation,
+        "violated_exactly": found.violated_exactly,
+        "elements": dict(zip(worst.sized.team.ground.names, worst.players, strict=True)),
+        "scenario": worst.scenario.model_dump(mode="json"),
+    }

@@ -1,6 +1,0 @@
-"""The paper's proof as data, decided by machine; open ``ledger.py`` first.
-
-``appendix/`` and ``enumeration/`` say what the paper claims; ``engine/`` decides claims about all set functions of a
-class; ``real_objectives/`` tries them on EKF objectives; ``worst_ratio/`` computes how bad a planner can be at most;
-``report/`` turns decisions into ``audit.json`` and its pages.
-"""

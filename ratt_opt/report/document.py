@@ -1,0 +1,199 @@
+"""The results of the main job as plain data: strict JSON, full precision, unknown numbers ``None``."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from ratt_opt._version import __version__
+from ratt_opt.report.description import describe
+from ratt_opt.scenario.problem_record import ProblemRecord
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.criticality import BreakingBudget, Criticality
+    from ratt_opt.attackers.link_choice.best_links import BestLinks
+    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.certificates.certification import Certification
+    from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.findings.bound import AssessedPlan, Findings
+
+__all__ = ["FORMAT", "VERSION", "attack_document", "plan_document", "report_document"]
+
+FORMAT = "ratt-opt report"
+VERSION = 1
+"""Raised when a field changes its meaning or disappears; new fields alone do not raise it. Readers accept every
+version up to their own, and take a field that an older file lacks as unknown."""
+
+
+def report_document(report: Findings) -> dict[str, Any]:
+    """Return what ``report.json`` holds: everything that the tables and figures show, and the input they are about."""
+    problem = report.problem
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "software": f"ratt-opt {__version__}",
+        "created": report.created,
+        "seeds": dict(report.seeds),
+        "input": _input(report.source),
+        **_cast(report),
+        "n_robots": problem.n_robots,
+        "n_targets": report.n_targets,
+        "n_links": len(problem.communication.links),
+        "objective": report.objective,
+        "unit": report.unit,
+        "alpha_s": problem.alpha_s,
+        "alpha_c": problem.alpha_c,
+        "n_max": report.n_max,
+        "alpha_cs": report.alpha_cs,
+        "ratt": _shared(report, report.ratt),
+        "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
+        "optimum": {**_bracket(report), **_shared(report, report.best)},
+        "interrupted": report.interrupted,
+        "certificate": _certificate(report.certificate),
+        "certified_ratio": _number(report.certified_ratio),
+        "guarantees": {name: _number(float(value)) for name, value in report.guarantees.items()},
+        "hypotheses": {name: list(value.hypotheses) for name, value in report.guarantees.items()},
+        "proofs": {name: value.proof for name, value in report.guarantees.items()},
+        "inapplicable": dict(report.inapplicable),
+        "omitted": dict(report.omitted),
+        "guaranteed_share": report.guaranteed_share,
+        "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
+        "views": {name: plan_document(view) for name, view in report.views.items()},
+        "seconds": {name: _number(value) for name, value in report.seconds.items()},
+        "curvature": _curvature(report.curvature),
+        "total_curvature": _curvature(report.total_curvature),
+    }
+
+
+def attack_document(
+    objective: str,
+    elements: IntArray,
+    results: Mapping[str, AttackResult],
+    critical: Sequence[Criticality] | None = None,
+    budgets: Sequence[BreakingBudget] | None = None,
+    *,
+    best_links: Mapping[str, BestLinks] | None = None,
+    explains: bool = False,
+) -> dict[str, Any]:
+    """Return the attacks on one plan as JSON-ready values, and what to protect or add where that was asked for.
+
+    ``best_links`` : by what is done with them, "protect" and "add"
+    ``explains`` : also which stages of the exact attack ran, and what each did
+    """
+    document = {
+        "format": "ratt-opt attack",
+        "version": VERSION,
+        "objective": objective,
+        "elements": elements.tolist(),
+        "attacks": {name: result.to_dict() for name, result in results.items()},
+    }
+    if explains:
+        document["stages"] = [row.to_dict() for row in results["exact"].stages]
+    if critical:
+        document["critical"] = [_critical(row) for row in critical]
+    if budgets is not None:
+        document["breaking_budgets"] = [_budget(row) for row in budgets]
+    if best_links:
+        document["best_links"] = {name: found.to_dict() for name, found in best_links.items()}
+    return document
+
+
+def _critical(row: Criticality) -> dict[str, Any]:
+    target = {"robot": row.target} if isinstance(row.target, int) else {"link": list(row.target)}
+    return {**target, "loss": row.loss, "gain_lower": row.gain_lower, "gain_upper": row.gain_upper}
+
+
+def _budget(row: BreakingBudget) -> dict[str, Any]:
+    return {
+        "alpha_s": row.alpha_s,
+        "alpha_c": row.alpha_c,
+        "value": row.value,
+        "sensing": sorted(row.attack.sensing),
+        "links": [list(link) for link in sorted(row.attack.links)],
+        "proved": row.is_proved,
+    }
+
+
+def plan_document(plan: AssessedPlan) -> dict[str, Any]:
+    """Return one plan and its worst case as JSON-ready values."""
+    return {
+        "elements": plan.elements.tolist(),
+        "controls": list(plan.controls),
+        "bait": list(plan.bait),
+        "worst_case": plan.worst_case.to_dict(),
+        "evaluations": plan.evaluations,
+        "groups": [sorted(group) for group in plan.groups],
+        "best_group": sorted(plan.best_group),
+        "posterior": None if plan.posterior is None else plan.posterior.tolist(),
+    }
+
+
+def _bracket(report: Findings) -> dict[str, Any]:
+    """The ends of the optimum, and why the search for it stopped."""
+    optimum = report.optimum
+    return {
+        "lower": _number(optimum.lower),
+        "upper": _number(report.upper),
+        "posterior_gap": None if optimum.posterior_gap is None else float(optimum.posterior_gap),
+        "stop": optimum.stop.value,
+    }
+
+
+def _shared(report: Findings, plan: AssessedPlan) -> dict[str, Any]:
+    """A plan with what it keeps as a share of the best possible."""
+    return {**plan_document(plan), "share": _number(report.share(plan))}
+
+
+def _input(source: object) -> dict[str, Any] | None:
+    """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` where a problem was given."""
+    if not isinstance(source, ProblemRecord):
+        return None
+    return {"sha256": source.digest, "document": source.storable.model_dump(mode="json")}
+
+
+def _cast(report: Findings) -> dict[str, Any]:
+    """Who and what the indices stand for: robots, targets, elements, links."""
+    problem, known = report.problem, describe(report.problem, report.source)
+    return {
+        "robot_names": list(known.robot_names),
+        "target_names": None if known.target_names is None else list(known.target_names),
+        "weights": None if known.weights is None else known.weights.tolist(),
+        "owners": problem.robot.tolist(),
+        "labels": None if known.labels is None else list(known.labels),
+        "control_values": None if known.controls is None else known.controls.tolist(),
+        "links": [list(link) for link in sorted(problem.communication.links)],
+        "protected_robots": sorted(problem.protected_robots),
+        "protected_links": [list(link) for link in sorted(problem.protected_links)],
+    }
+
+
+def _certificate(given: Certification) -> dict[str, Any]:
+    """The verifier's verdict, or why there is none."""
+    proof = given.certificate
+    if proof is None:
+        return {"file": None, "verified": False, "reason": given.why_not}
+    found = proof.verified
+    return {
+        "file": proof.path.name,
+        "verified": True,
+        "claim": {"lower": found.lower, "upper": found.upper},
+        "lower_proved": found.lower_proved,
+        "lower_method": found.lower_method,
+        "arithmetic": found.arithmetic,
+        "problem_hash": found.problem_hash,
+        "bytes": proof.size,
+    }
+
+
+def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:
+    if bracket is None:
+        return None
+    ends = {"lower": _number(bracket.lower), "upper": _number(bracket.upper)}
+    return {**ends, "domain": bracket.domain, "stop": bracket.stop.value}
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
