@@ -30,7 +30,7 @@ from ratt_audit.report.records import begun, claim_record, factor_record, real_r
 from ratt_opt._files import output_directory, write_json, write_together
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.problem import Problem
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.solvers.ratt import bait_and_greedy
 
 if TYPE_CHECKING:

@@ -11,9 +11,9 @@ def __getattr__(name: str) -> object:
 
     import lazy_loader
 
-    from ratt_opt._cache import provide_cache
-    from ratt_opt._interrupts import interrupts_between_packages
-    from ratt_opt._topics import names_of, read_topics
+    from ratt_opt.running.cache import provide_cache
+    from ratt_opt.running.interrupts import interrupts_between_packages
+    from ratt_opt.running.topics import names_of, read_topics
 
     provide_cache()
     attached, names, _ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,22 +1,45 @@
-"""The one budget of a search: deadline, nodes, values of a set function, interrupt."""
+"""The one budget of a search: deadline, nodes, values of a set function, interrupt; and why a search stopped."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from enum import Enum
 from math import inf, isinf
 from numbers import Real
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Budget", "OutOfBudget"]
+__all__ = ["Budget", "OutOfBudget", "Stop", "uninterrupted"]
+
+T = TypeVar("T")
+
+
+class Stop(Enum):
+    """Reason for returning. The bracket ``[lower, upper]`` says how good the answer is."""
+
+    CLOSED = "closed"
+    """Bounds met within rounding."""
+    EXHAUSTED = "exhausted"
+    """Every case was evaluated."""
+    GAP = "gap"
+    """The requested gap was reached."""
+    TIME = "time"
+    """The time limit was reached."""
+    NODES = "nodes"
+    """The node limit was reached."""
+    EVALUATIONS = "evaluations"
+    """The limit on values of a set function was reached."""
+    INTERRUPTED = "interrupted"
+    """The user interrupted; the bracket so far is valid."""
+    HEURISTIC = "heuristic"
+    """A heuristic ran to its end; no optimality is claimed."""
 
 
 class OutOfBudget(Exception):  # noqa: N818  (a signal within a search, never seen by a user)
@@ -189,3 +212,13 @@ class Budget:
         """Note that the user interrupted; returns the reason to stop with."""
         self._interrupt.happened = True
         return Stop.INTERRUPTED
+
+
+def uninterrupted(found: T) -> T:
+    """What a search found; ``KeyboardInterrupt`` where the user interrupted it.
+
+    For callers that keep no bracket of their own: to them it would pass for what a whole search finds.
+    """
+    if getattr(found, "stop", None) is Stop.INTERRUPTED:
+        raise KeyboardInterrupt
+    return found

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt._interrupts import interrupts_afterwards
+from ratt_opt.running.interrupts import interrupts_afterwards
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

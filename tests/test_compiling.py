@@ -19,8 +19,8 @@ from numba.core import event
 from numba.core.registry import cpu_target
 
 import ratt_opt
-from ratt_opt import _kept_code
-from ratt_opt.compiling import INTERRUPTS, _raised_again, numba
+from ratt_opt.running import kept_code
+from ratt_opt.running.compiling import INTERRUPTS, _raised_again, numba
 
 LONG = 60.0
 """Seconds after which an interrupt counts as lost."""
@@ -139,7 +139,7 @@ def test_one_in_the_callback_of_a_weak_reference_comes_after_it():
 FREED_LATER = """
 import signal, sys, time, weakref
 from llvmlite.binding.ffi import ObjectRef
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 class Compiled(ObjectRef):
     def close(self):
@@ -188,9 +188,9 @@ class Interrupts(MetaPathFinder):
 
 sys.meta_path.insert(0, Interrupts())
 try:
-    from ratt_opt.compiling import numba
+    from ratt_opt.running.compiling import numba
 except KeyboardInterrupt:
-    from ratt_opt.compiling import numba
+    from ratt_opt.running.compiling import numba
     print(numba.njit(lambda x: 2 * x)(1))
 """
 
@@ -204,7 +204,7 @@ def test_one_while_the_compiler_is_imported_leaves_one_that_works(module):
 
 RETURNS_TWO = """
 import signal
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 import numpy as np
 
 @numba.njit("(int64,)")  # compiled here: an interrupt can come in the first call of all
@@ -249,7 +249,7 @@ def test_loops_draw_from_a_generator_what_numpy_draws(source):
 DRAWS = """
 import random, signal
 import numpy as np
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 @numba.njit
 def drawn(rng):
@@ -289,11 +289,11 @@ def interrupted(self, attributes):
 
 BaseContext.insert_attributes = interrupted
 try:
-    import ratt_opt.compiling
-    ratt_opt.compiling.numba.njit(lambda x: x.shape[0])(np.ones(2))
+    import ratt_opt.running.compiling
+    ratt_opt.running.compiling.numba.njit(lambda x: x.shape[0])(np.ones(2))
 except KeyboardInterrupt:
     print("answered")
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 print(numba.njit(lambda x: x.shape[0] + x.size)(np.ones((2, 3))))
 """
 
@@ -306,7 +306,7 @@ def test_one_while_types_are_listed_leaves_nothing_out():
 HANDED_OVER = """
 import gc, signal, sys, time
 from llvmlite.binding import ffi
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 import numpy as np
 
 name, met = sys.argv[1], []
@@ -344,12 +344,12 @@ def test_one_while_a_module_changes_its_owner_does_not_free_it_twice(name):
 
 def test_every_module_of_compiled_loops_takes_numba_from_there():
     direct = [path for path in SOURCES if re.search(r"^\s*(import numba|from numba)\b", path.read_text(), re.M)]
-    assert [path.name for path in direct] == ["_kept_code.py", "compiling.py"]
+    assert [path.name for path in direct] == ["compiling.py", "kept_code.py"]
 
 
-INNER = "from ratt_opt.compiling import numba\n\n@numba.njit\ndef inner(x):\n    return x + 1\n"
+INNER = "from ratt_opt.running.compiling import numba\n\n@numba.njit\ndef inner(x):\n    return x + 1\n"
 OUTER = """
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.constants import FACTOR
 from ratt_opt.inner import inner
 if False:
@@ -369,9 +369,9 @@ print(outer.outer(records.{}(x=1, y=2)), outer.outer.stats.cache_hits.total())
 def package(tmp_path: Path) -> Path:
     """A package of our name with our rules and loops of its own."""
     folder = tmp_path / "ratt_opt"
-    folder.mkdir()
-    for name in ("_interrupts.py", "_kept_code.py", "compiling.py"):
-        shutil.copy(Path(ratt_opt.__file__).parent / name, folder)
+    (folder / "running").mkdir(parents=True)
+    for name in ("interrupts.py", "kept_code.py", "compiling.py", "__init__.py"):
+        shutil.copy(Path(ratt_opt.__file__).parent / "running" / name, folder / "running")
     (folder / "__init__.py").touch()
     (folder / "inner.py").write_text(INNER)
     (folder / "outer.py").write_text(OUTER)
@@ -413,12 +413,12 @@ def test_an_upgrade_compiles_again_and_leaves_nothing_of_the_old_code(package):
     ids=["callee", "constant", "layout", "none"],
 )
 def test_compiled_code_is_kept_while_all_sources_in_it_stay_the_same(file, text, changes, package, monkeypatch):
-    monkeypatch.setattr(_kept_code, "PACKAGE", package)
+    monkeypatch.setattr(kept_code, "PACKAGE", package)
     found = []
     for _ in range(2):
-        _kept_code._text.cache_clear()
-        _kept_code.fingerprint.cache_clear()
-        found.append(_kept_code.fingerprint(package / "outer.py"))
+        kept_code._text.cache_clear()
+        kept_code.fingerprint.cache_clear()
+        found.append(kept_code.fingerprint(package / "outer.py"))
         (package / file).write_text(text)
     assert (found[0] != found[1]) is changes
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from ratt_opt import _interrupts
+from ratt_opt.running import interrupts
 
 
 def test_a_package_whose_import_was_interrupted_is_imported_whole_next_time(tmp_path, monkeypatch):
@@ -19,9 +19,9 @@ def test_a_package_whose_import_was_interrupted_is_imported_whole_next_time(tmp_
     (package / "__init__.py").write_text(f"from half_imported.part import owner\n{interrupting}late = 1\n")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(KeyboardInterrupt):
-        _interrupts.imported_whole("half_imported")
+        interrupts.imported_whole("half_imported")
     (package / "__init__.py.again").touch()
-    assert _interrupts.imported_whole("half_imported").owner() == 1
+    assert interrupts.imported_whole("half_imported").owner() == 1
 
 
 SOLVER = """

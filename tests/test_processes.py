@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ratt_opt.processes import SeparateProcesses, local_processes
+from ratt_opt.running.processes import SeparateProcesses, local_processes
 
 ROOT = Path(__file__).parents[1]
 SECONDS = 60.0

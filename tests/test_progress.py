@@ -13,12 +13,12 @@ import termios
 
 import pytest
 
-from ratt_opt import progress
-from ratt_opt.progress import ERASE, Step
+from ratt_opt.running import progress
+from ratt_opt.running.progress import ERASE, Step
 from tests.documents import ROOT
 
 SLOW_SEARCH = """
-import time, ratt_opt as ro, ratt_opt.progress as p
+import time, ratt_opt as ro, ratt_opt.running.progress as p
 p.PATIENCE, p.PERIOD = p.PATIENCE / 10, 0.05
 class Slow(ro.SetFunction):
     n = 3
@@ -29,7 +29,7 @@ ro.find_submodularity_violation(Slow())
 print("done")
 """
 COMPILING = """
-import numba, ratt_opt.progress as p
+import numba, ratt_opt.running.progress as p
 p.PATIENCE = p.PERIOD = 0.01
 @numba.njit
 def loop(n):
@@ -76,7 +76,7 @@ def test_a_line_fits_the_terminal_that_it_is_erased_on() -> None:
 
 
 def test_a_step_that_somebody_waits_for_is_shown_at_once() -> None:
-    code = "import time, ratt_opt.progress as p\np.PERIOD = 0.01\nwith p.Step('writing', 0.0): time.sleep(0.3)"
+    code = "import time, ratt_opt.running.progress as p\np.PERIOD = 0.01\nwith p.Step('writing', 0.0): time.sleep(0.3)"
     assert "writing (0 s)" in on_a_terminal(code)[1]
 
 
@@ -95,7 +95,7 @@ def test_compiling_is_a_step() -> None:
 
 
 def test_nothing_is_written_where_there_is_no_terminal() -> None:
-    code = "import ratt_opt.progress as p, time; p.PATIENCE = p.PERIOD = 0\nwith p.Step('x'): time.sleep(0.2)"
+    code = "import ratt_opt.running.progress as p, time; p.PATIENCE = p.PERIOD = 0\nwith p.Step('x'): time.sleep(0.2)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout + done.stderr == ""
 

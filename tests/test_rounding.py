@@ -15,9 +15,9 @@ from analysis.tables import print_table
 from ratt_opt import Attack
 from ratt_opt._rounding import bracket_text, down, gap_text, relative_gap, up
 from ratt_opt.attackers.task import AttackResult
+from ratt_opt.budget import Stop
 from ratt_opt.certificates.verifier.verified import Verified
 from ratt_opt.report.tables import attack_tables, share_text
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

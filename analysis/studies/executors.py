@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from analysis.studies.versions import VERSIONS
 from ratt_opt.errors import InputError
-from ratt_opt.processes import local_processes
+from ratt_opt.running.processes import local_processes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

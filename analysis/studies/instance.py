@@ -12,6 +12,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.generator import random_scenario
@@ -22,7 +23,6 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,10 +13,10 @@ import numpy as np
 from ratt_audit.appendix.entry import Counted, EntryKind, EntryName, EnumeratedEntry
 from ratt_audit.engine.decide import Verdict
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.budget import uninterrupted
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.ratt import ratt
-from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,7 +15,7 @@ from ratt_audit.appendix.entry import Counted, EntryKind, EntryName, EnumeratedE
 from ratt_audit.appendix.roles import CUBED, KEPT, KEPT_OVER_ONE_PLUS_K, SQUARED, Factor, every_group
 from ratt_audit.engine.decide import Verdict, decide
 from ratt_opt.bounds.survivors import survivor_share
-from ratt_opt.stopping import uninterrupted
+from ratt_opt.budget import uninterrupted
 from ratt_opt.worst_ratio.closed_form import sensing_ratio
 from ratt_opt.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
 from ratt_opt.worst_ratio.function_class import FunctionClass

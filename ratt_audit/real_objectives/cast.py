@@ -15,13 +15,13 @@ import flint
 import numpy as np
 
 from ratt_audit.appendix.roles import optimum, own_best
+from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import bait_and_greedy
-from ratt_opt.stopping import uninterrupted
 from ratt_opt.worst_ratio.rationals import rational
 
 if TYPE_CHECKING:

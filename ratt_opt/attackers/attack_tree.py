@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

@@ -10,9 +10,8 @@ from ratt_opt._validation import check_number
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
 from ratt_opt.attackers.task import PlanValues
-from ratt_opt.budget import Budget
-from ratt_opt.progress import Step
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Budget, Stop
+from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -22,13 +22,12 @@ from ratt_opt.attackers.task import (
     outward,
 )
 from ratt_opt.attackers.team_attack import TeamAttack, has_table, last_stage
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import unmetered
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

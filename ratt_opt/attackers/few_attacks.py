@@ -5,9 +5,9 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from ratt_opt.budget import Stop
 from ratt_opt.graph.few_cuts import partitions_by_few_cuts
 from ratt_opt.problem import Attack
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackTask

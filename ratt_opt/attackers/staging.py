@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from ratt_opt.attackers.task import StageRecord
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

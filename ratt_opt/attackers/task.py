@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.budget import Budget
+    from ratt_opt.budget import Budget, Stop
     from ratt_opt.problem import Problem
-    from ratt_opt.stopping import Stop
 
 __all__ = [
     "AttackBracket",

@@ -17,12 +17,11 @@ from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.tree_bound import tree_bound
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import OutOfBudget
+from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.few_cuts import attacks_are_few
 from ratt_opt.graph.largest_group.spreading import forced_size
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.price_search import PriceSearch

@@ -10,13 +10,13 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from ratt_opt._interrupts import imported_whole
 from ratt_opt._values import ByValue
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, mixed_information, tangent_cut, uniform_selection
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
 from ratt_opt.problem import Attack
+from ratt_opt.running.interrupts import imported_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

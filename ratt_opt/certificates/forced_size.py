@@ -17,7 +17,7 @@ import numpy as np
 
 from ratt_opt.certificates.plan_sets import COVERING
 from ratt_opt.certificates.verifier.work import tell, tick
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:

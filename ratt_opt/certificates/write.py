@@ -20,7 +20,7 @@ from ratt_opt.certificates.verifier.upper import UpperCheck
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick, watched
 from ratt_opt.errors import InputError, ProofError, UndecidedError
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed

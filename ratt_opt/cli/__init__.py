@@ -63,8 +63,8 @@ def run(arguments: list[str]) -> int:
     fault: Exception | None = None
     with Interrupts() as interrupts:
         try:
-            from ratt_opt._cache import provide_cache
             from ratt_opt.cli.program import run_program
+            from ratt_opt.running.cache import provide_cache
 
             _draw_into_files()
             provide_cache()

@@ -8,7 +8,7 @@ import threading
 from time import sleep
 from typing import TYPE_CHECKING, Any, Self
 
-from ratt_opt._interrupts import interrupt_main_thread
+from ratt_opt.running.interrupts import interrupt_main_thread
 
 if TYPE_CHECKING:
     from types import FrameType

@@ -11,7 +11,7 @@ from ratt_opt.certificates.certification import CERTIFICATE, INTERRUPTED, PENDIN
 from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import ProofError, printable
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
     from ratt_opt.main_job.result import BoundReport

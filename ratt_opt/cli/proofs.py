@@ -11,7 +11,7 @@ from ratt_opt.cli.exit_codes import UPPER_ONLY
 from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
 from ratt_opt.errors import printable
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 
 __all__ = ["audit", "verify"]
 

@@ -9,7 +9,7 @@ import typer
 from ratt_opt.cli.options import JsonFlag, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines
 from ratt_opt.errors import InputError, printable
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

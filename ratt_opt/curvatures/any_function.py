@@ -16,9 +16,8 @@ from ratt_opt.setfunctions.metered import Metered
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.budget import Budget
+    from ratt_opt.budget import Budget, Stop
     from ratt_opt.curvatures.domains import Domain
-    from ratt_opt.stopping import Stop
 
 __all__ = ["any_marginals"]
 

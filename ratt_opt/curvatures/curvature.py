@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_number
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.curvatures.any_function import any_marginals
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.curvatures.marginals import (
@@ -26,12 +26,11 @@ from ratt_opt.curvatures.marginals import (
 from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
 from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import TableFunction, finite_values
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import Metered
 from ratt_opt.setfunctions.properties import NotFound, Violation, find_submodularity_violation
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

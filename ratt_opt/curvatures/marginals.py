@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
+from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.properties import mask_without
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.budget import Budget
-from ratt_opt.compiling import numba
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
 from ratt_opt.graph.separable_groups import count_ones
 from ratt_opt.graph.threshold import LARGEST_COMPILED, UNREACHABLE, GroupSplit, fewest_blinded, largest_survivors
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.budget import Budget
-from ratt_opt.compiling import numba
 from ratt_opt.graph.communication import neighbour_masks
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray

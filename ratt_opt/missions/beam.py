@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.missions.ahead.horizon import Sequences, extended
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.solvers.maxmin.solve import check_limits, search_in_all_coordinates
 from ratt_opt.solvers.result import MaxMinResult
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.missions.belief import Belief

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._files import write_atomically
-from ratt_opt._interrupts import imported_whole
 from ratt_opt._rounding import down
 from ratt_opt.report.bars import draw_bars
 from ratt_opt.report.map import draw_map, name_things
 from ratt_opt.report.tables import share_text
+from ratt_opt.running.interrupts import imported_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

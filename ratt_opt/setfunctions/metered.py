@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.budget import OutOfBudget
+from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, check_table_size, checked_values
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray

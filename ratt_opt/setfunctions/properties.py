@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from ratt_opt._validation import check_number
-from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.progress import Step
+from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import checked_values, finite_values
 from ratt_opt.setfunctions.metered import table_within
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

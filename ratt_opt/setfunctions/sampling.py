@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.metered import Metered
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable

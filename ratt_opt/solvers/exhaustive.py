@@ -8,16 +8,15 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.attackers.exact import strongest_attack
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.problem import check_problem
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import Metered
 from ratt_opt.solvers.result import MaxMinResult
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -12,7 +12,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.largest_group.smallest import bound_soon
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem, check_problem
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = [

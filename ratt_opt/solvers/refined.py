@@ -18,17 +18,16 @@ from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt._values import shown
 from ratt_opt.attackers.task import outward
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent, ProvedPlan
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.plans.ties import break_ties
 from ratt_opt.solvers.maxmin.plans.walk import Walk
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.undominated import UndominatedProblem, dominators, undominated
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.budget import Stop
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.stopping import Stop
 
 __all__ = ["MaxMinResult", "NonrobustPlan", "posterior_gap"]
 

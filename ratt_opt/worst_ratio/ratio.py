@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.errors import InputError
-from ratt_opt.progress import Step
-from ratt_opt.stopping import Stop
+from ratt_opt.running.progress import Step
 from ratt_opt.worst_ratio.class_rows import NonDecreasing, Submodular
 from ratt_opt.worst_ratio.closed_form import proved_ratio
 from ratt_opt.worst_ratio.search import RatioSearch, Skeleton, skeleton

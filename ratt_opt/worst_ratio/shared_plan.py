@@ -17,8 +17,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.stopping import uninterrupted
+from ratt_opt.budget import Budget, OutOfBudget, uninterrupted
 from ratt_opt.worst_ratio.ratio import class_rows
 from ratt_opt.worst_ratio.search import RatioSearch, skeleton
 from ratt_opt.worst_ratio.witness import PLANNERS, RatioWitness, replay

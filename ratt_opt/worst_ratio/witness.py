@@ -18,13 +18,13 @@ import numpy as np
 from ratt_opt._validation import IntArray, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import greedy, myopic, ratt
-from ratt_opt.stopping import uninterrupted
 from ratt_opt.worst_ratio.class_rows import NonDecreasing
 from ratt_opt.worst_ratio.function_class import FunctionClass, check_class
 

@@ -12,9 +12,8 @@ from ratt_opt import Problem
 from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import exchange_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.setfunctions.base import SetFunction
-from ratt_opt.stopping import Stop
 
 
 class Seen(SetFunction):

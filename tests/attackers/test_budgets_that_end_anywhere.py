@@ -27,7 +27,7 @@ from tests.strategies import random_problem
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt.stopping import Stop
+    from ratt_opt.budget import Stop
 
 SECONDS = 1000.0
 """Of every limit: it is chance that ends them."""

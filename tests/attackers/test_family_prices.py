@@ -22,10 +22,9 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.attackers.weakest_set.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
 from ratt_opt.problem import Attack, Problem
-from ratt_opt.stopping import Stop
 from tests.brackets import worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ratt_opt import random_scenario
 from ratt_opt.certificates.verifier import work
 from ratt_opt.cli.proofs import verify
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from tests.certificates.cases import certified
 
 if TYPE_CHECKING:

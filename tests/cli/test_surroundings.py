@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from ratt_opt import _cache, random_scenario, save_scenario
+from ratt_opt import random_scenario, save_scenario
+from ratt_opt.running import cache
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -114,7 +115,7 @@ def test_settings_of_figures_for_other_programs_change_nothing(folder: Path, tmp
 
 
 def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
-    known = {_cache.VARIABLE, "XDG_CACHE_HOME"}
+    known = {cache.VARIABLE, "XDG_CACHE_HOME"}
     environment = {name: value for name, value in os.environ.items() if name not in known} | {"HOME": "/dev/null"}
     done = subprocess.run(
         [sys.executable, "-c", NOTHING_CAN_BE_WRITTEN], env=environment, capture_output=True, text=True, check=False
@@ -127,8 +128,8 @@ def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
 
 
 def test_a_place_that_exists_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(_cache.VARIABLE, raising=False)
-    monkeypatch.setattr(_cache, "__file__", str(tmp_path / "none" / "x.py"))
+    monkeypatch.delenv(cache.VARIABLE, raising=False)
+    monkeypatch.setattr(cache, "__file__", str(tmp_path / "none" / "x.py"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache" / "of" / "mine"))
-    _cache.provide_cache()
-    assert _cache.VARIABLE not in os.environ
+    cache.provide_cache()
+    assert cache.VARIABLE not in os.environ

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.curvatures.separable.marginal_brackets import choices_beside
 from ratt_opt.errors import InputError
-from ratt_opt.stopping import Stop
 from tests.setfunctions import oracle
 from tests.strategies import OBJECTIVES, information_data, monotone_table, random_objective, range_bearing
 

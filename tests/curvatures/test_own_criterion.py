@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.stopping import Stop
 from tests.setfunctions import oracle
 from tests.strategies import information_data
 

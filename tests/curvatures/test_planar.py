@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import linprog
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.curvatures.planar import context_search
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
@@ -22,7 +22,6 @@ from ratt_opt.curvatures.planar.inequalities import (
 )
 from ratt_opt.curvatures.planar.level_program import LevelProgram, Sector, own_direction
 from ratt_opt.curvatures.planar.regions import MarginalSide
-from ratt_opt.stopping import Stop
 from tests.strategies import information_data, range_bearing
 
 LIMIT = "ratt_opt.curvatures.curvature.LARGEST_ENUMERATION"

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, Problem, TableFunction, TraceObjective, exhaustive_optimum, worst_case_attack
-from ratt_opt.budget import Budget
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Budget, Stop
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import information_data, random_problem, range_bearing
 

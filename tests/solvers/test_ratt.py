@@ -21,13 +21,12 @@ from ratt_opt import (
     random_scenario,
     ratt,
 )
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.problem import Attack
 from ratt_opt.solvers import ratt as ratt_module
 from ratt_opt.solvers.maxmin import solve
 from ratt_opt.solvers.maxmin.solve import nonrobust_search
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
-from ratt_opt.stopping import Stop
 from tests.strategies import OBJECTIVES, information_data, random_problem
 
 

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.budget import OutOfBudget
+from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

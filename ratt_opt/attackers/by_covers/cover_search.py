@@ -16,8 +16,8 @@ from ratt_opt.attackers.by_covers.weak_sets import WeakSets
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.team import PricedTeam
+from ratt_opt.budget import Stop
 from ratt_opt.graph.separable_groups import SeparableGroups
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,7 +16,7 @@ import numpy as np
 from ratt_opt.attackers.by_partition.group_floors import least_in_groups
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
 from ratt_opt.attackers.weakest_set.branch_and_bound import bound_family
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

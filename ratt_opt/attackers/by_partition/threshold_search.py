@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.budget import OutOfBudget
+from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.setfunctions.metered import Metered, unmetered
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["Cooling", "State", "anneal"]
 

@@ -12,8 +12,7 @@ from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import OutOfBudget
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable

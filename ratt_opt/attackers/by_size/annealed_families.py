@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.compiling import numba
 from ratt_opt.graph.survivor_sizes import forced_group_size, sizes_of_largest
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:

@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attackers.by_size.disjoint_sets import Columns
-from ratt_opt.compiling import numba
+from ratt_opt.budget import Stop
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.stopping import Stop
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -14,7 +14,7 @@ import numpy as np
 
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

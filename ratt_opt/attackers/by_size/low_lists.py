@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.budget import OutOfBudget
-from ratt_opt.compiling import numba
+from ratt_opt.budget import OutOfBudget, Stop
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

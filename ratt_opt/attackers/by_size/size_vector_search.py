@@ -25,6 +25,7 @@ from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
 from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attackers.staging import Stage, run_stages
+from ratt_opt.budget import Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import (
     FIRST,
@@ -34,7 +35,6 @@ from ratt_opt.graph.survivor_sizes import (
     sizes_of_largest,
 )
 from ratt_opt.problem import Attack
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -14,11 +14,10 @@ from ratt_opt.attackers.link_choice.choice_search import best_choice
 from ratt_opt.attackers.link_choice.known_attacks import KnownAttacks
 from ratt_opt.attackers.link_choice.upgrades import Addition, Protection
 from ratt_opt.attackers.task import CLOSED_WIDTH, AttackMemory, PlanValues, outward
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import check_problem
-from ratt_opt.progress import Step
-from ratt_opt.stopping import Stop
+from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

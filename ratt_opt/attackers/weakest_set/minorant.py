@@ -18,7 +18,7 @@ import numpy as np
 
 from ratt_opt.attackers.weakest_set.outer_polytopes import RANK_ONE, OuterPolytopes, outer_polytopes, target_values
 from ratt_opt.attackers.weakest_set.smoothed_dual import DualProgram, Multipliers
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray

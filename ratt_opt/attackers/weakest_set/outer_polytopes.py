@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import target_value
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["move_least_first"]
 

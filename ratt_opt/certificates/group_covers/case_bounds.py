@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.compiling import numba
 from ratt_opt.graph.separable_groups import count_ones
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.team import Links

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["MARGIN", "ceiling", "descend", "descend_pairs", "raise_ceilings", "violated"]
 

@@ -20,10 +20,9 @@ from ratt_opt.curvatures.planar.regions import MARGIN, MarginalSide
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
-    from ratt_opt.budget import Budget
+    from ratt_opt.budget import Budget, Stop
     from ratt_opt.curvatures.planar.level_program import Relaxed
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.stopping import Stop
 
 __all__ = ["PlanarBrackets"]
 

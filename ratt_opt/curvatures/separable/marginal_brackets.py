@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sized
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.budget import Budget
+    from ratt_opt.budget import Budget, Stop
     from ratt_opt.setfunctions.information import InformationObjective
-    from ratt_opt.stopping import Stop
 
 __all__ = ["SeparableBrackets", "choices_beside"]
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
 from ratt_opt.graph.largest_group.counting import largest_left
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -34,7 +34,7 @@ from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.largest_group.spreading import TREES, forced_size, forced_size_soon
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt._interrupts import imported_whole
 from ratt_opt.missions.drawing.frames import frames_of, limits
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
+from ratt_opt.running.interrupts import imported_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import stdtrit
 
-from ratt_opt._interrupts import imported_whole
 from ratt_opt.report.palette import INK, LOST, SURVIVING
+from ratt_opt.running.interrupts import imported_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

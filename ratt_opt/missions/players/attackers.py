@@ -8,11 +8,11 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.missions.players.named import player_called
 from ratt_opt.problem import Attack
-from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 import numpy as np
 
 from ratt_opt._validation import IntArray, check_integer
+from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import player_called
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.solvers.refined import RefinedPlan, refined
-from ratt_opt.stopping import uninterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria import two_by_two
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective

@@ -9,8 +9,7 @@ import numpy as np
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.task import AttackMemory
-from ratt_opt.budget import OutOfBudget
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.base import SetFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -15,7 +15,7 @@ from ratt_opt._validation import readonly
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN
 from ratt_opt.attackers.task import CLOSED_WIDTH
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.curvatures.domains import domain_of
 from ratt_opt.curvatures.marginals import enumerate_marginals
 from ratt_opt.errors import InputError
@@ -29,7 +29,6 @@ from ratt_opt.solvers.by_values.plan_tree import PlanTree
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
 from ratt_opt.solvers.result import MaxMinResult
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.search import BranchAndBound
 from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof

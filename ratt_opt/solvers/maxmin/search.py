@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import largest_of_each
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.backjumps import Backjumps
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
 from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
@@ -26,7 +27,6 @@ from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
 from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
 from ratt_opt.solvers.maxmin.task import with_choice
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable

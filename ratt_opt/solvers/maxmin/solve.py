@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import readonly
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.measured import measured_coordinates
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
-from ratt_opt.progress import Step
+from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
@@ -32,7 +32,6 @@ from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor

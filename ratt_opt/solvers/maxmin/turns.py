@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.stopping import Stop
+from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -21,12 +21,12 @@ from ratt_opt import (
     verify_certificate,
     worst_case_attack,
 )
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.levels.elements import Elements
 from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
-from ratt_opt.stopping import Stop
 from tests.oracles import brute_force_worst_case
 from tests.strategies import sparse_problem
 

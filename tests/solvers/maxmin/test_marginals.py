@@ -22,13 +22,13 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
+from ratt_opt.budget import Stop
 from ratt_opt.certificates.verifier.exact_matrices import definite
 from ratt_opt.solvers.maxmin import upper_ends
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.levels.elements import Elements
 from ratt_opt.solvers.maxmin.marginals.raised import raised_information
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
-from ratt_opt.stopping import Stop
 from tests.oracles import brute_force_optimum
 from tests.solvers.maxmin.test_solve import proved_upper
 from tests.strategies import sparse_problem

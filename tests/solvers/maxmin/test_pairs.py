@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import Problem, certify, exhaustive_optimum, solve_maxmin, verify_certificate, worst_case_attack
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes, PairValues
 from ratt_opt.solvers.maxmin.task import Task
-from ratt_opt.stopping import Stop
 from tests.solvers.maxmin.test_solve import proved_upper
 from tests.strategies import OBJECTIVES, information_data
 

@@ -26,10 +26,9 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, Stop
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, UpperProof, WinnerBranch
-from ratt_opt.stopping import Stop
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_problem
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, gather_seeing, value_of
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,7 +13,7 @@ import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row, value_of
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["BLINDED", "NOBODY", "SEEING", "cheap_group"]
 

@@ -26,7 +26,7 @@ from ratt_opt.attackers.by_prices.groups.compiled import copy_row
 from ratt_opt.attackers.by_prices.groups.flow import always, augment, copy_flows, open_flow
 from ratt_opt.attackers.by_prices.groups.needs import admit, blind_fewer, inside_of, knapsack_need, settle
 from ratt_opt.attackers.by_prices.groups.size_forms import OPEN, OUTSIDE, SEEING, FormPoints, copy_points, open_form
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["FINISHED", "FULL", "PAUSED", "Prices", "Question", "Stack", "enumerate_groups"]
 

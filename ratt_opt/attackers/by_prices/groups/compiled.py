@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, team_criterion
 
 __all__ = ["add", "copy", "copy_row", "gather_seeing", "least_level", "level_of", "value_of"]

@@ -15,7 +15,7 @@ from typing import Any
 from ratt_opt.attackers.by_prices.groups.compiled import copy_row
 from ratt_opt.attackers.by_prices.groups.flow import augment
 from ratt_opt.attackers.by_prices.groups.size_forms import BLINDED, OUTSIDE, SEEING
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["connected_bound"]
 

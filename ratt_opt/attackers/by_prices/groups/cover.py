@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["next_cover"]
 

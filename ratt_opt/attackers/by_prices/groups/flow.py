@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["ALWAYS", "always", "augment", "copy_flows", "open_flow"]
 

@@ -25,7 +25,7 @@ from ratt_opt.attackers.by_prices.groups.compiled import copy_row, least_level, 
 from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
 from ratt_opt.attackers.by_prices.groups.room import SURE
 from ratt_opt.attackers.by_prices.groups.size_forms import BLINDED, ELSE, INSIDE, OPEN, OUTSIDE, SEEING
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["bound_members", "weigh"]
 

@@ -18,7 +18,7 @@ from ratt_opt.attackers.by_prices.groups.compiled import add, copy, copy_row
 from ratt_opt.attackers.by_prices.groups.member_bounds import bound_members, weigh
 from ratt_opt.attackers.by_prices.groups.room import bound_room, close
 from ratt_opt.attackers.by_prices.groups.size_forms import BLINDED, ELSE, INSIDE, OPEN, OUTSIDE, SEEING
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["MemberStack", "search_member_sets"]
 

@@ -12,7 +12,7 @@ import numpy as np
 from ratt_opt.attackers.by_prices.groups.blinding import UNDECIDED, WEAK, exchange, trade, weak_subset
 from ratt_opt.attackers.by_prices.groups.compiled import copy_row, gather_seeing
 from ratt_opt.attackers.by_prices.groups.flow import always
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["admit", "blind_fewer", "inside_of", "knapsack_need", "settle"]
 

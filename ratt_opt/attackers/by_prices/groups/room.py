@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import add, least_level, level_of, value_of
 from ratt_opt.attackers.by_prices.groups.size_forms import BLINDED, ELSE, INSIDE, OPEN, OUTSIDE
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["SURE", "bound_room", "close", "count", "may_see"]
 

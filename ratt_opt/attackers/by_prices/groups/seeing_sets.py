@@ -31,7 +31,7 @@ from ratt_opt.attackers.by_prices.groups.size_forms import (
     copy_points,
     open_form,
 )
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["Flows", "SeeingStack", "leave_node", "lower_prices", "search_seeing_sets"]
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = [
     "BLINDED",

@@ -12,10 +12,10 @@ from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST, ThresholdBound
 from ratt_opt.attackers.staging import Stage, run_stages
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
+from ratt_opt.budget import Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from ratt_opt.problem import Attack
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -31,7 +31,7 @@ from ratt_opt.attackers.by_size.family_prices.axis_nodes import (
     join,
 )
 from ratt_opt.attackers.weakest_set.selection import move_least_first
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["search_axes"]
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ratt_opt.attackers.weakest_set.pair_bound import fill_pairs, mean_of_least, worth
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

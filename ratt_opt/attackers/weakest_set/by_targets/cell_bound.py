@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import matrix_of_gradient, target_value
 
 __all__ = ["ROUNDING", "Corners", "as_gradient", "bound_again", "cell_bound", "clipped_middle"]

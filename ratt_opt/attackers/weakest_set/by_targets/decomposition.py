@@ -20,7 +20,7 @@ from ratt_opt.attackers.weakest_set.by_targets.slope_cells import least_choice
 from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import Meshes
 from ratt_opt.attackers.weakest_set.by_targets.target_choices import Ascent, Family, ascend, choose, room
 from ratt_opt.attackers.weakest_set.outer_polytopes import target_values
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray

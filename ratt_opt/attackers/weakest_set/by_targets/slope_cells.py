@@ -34,7 +34,7 @@ from ratt_opt.attackers.weakest_set.by_targets.cell_bound import (
 )
 from ratt_opt.attackers.weakest_set.by_targets.slope_meshes import HEAVY, begin, keep, resume
 from ratt_opt.attackers.weakest_set.by_targets.target_choices import IN_ANY_ORDER, Family, choose, room
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import LOG_DET, target_gradient
 
 __all__ = ["least_choice"]

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 
 __all__ = ["HEAVY", "Meshes", "begin", "keep", "resume"]
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from ratt_opt.attackers.weakest_set.selection import move_least_first
 from ratt_opt.attackers.weakest_set.smoothed_dual import soft_level
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import target_gradient, target_value
 
 __all__ = ["Ascent", "Family", "ascend", "choose", "pick", "room"]

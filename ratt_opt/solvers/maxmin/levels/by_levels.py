@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.frontier import ClosingRule
 from ratt_opt.solvers.maxmin.levels.level_search import Ending
 from ratt_opt.solvers.maxmin.plans.walk import Walk
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.levels.elements import Elements

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.solvers.maxmin.covers.loops.team import log_determinant
 from ratt_opt.solvers.maxmin.levels.level_search import Outcome
 from ratt_opt.solvers.maxmin.marginals.tables import BRANCHED

@@ -14,11 +14,10 @@ from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_atta
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackMemory
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import triangles
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray

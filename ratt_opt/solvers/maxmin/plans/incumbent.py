@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.solvers.maxmin.plans.candidates import Candidates, climb
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -13,7 +13,7 @@ from uuid import uuid4
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
-from ratt_opt.processes import SeparateProcesses, may_start_processes
+from ratt_opt.running.processes import SeparateProcesses, may_start_processes
 from ratt_opt.solvers.maxmin.subtrees.worker import Searched, Work, search_nodes
 
 if TYPE_CHECKING:

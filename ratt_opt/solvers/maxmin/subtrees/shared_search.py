@@ -8,10 +8,10 @@ from time import monotonic
 from typing import TYPE_CHECKING
 from uuid import uuid4
 
+from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.subtrees.merge import hang_below
 from ratt_opt.solvers.maxmin.subtrees.worker import LentNode, Work
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
-from ratt_opt.stopping import Stop
 
 if TYPE_CHECKING:
     from ratt_opt.budget import Budget

@@ -19,11 +19,11 @@ from ratt_opt.solvers.maxmin.turns import Turns
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.budget import Stop
     from ratt_opt.graph.outcomes import Outcome
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.maxmin.proof import TangentCut, UpperProof
     from ratt_opt.solvers.maxmin.task import Choices
-    from ratt_opt.stopping import Stop
 
 __all__ = ["LentNode", "Searched", "Work", "search_nodes"]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.solvers.maxmin.covers.loops.keeping import keep
 from ratt_opt.solvers.maxmin.covers.loops.team import add, tells, total_of, value_of
 

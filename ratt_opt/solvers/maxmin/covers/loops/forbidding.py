@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM
 from ratt_opt.solvers.maxmin.covers.loops.team import bound_robot
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.solvers.maxmin.covers.loops.team import raised, value_of
 
 __all__ = ["keep", "lose_all"]

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ratt_opt.compiling import numba
+from ratt_opt.running.compiling import numba
 from ratt_opt.solvers.maxmin.covers.loops.forbidding import (
     LACKING,
     cover_depends_on,

@@ -6,7 +6,7 @@ fails with an error of its own; so is one in the callback of a weak reference, o
 raised again as soon as the callback has ended. Where the compiler takes a
 module over, an interrupt just after it left two owners, each of which freed it; one at the very end of compiling left
 interrupts handled as while it lasts: there, too, it comes again a little later. What is kept of compiled code:
-``_kept_code``.
+``kept_code.py``.
 
 An interrupt while compiled loops run came when the arrays that they return are made, for each of which Python was asked
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
@@ -33,7 +33,7 @@ import weakref
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt._interrupts import again_later, interrupts_afterwards
+from ratt_opt.running.interrupts import again_later, interrupts_afterwards
 
 with interrupts_afterwards():
     import numba
@@ -43,7 +43,7 @@ with interrupts_afterwards():
     from numba.core.caching import CompileResultCacheImpl
     from numba.core.registry import cpu_target
 
-    from ratt_opt._kept_code import SourcesLocator
+    from ratt_opt.running.kept_code import SourcesLocator
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SourcesLocator"]
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 IMPORTS = re.compile(r"^\s*from ratt_opt([.\w]*) import (\([^)]*\)|.*)$", re.M)
-COMPILED = re.compile(r"^from ratt_opt\.compiling import", re.M)
+COMPILED = re.compile(r"^from ratt_opt\.running\.compiling import", re.M)
 """What every module of compiled loops contains."""
 
 
