@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attackers import team_attack
 from ratt_opt.attackers.by_size import size_vector_search
 from ratt_opt.attackers.by_size.family_prices import family_search
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 from ratt_opt.attackers.staging import without_stages
+from ratt_opt.attackers.task import AttackMemory
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
@@ -61,8 +63,6 @@ def test_each_stage_begins_where_the_one_before_ended(name):
 
 
 def test_an_attack_that_goes_on_tells_of_what_is_new():
-    from ratt_opt.attackers.task import AttackMemory
-
     problem = PROBLEMS["small world"]()
     plan, memory = ro.ratt(problem).elements, AttackMemory()
     first = ro.worst_case_attack(problem, plan, max_nodes=1000, memory=memory)
@@ -71,20 +71,29 @@ def test_an_attack_that_goes_on_tells_of_what_is_new():
     assert [row.name for row in later.stages] == ["earlier search, resumed"]
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_brackets_are_true_without_a_stage(name, monkeypatch):
-    """Small teams go the ways of large ones, and one stage never runs."""
-    from ratt_opt.attackers import team_attack
+@pytest.fixture(scope="module")
+def small_teams():
+    """Problems, plans and their worst cases by brute force, before small teams go the ways of large ones."""
+    teams = []
+    for seed in range(40):
+        rng = np.random.default_rng([seed, 39])
+        is_complete = seed % 3 > 0
+        kind = None if seed % 3 == 2 else str(rng.choice(["trace", "logdet", "maxeig"]))
+        problem = random_problem(rng, int(rng.integers(2, 6)), kind=kind, complete=is_complete, protect=not is_complete)
+        plan = random_elements(rng, problem)
+        teams.append((problem, plan, brute_force_worst_case(problem, plan)))
+    return teams
 
+
+@pytest.mark.parametrize("name", NAMES)
+def test_brackets_are_true_without_a_stage(name, small_teams, monkeypatch):
     for limit in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER"):
         monkeypatch.setattr(team_attack, limit, 0)
-    for seed in range(20):
-        rng = np.random.default_rng([seed, 39])
-        problem = random_problem(rng, int(rng.integers(2, 7)))
-        plan = random_elements(rng, problem)
-        worst = brute_force_worst_case(problem, plan)
+    for seed, (problem, plan, worst) in enumerate(small_teams):
+        monkeypatch.setattr(size_vector_search, "MOST_VECTORS", (1, 100)[seed % 2])
+        monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", (-1, 10**8)[seed % 5 == 0])
         with without_stages(name):
-            found = ro.worst_case_attack(problem, plan, time_limit=1.0, max_nodes=2000)
+            found = ro.worst_case_attack(problem, plan, time_limit=0.3)
         slack = 1e-9 * abs(worst) + 1e-10
         assert found.lower <= worst + slack
         assert found.upper >= worst - slack

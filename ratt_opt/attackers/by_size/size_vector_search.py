@@ -94,7 +94,7 @@ class SizeVectorSearch:
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
         self.weak = WeakFamilies(task, team)
         self.lists = LowLists(team, np.argsort(-team.single, kind="stable"))
-        self.bounds: dict[Sizes, float] = {}
+        self.bounds: dict[Sizes, float] = dict.fromkeys(self.vectors, -np.inf)
         """What the families of each vector that is open are worth at least."""
         self.families: list[GroupExchanges] = []
         self._is_about_families = False
@@ -102,9 +102,7 @@ class SizeVectorSearch:
 
     def run(self) -> Stop:
         """Search every vector; the bracket is valid whenever this stops."""
-        stop = run_stages(STAGES, self)
-        assert stop is not None, "the last stage ends it"
-        return stop
+        return run_stages(STAGES, self) or self.task.budget.stop() or Stop.HEURISTIC
 
     # -- what the stages ask -------------------------------------------------------------------------------------
 
@@ -125,16 +123,16 @@ class SizeVectorSearch:
         return self.is_about_families() and len(self.team.single) > LISTED_WHOLE
 
     def lists_at_once(self) -> bool:
-        """One group decides, or at most 34 robots."""
-        return not self.lists_in_share()
+        """Vectors can be searched one by one; one group decides, or at most 34 robots."""
+        return self.has_all_vectors and not self.lists_in_share()
 
     def is_about_families(self) -> bool:
         """Several groups about alike, limit of time."""
-        return self._is_about_families
+        return self._is_about_families and self.has_all_vectors
 
     def is_nearly_closed(self) -> bool:
         """Several groups about alike, at most 2 % left."""
-        return self._is_about_families and self.bracket.upper - self.bracket.lower <= NEARLY * abs(self.bracket.upper)
+        return self.is_about_families() and self.bracket.upper - self.bracket.lower <= NEARLY * abs(self.bracket.upper)
 
     # -- the stages ----------------------------------------------------------------------------------------------
 
@@ -152,7 +150,6 @@ class SizeVectorSearch:
         """The weakest families that exchanges find, of each vector or of some."""
         self.families = self.weak.exchanged(self.vectors if self.has_all_vectors else self._some_vectors())
         self._accept(weakest_of(self.families))
-        self.bounds = dict.fromkeys(self.vectors, -np.inf)
         self._is_about_families = self._are_alike(self.families)
 
     def families_without_vectors(self) -> Stop:
@@ -310,6 +307,6 @@ STAGES: tuple[Stage[SizeVectorSearch], ...] = (
     Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.is_nearly_closed, LARGEST_SHARE[1]),
     Stage("families", SizeVectorSearch.narrow_families, SizeVectorSearch.is_about_families),
     Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_in_share),
-    Stage("largest group", SizeVectorSearch.decide_all_by_largest),
+    Stage("largest group", SizeVectorSearch.decide_all_by_largest, SizeVectorSearch.has_few_vectors),
 )
 """Of an attack on a complete graph, by vectors of sizes."""

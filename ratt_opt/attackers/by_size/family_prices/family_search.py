@@ -87,6 +87,7 @@ class FamilySearch:
         may_prove = bracket.lower > proved or (self._prices is not None and not self._prices.has_left_open)
         goes_on = self.is_limited() and (is_last or may_prove)
         while not bracket.is_closed and goes_on and (is_last or vain < MOST_VAIN):
+            self.task.budget.check()
             before = bracket.lower, bracket.upper
             run_stages(LATER_TURNS, self)
             vain = vain + 1 if (bracket.lower, bracket.upper) == before else 0
