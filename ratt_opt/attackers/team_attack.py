@@ -237,7 +237,7 @@ class TeamAttack:
             raise
 
     def every_attack(self) -> Stop:
-        """All of them."""
+        """Every attack, valued one by one."""
         return try_every_attack(self.task)
 
     def tree_for_later(self) -> Stop:
@@ -267,7 +267,7 @@ class TeamAttack:
         return SizeVectorSearch(self.task, self._team).run()
 
     def size_vectors_at_first(self) -> None:
-        """The same, where dual prices follow."""
+        """Families of groups by their sizes; dual prices follow."""
         self.size_vectors()
 
     def greedy(self) -> None:
@@ -295,7 +295,7 @@ class TeamAttack:
         return last_stage(self.task, self._partitions)
 
     def partitions_at_first(self) -> None:
-        """The same, for a share."""
+        """Partitions of the team into listed groups, by thresholds."""
         self._partitions.task = self.task
         self._partitions.run()
 
@@ -341,7 +341,7 @@ class TeamAttack:
         self._sizes.bound(self.task, lists_sets=False)
 
     def possible_sizes(self) -> None:
-        """The same; lists the sets of these sizes that are weak, where they are few."""
+        """Groups of possible sizes, whichever robots are in them; lists the weak sets of these, where they are few."""
         self._sizes = PossibleGroups(self._team, self._sure)
         self._sizes.bound(self.task)
 

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from analysis.readme import refreshed
 from ratt_opt.attackers import team_attack
 from ratt_opt.attackers.by_size import size_vector_search
 from ratt_opt.attackers.by_size.family_prices import family_search
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 from ratt_opt.attackers.staging import without_stages
 from ratt_opt.attackers.task import AttackMemory
+from tests.documents import ROOT
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
@@ -98,6 +100,11 @@ def test_brackets_are_true_without_a_stage(name, small_teams, monkeypatch):
         assert found.lower <= worst + slack
         assert found.upper >= worst - slack
         assert all(row.name != name for row in found.stages)
+
+
+def test_the_page_of_the_engine_shows_the_schedules(tmp_path):
+    text = (ROOT / "docs" / "engine.md").read_text(encoding="utf-8")
+    assert refreshed(text, tmp_path) == text
 
 
 def test_every_condition_says_when():

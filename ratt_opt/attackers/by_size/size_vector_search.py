@@ -153,11 +153,11 @@ class SizeVectorSearch:
         self._is_about_families = self._are_alike(self.families)
 
     def families_without_vectors(self) -> Stop:
-        """What knows no vectors."""
+        """Annealed attacks, dives and dual prices of families, without vectors."""
         return FamilySearch(self.task, self.team, self.families, self._priced_vectors()).run()
 
     def narrow_families(self) -> None:
-        """The same for the vectors that are open, as long as it proves something."""
+        """Annealed attacks, dives and dual prices of the vectors that are open, as long as they prove something."""
         FamilySearch(self.task, self.team, self.families, list(self.bounds)).narrow()
 
     def decide_listed(self) -> None:
@@ -165,7 +165,7 @@ class SizeVectorSearch:
         self._decide_listed(self.families)
 
     def decide_by_largest(self) -> None:
-        """The vectors that are open, by their largest group, for a share."""
+        """The vectors that are open, by their largest group."""
         self._decide_by_largest()
 
     def decide_all_by_largest(self) -> Stop:

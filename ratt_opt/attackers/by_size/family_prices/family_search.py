@@ -125,7 +125,7 @@ class FamilySearch:
         self._anneal(ANNEALED_STARTS)
 
     def anneal_once(self) -> None:
-        """One more."""
+        """One more annealed attack."""
         self._anneal(1)
 
     def _anneal(self, starts: int) -> None:

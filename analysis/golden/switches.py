@@ -1,0 +1,94 @@
+"""Parts of the engine that can be left out to see what each is worth; brackets stay true without any of them."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING, Any
+from unittest.mock import patch
+
+from ratt_opt.attackers.by_prices import paying_groups
+from ratt_opt.attackers.by_prices.answer import Answer, Threshold
+from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
+from ratt_opt.attackers.by_prices.decision import ThresholdDecision
+from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
+from ratt_opt.attackers.by_size import packing
+from ratt_opt.attackers.by_size.family_prices import family_search
+from ratt_opt.attackers.by_size.size_vector_search import STAGES
+from ratt_opt.attackers.schedule import CRITERION
+from ratt_opt.attackers.staging import without_stages
+from ratt_opt.attackers.weakest_set import branch_and_bound
+from ratt_opt.solvers.maxmin.backjumps import Backjumps
+from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
+from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
+from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
+from ratt_opt.solvers.maxmin.plans.kicks import Kicks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["ATTACK_SWITCHES", "PLAN_SWITCHES", "without"]
+
+NEEDED = {"thresholds", "nobody left", "single robots", "size vectors"}
+"""Stages without which nothing is left to compare."""
+Patches = tuple[tuple[Any, str, Any], ...]
+
+
+class _Ways:
+    """The ways of :class:`paying_groups.PayingSearch` without one."""
+
+    def __init__(self, left_out: paying_groups.Way) -> None:
+        self._ways = [way for way in paying_groups.Way if way is not left_out]
+        self.SEEING_WITH_FORMS, self.SEEING, self.INSIDE = paying_groups.Way
+
+    def __iter__(self) -> Iterator[paying_groups.Way]:
+        return iter(self._ways)
+
+
+def _gives(value: Any) -> Any:
+    return lambda *_, **__: value
+
+
+STAGE_NAMES = [
+    name
+    for table in (CRITERION, STAGES, family_search.FORCED, family_search.FIRST_TURN, family_search.LATER_TURNS)
+    for name in dict.fromkeys(stage.name for stage in table)
+    if name not in NEEDED
+]
+BOUNDS: dict[str, Patches] = {
+    "pricing: forms of two sizes": ((ConvexForms, "fit", _gives(None)),),
+    "pricing: who is inside first": ((paying_groups, "Way", _Ways(paying_groups.Way.INSIDE)),),
+    "pricing: who sees first": ((paying_groups, "Way", _Ways(paying_groups.Way.SEEING)),),
+    "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
+    "dual repair": ((FallingPrices, "fall", _gives(False)),),
+    "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
+    "outer polytopes of several robots": ((branch_and_bound, "HEAVY_ROBOTS", ((10**9, 1),)),),
+    "enumeration of sets": (
+        (branch_and_bound, "AT_ONCE", 0),
+        (branch_and_bound, "SHORTEST_ENUMERATION", 1),
+        (branch_and_bound, "LONGEST_ENUMERATION", 1),
+    ),
+    "packing": ((packing, "LONGEST_PACKING", -1),),
+}
+"""What is put in the place of what, of attacks."""
+PLAN_SWITCHES: dict[str, Patches] = {
+    "covers": ((CoverSearch, "of", _gives(None)),),
+    "marginal gains": ((MarginalSearch, "of", _gives(None)),),
+    "backjumps": ((Backjumps, "follow", _gives(None)),),
+    "perturbation": ((Kicks, "are_due", _gives(False)),),
+    "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
+}
+"""The same, of best plans."""
+ATTACK_SWITCHES = [*dict.fromkeys(STAGE_NAMES), *BOUNDS]
+"""Names of what can be left out of attacks: stages, then bounds."""
+
+
+@contextmanager
+def without(name: str) -> Iterator[None]:
+    """Leave one part out; an empty name leaves out nothing."""
+    patches = BOUNDS.get(name) or PLAN_SWITCHES.get(name) or ()
+    with ExitStack() as stack:
+        if name and not patches:
+            stack.enter_context(without_stages(name))
+        for owner, attribute, value in patches:
+            stack.enter_context(patch.object(owner, attribute, value))
+        yield
