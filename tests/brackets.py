@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 import ratt_opt as ro
 
 
@@ -26,3 +28,10 @@ def is_exact(problem, plan, result):
     """Whether both ends are what its attack leaves."""
     value = attained(problem, plan, result)
     return result.lower == problem.outward(value, value)[0] and attains(problem, plan, result)
+
+
+def assert_closed(problem, plan, bracket, expected):
+    """Both ends are what is expected, and the attack attains the upper one."""
+    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-10)
+    assert bracket.lower == pytest.approx(expected, rel=2e-10, abs=1e-10)
+    assert problem.team_value(plan, bracket.attack) == bracket.upper

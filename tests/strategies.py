@@ -13,7 +13,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt.setfunctions.base import SetFunction, TableFunction
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
@@ -130,6 +130,75 @@ def random_elements(rng, problem):
 
 SEEDED = settings(max_examples=60, deadline=None, derandomize=True)
 """Settings of the drawn tests in the quick suite: the same examples in every run."""
+
+
+BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 4), (5, 0, 3))
+"""Robots, blinded, cut of small teams on complete graphs."""
+
+
+def team_problem(seed, n_robots, *, graph=None):
+    """Random team on a random graph: all criteria, targets of one to four coordinates, weights, protected parts."""
+    rng = np.random.default_rng(seed)
+    name, dimension = list(OBJECTIVES)[seed % 3], 1 + seed % 4
+    far = range_bearing(rng, n_robots, 4, 1) if dimension == 2 else None
+    data = far or information_data(rng, n_robots, 3, dimension)
+    graph = graph or random_graph(rng, n_robots)
+    links = sorted((min(link), max(link)) for link in graph.edges)
+    held = rng.random() < 0.4
+    problem = Problem(
+        OBJECTIVES[name](*data, rng.uniform(0.2, 3, len(data[0])) if seed % 5 == 0 else None),
+        np.arange(n_robots),
+        graph,
+        int(rng.integers(0, max(n_robots // 2, 1) + 1)),
+        int(rng.integers(0, len(links) + 1)),
+        frozenset(i for i in range(n_robots) if held and rng.random() < 0.3),
+        frozenset(link for link in links if held and rng.random() < 0.2),
+    )
+    return problem, random_elements(rng, problem)
+
+
+def ragged(rng, robots, most, kind, weak=0):
+    """A team with 1 to ``most`` elements a robot, some of them equal; the first ``weak`` robots see next to nothing."""
+    owners = np.repeat(np.arange(robots), rng.integers(1, most + 1, robots))
+    prior, information = information_data(rng, len(owners), 3)
+    information[owners < weak] *= 1e-3
+    twin = np.flatnonzero(np.diff(owners, prepend=-1) == 0)[:1]
+    information[twin] = information[twin - 1]
+    return Problem(OBJECTIVES[kind](prior, information), owners, None, 0, 0)
+
+
+def threatened(problem, alpha_s, alpha_c):
+    """The same team under another threat."""
+    return Problem(problem.objective, problem.robot, None, alpha_s, alpha_c)
+
+
+def small_team(seed):
+    """A small random problem."""
+    rng = np.random.default_rng([23, seed])
+    robots, alpha_s, alpha_c = BUDGETS[seed % len(BUDGETS)]
+    team = ragged(rng, robots, 4, list(OBJECTIVES)[seed // len(BUDGETS) % 3], weak=int(rng.integers(0, 2)))
+    return threatened(team, alpha_s, alpha_c)
+
+
+class Opaque(SetFunction):
+    """Values of another function, counted; nothing else is known of it."""
+
+    def __init__(self, f):
+        self.f, self.asked = f, 0
+
+    @property
+    def n(self):
+        return self.f.n
+
+    def evaluate(self, membership):
+        self.asked += len(membership)
+        return self.f.evaluate(membership)
+
+
+class Submodular(Opaque):
+    """The same of a function that theory proves submodular."""
+
+    is_submodular = True
 
 
 class Drawn:

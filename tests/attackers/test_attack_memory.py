@@ -15,10 +15,9 @@ from ratt_opt.attackers.by_prices.price_search import PriceSearch
 from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
-from tests.attackers.test_by_prices import check, team_problem
+from tests.brackets import assert_closed
 from tests.oracles import brute_force_worst_case
-from tests.solvers.test_any_function import Opaque
-from tests.strategies import random_elements, random_problem
+from tests.strategies import Opaque, random_elements, random_problem, team_problem
 
 PIECES = 20_000
 """Budgets after which a search that learns nothing from one to the next would still not have ended."""
@@ -44,7 +43,7 @@ def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) ->
             ends = bracket.lower, bracket.upper
         else:
             break
-    check(problem, plan, bracket, truth)
+    assert_closed(problem, plan, bracket, truth)
 
 
 @pytest.mark.parametrize(

@@ -16,10 +16,8 @@ from ratt_opt.attackers.link_choice import best_links
 from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.setfunctions.metered import Metered
-from tests.attackers.test_by_prices import team_problem
 from tests.oracles import brute_force_worst_case
-from tests.solvers.test_any_function import Opaque, Submodular
-from tests.strategies import SEEDED, information_data
+from tests.strategies import SEEDED, Opaque, Submodular, information_data, team_problem
 from tests.test_own_criterion import RootObjective
 
 DONE = {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}

@@ -21,8 +21,7 @@ from ratt_opt.attackers.by_size import largest_first, packing, size_vector_searc
 from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.budget import Budget
-from tests.attackers.test_by_prices import team_problem
-from tests.strategies import random_problem
+from tests.strategies import random_problem, team_problem
 
 if TYPE_CHECKING:
     from collections.abc import Callable

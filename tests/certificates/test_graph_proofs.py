@@ -15,7 +15,7 @@ from tests.certificates.graph_proofs import (
     refuse,
     small_proofs,
 )
-from tests.certificates.test_mutations import refused_lower_ends
+from tests.certificates.mutants import refused_lower_ends
 
 FIFTH, THIRD = (0.2, 0.15), (1 / 3, 0.3)
 

@@ -12,7 +12,7 @@ import pytest
 
 from ratt_opt import FileFormatError, ProofError, verify_certificate
 from tests.certificates.cases import certified
-from tests.certificates.test_mutations import changed, places, variants
+from tests.certificates.mutants import changed, places, variants
 from tests.strategies import random_problem
 
 BUILT = Path(__file__).parents[2] / "formal" / "build" / "ratt-check"

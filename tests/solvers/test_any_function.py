@@ -12,28 +12,7 @@ from hypothesis import strategies as st
 import ratt_opt as ro
 from ratt_opt.errors import InputError
 from tests.oracles import brute_force_optimum, brute_force_worst_case
-from tests.strategies import SEEDED, Drawn, information_data, monotone_table, random_problem
-
-
-class Opaque(ro.SetFunction):
-    """Values of another function, counted; nothing else is known of it."""
-
-    def __init__(self, f):
-        self.f, self.asked = f, 0
-
-    @property
-    def n(self):
-        return self.f.n
-
-    def evaluate(self, membership):
-        self.asked += len(membership)
-        return self.f.evaluate(membership)
-
-
-class Submodular(Opaque):
-    """The same of a function that theory proves submodular."""
-
-    is_submodular = True
+from tests.strategies import SEEDED, Drawn, Opaque, Submodular, information_data, monotone_table, random_problem
 
 
 class Curved(Opaque):

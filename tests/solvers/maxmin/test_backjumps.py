@@ -10,8 +10,8 @@ from ratt_opt.solvers.maxmin.backjumps import Backjumps
 from ratt_opt.solvers.maxmin.groups import pair_outcomes, small_groups
 from ratt_opt.solvers.maxmin.plans import outcome_pool
 from ratt_opt.solvers.maxmin.proof import nodes_below
-from tests.solvers.maxmin.test_descent import drawn
-from tests.solvers.maxmin.test_solve import proved_upper
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.strategies import small_team
 
 
 @pytest.fixture(autouse=True)
@@ -60,7 +60,7 @@ def checked(problem: Problem, optimum: float, max_nodes: int | None) -> int:
 
 def test_what_is_left_is_a_proof_of_small_teams(taken_back: dict[bool, int]) -> None:
     for seed in range(12):
-        problem = drawn(seed)
+        problem = small_team(seed)
         checked(problem, exhaustive_optimum(problem).upper, None)
     assert taken_back[False]
 
@@ -78,7 +78,7 @@ def test_what_is_left_is_a_proof_wherever_the_search_stops(taken_back: dict[bool
 
 
 def test_proofs_are_shorter_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    problems = [drawn(seed) for seed in range(12)]
+    problems = [small_team(seed) for seed in range(12)]
     optima = [exhaustive_optimum(problem).upper for problem in problems]
     shorter = [checked(*pair, None) for pair in zip(problems, optima, strict=True)]
     monkeypatch.setattr(Backjumps, "follow", lambda self: self.frontier.fresh.clear())

@@ -7,16 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, Problem, certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
+from ratt_opt import Attack, certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
 from ratt_opt.solvers.maxmin import descent
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from ratt_opt.solvers.maxmin.subtrees import shared_search
-from tests.solvers.maxmin.test_pairs import ragged, threatened
-from tests.solvers.maxmin.test_solve import proved_upper
-from tests.solvers.maxmin.test_workers import Here
-from tests.strategies import OBJECTIVES
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.solvers.maxmin.workers import Here
+from tests.strategies import OBJECTIVES, small_team
 
-BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 4), (5, 0, 3))
 """(N, sensing, links)."""
 
 pytestmark = pytest.mark.usefixtures("floors")
@@ -39,21 +37,13 @@ def floors(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, float]]:
     return used
 
 
-def drawn(seed: int) -> Problem:
-    """A small random problem."""
-    rng = np.random.default_rng([23, seed])
-    robots, alpha_s, alpha_c = BUDGETS[seed % len(BUDGETS)]
-    team = ragged(rng, robots, 4, list(OBJECTIVES)[seed // len(BUDGETS) % 3], weak=int(rng.integers(0, 2)))
-    return threatened(team, alpha_s, alpha_c)
-
-
 @pytest.mark.parametrize(("seed", "sees_late"), [*((k, False) for k in range(60)), *((k, True) for k in range(30))])
 def test_agrees_with_exhaustive_search(seed: int, sees_late: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where attacks see nothing until a plan is attacked exactly: the level falls below floors put above it."""
     if sees_late:
         monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
         monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
-    problem = drawn(seed)
+    problem = small_team(seed)
     found, best = solve_maxmin(problem, gap=0), exhaustive_optimum(problem)
     slack = 1e-9 * best.upper + 16 * problem.objective.rounding
     assert found.lower == pytest.approx(best.lower, abs=slack)
@@ -75,7 +65,7 @@ def test_shared_trees_agree_with_exhaustive_search(group: int, tmp_path) -> None
     """The crew goes from tree to tree: what a worker decided above one floor does not count above the next."""
     crew = Here(lambda call: call % 5 == 4)
     for seed in range(100 + group, 136, 6):
-        problem = drawn(seed)
+        problem = small_team(seed)
         found, best = solve_maxmin(problem, gap=0, workers=crew), exhaustive_optimum(problem)
         slack = 1e-9 * best.upper + 16 * problem.objective.rounding
         assert found.lower == pytest.approx(best.lower, abs=slack)

@@ -30,7 +30,7 @@ from ratt_opt.solvers.maxmin.levels.elements import Elements
 from ratt_opt.solvers.maxmin.marginals.raised import raised_information
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
 from tests.oracles import brute_force_optimum
-from tests.solvers.maxmin.test_solve import proved_upper
+from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import sparse_problem
 
 if TYPE_CHECKING:

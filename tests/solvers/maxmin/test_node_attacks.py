@@ -12,9 +12,8 @@ from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.ratt import ratt
-from tests.solvers.maxmin.test_pairs import ragged, threatened
-from tests.solvers.maxmin.test_solve import proved_upper
-from tests.strategies import OBJECTIVES
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.strategies import OBJECTIVES, ragged, threatened
 
 BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 6), (6, 0, 11))
 """(N, sensing, links) that leave several groups."""

@@ -11,25 +11,11 @@ from ratt_opt import Problem, certify, exhaustive_optimum, solve_maxmin, verify_
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes, PairValues
 from ratt_opt.solvers.maxmin.task import Task
-from tests.solvers.maxmin.test_solve import proved_upper
-from tests.strategies import OBJECTIVES, information_data
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.strategies import OBJECTIVES, ragged, threatened
 
 BUDGETS = ((4, 1, 3), (5, 1, 7), (5, 2, 4), (6, 2, 9), (6, 3, 5), (4, 2, 0))
 """(N, sensing, links) whose finest outcomes are one pair and lone robots."""
-
-
-def ragged(rng: np.random.Generator, robots: int, most: int, kind: str, weak: int = 0) -> Problem:
-    """A team with 1 to ``most`` elements a robot, some of them equal; the first ``weak`` robots see next to nothing."""
-    owners = np.repeat(np.arange(robots), rng.integers(1, most + 1, robots))
-    prior, information = information_data(rng, len(owners), 3)
-    information[owners < weak] *= 1e-3
-    twin = np.flatnonzero(np.diff(owners, prepend=-1) == 0)[:1]
-    information[twin] = information[twin - 1]
-    return Problem(OBJECTIVES[kind](prior, information), owners, None, 0, 0)
-
-
-def threatened(problem: Problem, alpha_s: int, alpha_c: int) -> Problem:
-    return Problem(problem.objective, problem.robot, None, alpha_s, alpha_c)
 
 
 def weakest_pair(problem: Problem, plan: tuple[int, ...]) -> float:

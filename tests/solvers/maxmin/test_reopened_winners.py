@@ -11,7 +11,7 @@ from ratt_opt.solvers.maxmin.groups.winners import Winners
 from ratt_opt.solvers.maxmin.plans import outcome_pool
 from ratt_opt.solvers.maxmin.plans.candidates import Candidates
 from ratt_opt.solvers.maxmin.turns import Turns
-from tests.solvers.maxmin.test_solve import proved_upper
+from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, information_data
 
 TOO_MUCH = 1.3

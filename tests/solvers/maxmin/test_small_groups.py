@@ -8,9 +8,8 @@ import pytest
 from ratt_opt import Problem, certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
 from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.plans import outcome_pool
-from tests.solvers.maxmin.test_pairs import ragged, threatened
-from tests.solvers.maxmin.test_solve import proved_upper
-from tests.strategies import OBJECTIVES
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.strategies import OBJECTIVES, ragged, threatened
 
 BUDGETS = ((5, 0, 7), (5, 0, 8), (6, 0, 11), (6, 0, 12), (6, 1, 9), (5, 1, 5))
 """(N, sensing, links) that leave several groups of two and three."""

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from analysis.benchmarks.warm import moved
 from ratt_opt import InputError, exhaustive_optimum, greedy, random_scenario, solve_maxmin
-from tests.solvers.maxmin.test_solve import proved_upper
+from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
 
 

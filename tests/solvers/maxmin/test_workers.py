@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-import pickle
 import signal
 import threading
 import time
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
-from functools import cache
 from multiprocessing import active_children
 
 import numpy as np
@@ -21,9 +19,9 @@ import ratt_opt as ro
 from ratt_opt import InputError, Stop, random_scenario, solve_maxmin
 from ratt_opt.solvers.maxmin.subtrees import shared_search
 from ratt_opt.solvers.maxmin.subtrees.crew import LOSSES
-from ratt_opt.solvers.maxmin.subtrees.worker import Work
 from tests.oracles import brute_force_optimum
-from tests.solvers.maxmin.test_solve import proved_upper
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.solvers.maxmin.workers import Here, assert_agree, hard
 from tests.strategies import OBJECTIVES, random_problem
 
 
@@ -33,39 +31,6 @@ def shared_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shared_search, "ALONE_SECONDS", 0.0)
     monkeypatch.setattr(shared_search, "NODES_EACH", 0)
     monkeypatch.setattr(shared_search, "SLICE", 0.06)
-
-
-class Here(Executor):
-    """Runs what it is asked at once, and counts it; ``loses`` says which calls fail, by their number."""
-
-    def __init__(self, loses=lambda _: False) -> None:
-        self.calls, self._loses, self._max_workers = 0, loses, 2
-        self.trees: set[str] = set()
-
-    def submit(self, fn, /, *args, **kwargs):
-        self.calls += 1
-        self.trees |= {work.tree for work in args if isinstance(work, Work)}
-        future = Future()
-        if self._loses(self.calls):
-            future.set_exception(ConnectionError("the worker is gone"))
-        else:
-            future.set_result(pickle.loads(pickle.dumps(fn(*pickle.loads(pickle.dumps(args)), **kwargs))))
-        return future
-
-
-@cache
-def hard(kind="trace"):
-    """A problem of 20 to 60 nodes, and its result."""
-    problem = random_scenario(10, 15, alpha_s=3, alpha_c=11, seed=6).problem(kind)
-    return problem, solve_maxmin(problem, gap=1e-6)
-
-
-def assert_agree(problem, found, alone, gap=1e-6):
-    scale = abs(alone.upper)
-    assert found.stop in {Stop.GAP, Stop.CLOSED}
-    assert found.upper - found.lower <= gap * scale * 1.001
-    assert max(found.lower, alone.lower) <= min(found.upper, alone.upper) + 1e-9 * scale
-    assert proved_upper(problem, found.proof) <= found.upper + 1e-10 * scale
 
 
 @pytest.mark.usefixtures("shared_at_once")

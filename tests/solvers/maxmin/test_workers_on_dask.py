@@ -10,7 +10,7 @@ import ratt_opt as ro
 from ratt_opt import solve_maxmin
 from ratt_opt.solvers.maxmin.subtrees import shared_search
 from tests.cluster import SLOW, distributed, scheduler, workers
-from tests.solvers.maxmin.test_workers import assert_agree, hard
+from tests.solvers.maxmin.workers import assert_agree, hard
 
 if TYPE_CHECKING:
     from pathlib import Path

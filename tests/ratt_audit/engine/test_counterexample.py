@@ -11,7 +11,7 @@ from ratt_audit.engine.claim import Inequality
 from ratt_audit.engine.decide import Decision, decide
 from ratt_audit.engine.evidence import check_witness
 from ratt_opt.errors import ProofError
-from tests.audit.engine.abc_claims import ND, claim, f
+from tests.ratt_audit.engine.abc_claims import ND, claim, f
 
 
 def a_refutation() -> Decision:

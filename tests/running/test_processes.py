@@ -12,7 +12,7 @@ import pytest
 
 from ratt_opt.running.processes import SeparateProcesses, local_processes
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 SECONDS = 60.0
 LARGE = 10_000_000
 """Bytes of a call, more than a pipe takes at once."""

@@ -17,7 +17,7 @@ from ratt_audit.engine.prover import find_proof
 from ratt_audit.engine.refuter import find_witness
 from ratt_opt.errors import ProofError
 from ratt_opt.worst_ratio.function_class import FunctionClass
-from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB, claim, f
+from tests.ratt_audit.engine.abc_claims import ABC, ANY, ND, SUB, claim, f
 
 SUBADDITIVE = f("a") + f("b") + f("c") - f("a", "b", "c")
 

@@ -10,7 +10,7 @@ import pytest
 from ratt_audit.engine.claim import elementary, elementary_keys
 from ratt_opt.errors import ProofError
 from ratt_opt.worst_ratio.function_class import FunctionClass, check_class
-from tests.audit.engine.abc_claims import ABC, ANY, ND, SUB
+from tests.ratt_audit.engine.abc_claims import ABC, ANY, ND, SUB
 
 
 def in_class(kind: FunctionClass, values: tuple[int, ...], curvature: Fraction) -> bool:

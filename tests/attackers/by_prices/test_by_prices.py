@@ -26,30 +26,9 @@ from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
-from tests.brackets import worst_value
+from tests.brackets import assert_closed, worst_value
 from tests.oracles import brute_force_worst_case
-from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
-
-
-def team_problem(seed, n_robots, *, graph=None):
-    """Random team on a random graph: all criteria, targets of one to four coordinates, weights, protected parts."""
-    rng = np.random.default_rng(seed)
-    name, dimension = list(OBJECTIVES)[seed % 3], 1 + seed % 4
-    far = range_bearing(rng, n_robots, 4, 1) if dimension == 2 else None
-    data = far or information_data(rng, n_robots, 3, dimension)
-    graph = graph or random_graph(rng, n_robots)
-    links = sorted((min(link), max(link)) for link in graph.edges)
-    held = rng.random() < 0.4
-    problem = ro.Problem(
-        OBJECTIVES[name](*data, rng.uniform(0.2, 3, len(data[0])) if seed % 5 == 0 else None),
-        np.arange(n_robots),
-        graph,
-        int(rng.integers(0, max(n_robots // 2, 1) + 1)),
-        int(rng.integers(0, len(links) + 1)),
-        frozenset(i for i in range(n_robots) if held and rng.random() < 0.3),
-        frozenset(link for link in links if held and rng.random() < 0.2),
-    )
-    return problem, random_elements(rng, problem)
+from tests.strategies import OBJECTIVES, information_data, team_problem
 
 
 def run_prices(problem, plan, **limits):
@@ -66,18 +45,12 @@ def run_prices(problem, plan, **limits):
     return bracket, stop
 
 
-def check(problem, plan, bracket, expected):
-    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-10)
-    assert bracket.lower == pytest.approx(expected, rel=2e-10, abs=1e-10)
-    assert problem.team_value(plan, bracket.attack) == bracket.upper
-
-
 @pytest.mark.parametrize("seed", range(60))
 def test_against_the_definition(seed):
     problem, plan = team_problem(seed, 3 + seed % 4)
     bracket, stop = run_prices(problem, plan)
     assert stop is ro.Stop.CLOSED
-    check(problem, plan, bracket, brute_force_worst_case(problem, plan))
+    assert_closed(problem, plan, bracket, brute_force_worst_case(problem, plan))
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -86,7 +59,7 @@ def test_against_a_table_of_thresholds(seed):
     problem, plan = team_problem(seed, 13, graph=families[seed % 2])
     bracket, stop = run_prices(problem, plan, time_limit=60)
     assert stop is ro.Stop.CLOSED
-    check(problem, plan, bracket, worst_value(problem, plan))
+    assert_closed(problem, plan, bracket, worst_value(problem, plan))
 
 
 @pytest.mark.parametrize("n_robots", [1, 2, 5])
@@ -97,7 +70,7 @@ def test_where_nothing_can_be_attacked_no_group_is_weak(n_robots, seed):
     safe = ro.Problem(problem.objective, problem.robot, problem.graph, n_robots, len(links), range(n_robots), links)
     bracket, stop = run_prices(safe, plan)
     assert stop is ro.Stop.CLOSED
-    check(safe, plan, bracket, problem.objective(plan))
+    assert_closed(safe, plan, bracket, problem.objective(plan))
 
 
 @pytest.mark.parametrize("nodes", [0, 1, 100, 2_000])

@@ -14,7 +14,7 @@ from ratt_opt.attackers.by_prices.groups.member_sets import MemberStack
 from ratt_opt.attackers.by_prices.groups.room import bound_room
 from ratt_opt.attackers.by_prices.groups.size_forms import ELSE, INSIDE, OPEN, OUTSIDE, SEEING
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
-from tests.attackers.test_by_prices import team_problem
+from tests.strategies import team_problem
 
 N_ROBOTS = 8
 

@@ -10,8 +10,8 @@ from ratt_opt.attackers.by_prices import starts as module
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
 from ratt_opt.budget import Budget, OutOfBudget
-from tests.attackers.test_by_prices import team_problem
 from tests.oracles import brute_force_worst_case
+from tests.strategies import team_problem
 
 
 def starts_of(problem, plan, **options):
