@@ -32,8 +32,8 @@ def in_workers(
         try:
             for k, done in enumerate(as_completed(calls), 1):
                 row = done.result()
-                print(f"\r{k} of {len(calls)}: {row['part']}, {row['case']}", end="\x1b[K", file=sys.stderr, flush=True)
+                if sys.stderr.isatty():
+                    print(f"\r{k} of {len(calls)}: {row['part']}, {row['case']}", end="\x1b[K", file=sys.stderr)
                 yield row
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
-    print(file=sys.stderr)

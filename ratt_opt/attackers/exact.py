@@ -58,40 +58,21 @@ def worst_case_attack(
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
-    - Up to 12 robots, and up to 20 where the next three lines do not apply, on any graph and for any
-      objective, thresholds are decided one after the other (``graph/threshold.py``; a node is one
-      threshold). The result relies on nothing.
-    - Larger teams on graphs on which few links are cut and few robots blinded (up to 20,000 attacks, as with one cut on
-      hundreds of robots): every attack (``few_attacks.py``; a node is a set of links). Relies on a non-decreasing
-      objective.
-    - Larger teams with two-dimensional targets on a complete graph without protected links: families
-      of groups by their sizes (``by_size``; a node is a bound, a branch or a partial set), and where several groups are
-      about equally good, prices of robots and links. Where there are too many vectors of sizes, it goes on with these
-      and with annealed attacks until the time is up, and without a limit ends ``HEURISTIC`` where it did not close.
-      Relies on a non-decreasing objective, which the three criteria are.
-    - Two-dimensional targets on other graphs that an attack can split into few groups (up to 300,000), 16 to 60
-      robots: partitions into groups and who is blinded in each (``by_partition``; a node is a group tried or a partial
-      set), beyond 20 robots and where half of all links are there for a fifth of the budget, elsewhere with annealed
-      attacks after about a second; where there are more than 10,000 groups, these first, and prices that leave few
-      groups (``by_covers``). Before, on a complete graph, the bounds of the attacker that may cut protected links too
-      (``unprotected_bound``). Relies on a non-decreasing objective, as above.
-    - Teams of more than 20 robots on any graph, where the lines above do not apply or end: annealed attacks, tree
-      inequalities (``tree_bound.py``), groups of sizes that are possible on the graph (``by_size/relaxed_teams.py``;
-      where another search asks, on dense graphs and within a limit of time), and prices that no weak group pays
-      (``by_prices``; a node is a branch on one robot), until closed or out of the budget: give one, as graphs of 50
-      robots can take hours to close (of another search's budget that limits nothing, half a million nodes). Relies on
-      a non-decreasing objective, as above; targets of any dimension. Compiling takes about a minute once per machine.
-    - Set functions that are no information criteria, beyond the first line or where that would take too long: greedy
-      steps and exchanges, and the bounds of ``any_function.py``; within a limit of time or values, annealing where no
-      other search asks, and where none does or it asks again with a memory, all attacks by branch and bound
-      (``attack_tree.py``).
-    - Otherwise (criteria of one's own) an honest bracket (``forced_group.py``), within a limit of time then annealing
-      and all attacks by branch and bound, without one ``HEURISTIC`` where it did not close. Relies on a non-decreasing
-      objective (not checked).
+    Stages run one after the other until the bracket is closed or the budget is spent. ``docs/engine.md`` lists them,
+    their conditions and shares of the budget; ``stages`` of the result says which ran. What a node is depends on the
+    stage: a threshold, a branch, a set of robots.
 
-    A keyboard interrupt or a spent budget returns the bracket reached; the lower bound of up to 12 robots
-    then relies on a non-decreasing objective too. Interrupted before any attack is known, it evaluates the team
-    without an attack and returns that, and the value of no measurement.
+    - Up to 12 robots the values of all sets decide, and the result relies on nothing. If the budget ends before, the
+      lower end relies on a non-decreasing objective.
+    - Larger teams rely on a non-decreasing objective. The three criteria are; functions of your own are not checked.
+    - Give a limit for more than 20 robots: on networks of 50 some attacks take hours to close. If another search asks
+      without a limit, dual prices stop after half a million nodes.
+    - Without a limit ``HEURISTIC`` says that no stage is left that could close the bracket. That happens to functions
+      and criteria of your own, and on complete graphs with very many vectors of group sizes.
+    - Compiling takes about a minute, once on a machine.
+
+    A keyboard interrupt or a spent budget returns the bracket reached. If the user interrupts before any attack is
+    known, the result is the team without an attack and, as lower end, the value of no measurement.
 
     Parameters
     ----------
