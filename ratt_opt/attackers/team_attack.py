@@ -96,7 +96,6 @@ class TeamAttack:
         self._sure = 0
         """Seeing robots that some group is forced to keep."""
         self._sizes = PossibleGroups(None, 0)
-        self._has_time_for_prices = False
 
     # -- what the schedule asks ----------------------------------------------------------------------------------
 
@@ -333,7 +332,6 @@ class TeamAttack:
             bracket.raise_lower(tree_bound(objective, self._plan, self._threat, part, bracket.upper))
         budget.check()
         self._sizes = PossibleGroups(self._team, self._sure)
-        self._has_time_for_prices = budget.stop() is None
 
     def possible_sizes_alone(self) -> None:
         """Groups of possible sizes, whichever robots are in them."""
@@ -370,6 +368,11 @@ class TeamAttack:
 
     def _sizes_apply(self) -> bool:
         return PossibleGroups.apply(self.task)
+
+    @cached_property
+    def _has_time_for_prices(self) -> bool:
+        """Whether budget was left when prices were first thought of."""
+        return self.task.budget.stop() is None
 
     @cached_property
     def _team(self) -> PackedTeam | None:
