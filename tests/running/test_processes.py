@@ -59,5 +59,5 @@ def leave_while_sending() -> None:
 @pytest.mark.parametrize("ending", ["shut_down_while_sending", "lose_while_sending", "leave_while_sending"])
 def test_ending_while_a_call_is_sent(ending: str) -> None:
     # Of its own process, as what may wait for ever is the interpreter's exit too (it did, in Python 3.11.2).
-    program = f"from tests.test_processes import {ending}\nif __name__ == '__main__':\n    {ending}()"
+    program = f"from tests.running.test_processes import {ending}\nif __name__ == '__main__':\n    {ending}()"
     subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True, timeout=SECONDS - 10.0)
