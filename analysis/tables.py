@@ -11,7 +11,13 @@ from ratt_opt._rounding import named_text
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["append_csv", "print_table", "write_csv"]
+__all__ = ["append_csv", "print_table", "read_csv", "write_csv"]
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    """The rows of a file, every cell as text."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def write_csv(path: str | Path, rows: Sequence[Mapping[str, object]]) -> None:

@@ -35,3 +35,12 @@ def assert_closed(problem, plan, bracket, expected):
     assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-10)
     assert bracket.lower == pytest.approx(expected, rel=2e-10, abs=1e-10)
     assert problem.team_value(plan, bracket.attack) == bracket.upper
+
+
+def assert_search_closed(problem, elements, bracket, stop, expected):
+    """A search ended because its bracket closed at what is expected."""
+    assert stop is ro.Stop.CLOSED
+    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
+    assert bracket.lower <= expected * (1 + 1e-12) + 1e-12
+    assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
+    assert problem.team_value(elements, bracket.attack) == bracket.upper

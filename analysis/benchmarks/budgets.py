@@ -68,8 +68,14 @@ def budgets(draw: str, robots: int, seed: int) -> list[tuple[int, int]]:
         rng = np.random.default_rng([seed, robots])
         pairs = zip(rng.integers(0, robots - 1, STEPS**2), rng.integers(0, links + 1, STEPS**2), strict=True)
         return [(int(blinded), int(cut)) for blinded, cut in pairs]
-    blinded = np.round(np.linspace(0, robots - 2, STEPS)).astype(int).tolist()
-    cut = np.round(np.linspace(0.05, 0.95, STEPS) * links).astype(int).tolist()
+    return budget_grid(robots, STEPS)
+
+
+def budget_grid(robots: int, steps: int) -> list[tuple[int, int]]:
+    """So many numbers of blinded robots, from none to all but two, by as many of cut links, from 5 % to 95 %."""
+    links = robots * (robots - 1) // 2
+    blinded = np.round(np.linspace(0, robots - 2, steps)).astype(int).tolist()
+    cut = np.round(np.linspace(0.05, 0.95, steps) * links).astype(int).tolist()
     return [(one, other) for one in blinded for other in cut]
 
 

@@ -8,11 +8,11 @@ of the same instance takes the place of an earlier one.
 from __future__ import annotations
 
 import argparse
-import csv
 from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from analysis.tables import read_csv
 from ratt_opt._rounding import relative_gap, up
 
 if TYPE_CHECKING:
@@ -29,10 +29,9 @@ def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
     """The rows of the logs by their number of robots, the last one of every instance, in the order of the first."""
     rows: dict[int, dict[tuple[str, ...], Row]] = defaultdict(dict)
     for log in logs:
-        with log.open(newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                instance = (row["family"], row["seed"], row["alpha_s"], row["alpha_c"])
-                rows[int(row["robots"])][instance] = row
+        for row in read_csv(log):
+            instance = (row["family"], row["seed"], row["alpha_s"], row["alpha_c"])
+            rows[int(row["robots"])][instance] = row
     return {robots: list(of_team.values()) for robots, of_team in sorted(rows.items())}
 
 

@@ -45,11 +45,14 @@ def instances(
 ) -> Iterator[tuple[Any, ...]]:
     """Yield (robots, family, seed, problem)."""
     for n_robots, family, seed, name in product(robots, families, seeds, budgets):
-        rng = np.random.default_rng([n_robots, seed])
-        alpha_s, alpha_c = SHARES[name] or rng.uniform(0, 2 / 3, 2).tolist()
-        options: dict[str, Any] = {"alpha_s": float(alpha_s), "alpha_c": float(alpha_c), "seed": seed}
-        scenario = ro.network_scenario(family, n_robots, TARGETS[n_robots], **options)
-        yield n_robots, family, seed, scenario.problem(objective)
+        yield n_robots, family, seed, network_problem(family, n_robots, name, seed, objective)
+
+
+def network_problem(family: str, robots: int, budgets: str, seed: int, objective: str) -> Problem:
+    """The problem of one row; ``budgets`` : a name of ``SHARES``."""
+    shares = SHARES[budgets] or np.random.default_rng([robots, seed]).uniform(0, 2 / 3, 2).tolist()
+    options: dict[str, Any] = {"alpha_s": float(shares[0]), "alpha_c": float(shares[1]), "seed": seed}
+    return ro.network_scenario(family, robots, TARGETS[robots], **options).problem(objective)
 
 
 def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:

@@ -30,16 +30,15 @@ HEAD = (
 )
 
 
-def measured_without(name: str, part: str, case: str, seconds: float, turn: int) -> dict[str, Any]:
+def measured_without(name: str, part: str, case: str, turn: int, seconds: float) -> dict[str, Any]:
     """A row of the corpus without one part of the engine; loads the package, in a worker."""
-    from analysis.golden.corpus import PARTS
+    from analysis.golden.corpus import case_called
     from analysis.golden.measure import measured, warm
     from analysis.golden.switches import without
 
     warm()
-    asked = next(one for one in PARTS[part]() if one.name == case)
-    with without("" if name == EVERYTHING else name):
-        row = measured(replace(asked, seconds=seconds, nodes=None))
+    with without(name):
+        row = measured(replace(case_called(part, case), seconds=seconds, nodes=None))
     return {"without": name, "turn": turn} | row
 
 
@@ -62,16 +61,19 @@ def main() -> int:
     parser.add_argument("--twice", action="store_true", help="a second time, where rows differ by chance")
     parser.add_argument("--folder", type=Path, default=Path("build/ablation"))
     options = parser.parse_args()
-    from analysis.golden.comparison import apart, compared, read_rows, read_table
+    from analysis.golden.comparison import apart, compared, read_rows
     from analysis.golden.switches import ATTACK_SWITCHES, PLAN_SWITCHES
-    from analysis.tables import append_csv
+    from analysis.tables import append_csv, read_csv
 
     recorded = read_rows(Path("tests/golden"), ["networks", "complete", "plans"])
     attacks = chosen(["networks", "complete"], options.cases, recorded)
     plans = chosen(["plans"], options.cases, recorded)
     wanted = [EVERYTHING, *(options.only or [*ATTACK_SWITCHES, *PLAN_SWITCHES])]
     path = options.folder / "ablation.csv"
-    there = {(row["without"], row["part"], row["case"], int(row["turn"])) for row in read_table(path)}
+    there = {
+        (row["without"], row["part"], row["case"], int(row["turn"]))
+        for row in (read_csv(path) if path.exists() else [])
+    }
     turns = range(2 if options.twice else 1)
     asked = [
         (name, *key, turn)
@@ -79,10 +81,10 @@ def main() -> int:
         for name in wanted
         for key in (plans if name in PLAN_SWITCHES else attacks if name != EVERYTHING else attacks + plans)
     ]
-    missing = [(*one[:3], options.seconds, one[3]) for one in asked if one not in there]
+    missing = [(*one, options.seconds) for one in asked if one not in there]
     for row in in_workers(measured_without, missing, options.workers):
         append_csv(path, row)
-    rows = read_table(path)
+    rows = read_csv(path)
     by_name = {name: {_key(row): row for row in rows if row["without"] == name} for name in wanted}
     print(*HEAD, sep="\n")
     for name in wanted[1:]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from analysis.tables import read_csv
 from ratt_opt._rounding import relative_gap
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
-__all__ = ["Rows", "apart", "compared", "lost", "read_rows", "read_table"]
+__all__ = ["Rows", "apart", "compared", "differing", "lost", "read_rows"]
 
 Row = dict[str, str]
 Rows = dict[tuple[str, str], Row]
@@ -24,17 +24,9 @@ LEAST_GAP, LEAST_SECONDS = 1e-6, 0.01
 LIMITED = ("limited_lower", "limited_upper", "limited_nodes")
 
 
-def read_table(path: Path) -> list[Row]:
-    """The rows of a CSV file, none where there is no file."""
-    if not path.exists():
-        return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def read_rows(folder: Path, parts: Iterable[str]) -> Rows:
     """(part, case) -> row, of the parts whose files are there; a later row takes the place of an earlier one."""
-    tables = (read_table(folder / f"{part}.csv") for part in parts)
+    tables = (read_csv(path) for part in parts if (path := folder / f"{part}.csv").exists())
     return {(row["part"], row["case"]): row for table in tables for row in table}
 
 
@@ -62,13 +54,23 @@ def apart(then: Rows, now: Rows) -> list[tuple[str, str]]:
     return [key for key in now if key in then and are_apart(then[key], now[key])]
 
 
+def differing(then: Rows, now: Rows) -> list[tuple[str, str]]:
+    """Cases whose runs that are limited by nodes did not give the same."""
+
+    def differ(one: Row, other: Row) -> bool:
+        has_both = bool(one["limited_nodes"] and other["limited_nodes"])
+        return has_both and any(one[name] != other[name] for name in LIMITED)
+
+    return [key for key in now if key in then and differ(then[key], now[key])]
+
+
 def compared(then: Rows, now: Rows) -> list[dict[str, Any]]:
     """A line for each part, of the cases that both have: now over then, geometric means."""
     lines = []
     for part in dict.fromkeys(part for part, _ in now):
         pairs = [(then[key], now[key]) for key in now if key[0] == part and key in then]
         open_pairs = [pair for pair in pairs if not (_is_closed(pair[0]) and _is_closed(pair[1]))]
-        limited = [pair for pair in pairs if pair[0]["limited_nodes"] and pair[1]["limited_nodes"]]
+        limited = sum(bool(one["limited_nodes"] and other["limited_nodes"]) for one, other in pairs)
         own = {key: row for key, row in now.items() if key[0] == part}
         lines.append(
             {
@@ -77,22 +79,17 @@ def compared(then: Rows, now: Rows) -> list[dict[str, Any]]:
                 "closed_then": sum(_is_closed(one) for one, _ in pairs),
                 "closed_now": sum(_is_closed(other) for _, other in pairs),
                 "lost": len(lost(then, own)),
-                "gained": len(lost(own, {key: then[key] for key in own if key in then})),
+                "gained": len(lost(own, then)),
                 "gap_ratio": _ratio(open_pairs, lambda row: max(_gap(row), LEAST_GAP)),
                 "seconds_ratio": _ratio(pairs, lambda row: max(float(row["cpu_s"]), LEAST_SECONDS)),
                 "proof_ratio": _ratio(pairs, lambda row: _number(row["proof_bytes"])),
                 "verify_ratio": _ratio(pairs, lambda row: _number(row["verify_s"])),
-                "same_nodes": f"{sum(_are_identical(*pair) for pair in limited)} of {len(limited)}",
+                "same_nodes": f"{limited - len(differing(then, own))} of {limited}",
                 "other_plan": sum(one["plan"] != other["plan"] for one, other in pairs if one["asked"] == "attack"),
                 "apart": len(apart(then, own)),
             }
         )
     return lines
-
-
-def _are_identical(then: Mapping[str, str], now: Mapping[str, str]) -> bool:
-    """Whether the runs that are limited by nodes gave the same."""
-    return all(then[name] == now[name] for name in LIMITED)
 
 
 def _number(text: str) -> float:

@@ -10,27 +10,23 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 import ratt_opt as ro
+from analysis.benchmarks.attack import SETTINGS
+from analysis.benchmarks.budgets import budget_grid
 from analysis.benchmarks.limited_view import team
-from analysis.benchmarks.networks import SHARES, TARGETS
+from analysis.benchmarks.networks import SHARES, network_problem
 from analysis.golden.unusual import UNUSUAL, unusual_problem
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
+from ratt_opt.setfunctions.criteria.names import CLASSES as CRITERIA
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ratt_opt import Problem
 
-__all__ = ["PARTS", "Case", "cases"]
+__all__ = ["CRITERIA", "PARTS", "Case", "case_called", "cases"]
 
-CRITERIA = ("trace", "logdet", "maxeig")
 FAMILIES = tuple(NETWORK_FAMILIES)
-PAPER = {
-    10: (15, ((3, 11), (5, 15), (6, 22))),
-    20: (20, ((6, 47), (10, 63), (13, 95))),
-    30: (25, ((10, 108), (15, 145), (20, 217))),
-    40: (30, ((13, 195), (20, 260), (26, 390))),
-    60: (40, ((20, 442), (30, 590), (40, 885))),
-}
+PAPER = {robots: SETTINGS[robots] for robots in (10, 20, 30, 40, 60)}
 """Robots -> targets and budgets (blinded, cut) on complete graphs."""
 STEPS, DRAWN = 4, 6
 """Budgets of a grid in each direction, and random ones, for each size and criterion."""
@@ -59,12 +55,6 @@ def _complete(robots: int, targets: int, budgets: tuple[int, int], kind: str, se
     return scenario.problem(kind)
 
 
-def _network(family: str, robots: int, budgets: str, seed: int, kind: str) -> Problem:
-    shares = SHARES[budgets] or np.random.default_rng([robots, seed]).uniform(0, 2 / 3, 2).tolist()
-    blinded, cut = float(shares[0]), float(shares[1])
-    return ro.network_scenario(family, robots, TARGETS[robots], alpha_s=blinded, alpha_c=cut, seed=seed).problem(kind)
-
-
 def _camera(robots: int, targets: int, network: str, seed: int, kind: str) -> Problem:
     problem: Problem = team(robots, targets, network, seed).problem(kind)
     return problem
@@ -77,7 +67,7 @@ def _networks() -> Iterator[Case]:
             yield Case(
                 part="networks",
                 name=f"{robots} {family} {budgets} {seed}",
-                problem=partial(_network, family, robots, budgets, seed, "trace"),
+                problem=partial(network_problem, family, robots, budgets, seed, "trace"),
                 asked="attack",
                 seconds=10.0,
                 nodes=300 if robots <= 30 else None,
@@ -88,9 +78,7 @@ def _budgets(robots: int) -> Iterator[tuple[str, tuple[int, int]]]:
     links = robots * (robots - 1) // 2
     for k, pair in enumerate(PAPER[robots][1]):
         yield f"paper {k}", pair
-    blinded = np.round(np.linspace(0, robots - 2, STEPS)).astype(int).tolist()
-    cut = np.round(np.linspace(0.05, 0.95, STEPS) * links).astype(int).tolist()
-    for pair in product(blinded, cut):
+    for pair in budget_grid(robots, STEPS):
         yield f"grid {pair[0]} {pair[1]}", pair
     rng = np.random.default_rng([robots, 39])
     for one, other in zip(rng.integers(0, robots - 1, DRAWN), rng.integers(0, links + 1, DRAWN), strict=True):
@@ -118,7 +106,7 @@ def _plans() -> Iterator[Case]:
         name = f"complete {robots} {kind} paper {k}"
         yield Case(part="plans", name=name, problem=problem, asked="plan", seconds=20.0, nodes=5)
     for robots, family, budgets in product((24, 30), FAMILIES, ("fifth", "third")):
-        problem = partial(_network, family, robots, budgets, 0, "trace")
+        problem = partial(network_problem, family, robots, budgets, 0, "trace")
         name = f"network {robots} {family} {budgets}"
         yield Case(part="plans", name=name, problem=problem, asked="plan", seconds=30.0)
     for (robots, targets), network, kind, seed in product(
@@ -137,7 +125,7 @@ def _certificates() -> Iterator[Case]:
         name = f"complete {robots} {kind} paper {k}"
         yield Case(part="certificates", name=name, problem=problem, asked="certificate", seconds=20.0)
     for family, budgets in product(FAMILIES, ("fifth", "third")):
-        problem = partial(_network, family, 24, budgets, 1, "trace")
+        problem = partial(network_problem, family, 24, budgets, 1, "trace")
         name = f"network 24 {family} {budgets}"
         yield Case(part="certificates", name=name, problem=problem, asked="certificate", seconds=30.0)
     for (robots, targets), network, kind in product(((6, 8), (10, 10)), ("complete", "disk"), ("trace", "logdet")):
@@ -168,3 +156,8 @@ PARTS: dict[str, Callable[[], Iterator[Case]]] = {
 def cases(parts: list[str] | None = None) -> list[Case]:
     """The cases of these parts of the corpus, of all by default, in a fixed order."""
     return [case for part in parts or PARTS for case in PARTS[part]()]
+
+
+def case_called(part: str, name: str) -> Case:
+    """The case of that name."""
+    return next(case for case in PARTS[part]() if case.name == name)

@@ -6,15 +6,13 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
+from analysis.schedule import TABLES
 from ratt_opt.attackers.by_prices import paying_groups
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_size import packing
-from ratt_opt.attackers.by_size.family_prices import family_search
-from ratt_opt.attackers.by_size.size_vector_search import STAGES
-from ratt_opt.attackers.schedule import CRITERION
 from ratt_opt.attackers.staging import without_stages
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.solvers.maxmin.backjumps import Backjumps
@@ -48,12 +46,9 @@ def _gives(value: Any) -> Any:
     return lambda *_, **__: value
 
 
-STAGE_NAMES = [
-    name
-    for table in (CRITERION, STAGES, family_search.FORCED, family_search.FIRST_TURN, family_search.LATER_TURNS)
-    for name in dict.fromkeys(stage.name for stage in table)
-    if name not in NEEDED
-]
+STAGE_NAMES = dict.fromkeys(
+    stage.name for kind in ("criterion", "sizes", "families") for stage in TABLES[kind] if stage.name not in NEEDED
+)
 BOUNDS: dict[str, Patches] = {
     "pricing: forms of two sizes": ((ConvexForms, "fit", _gives(None)),),
     "pricing: who is inside first": ((paying_groups, "Way", _Ways(paying_groups.Way.INSIDE)),),
@@ -78,17 +73,15 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
 }
 """The same, of best plans."""
-ATTACK_SWITCHES = [*dict.fromkeys(STAGE_NAMES), *BOUNDS]
+ATTACK_SWITCHES = [*STAGE_NAMES, *BOUNDS]
 """Names of what can be left out of attacks: stages, then bounds."""
 
 
 @contextmanager
 def without(name: str) -> Iterator[None]:
-    """Leave one part out; an empty name leaves out nothing."""
-    patches = BOUNDS.get(name) or PLAN_SWITCHES.get(name) or ()
+    """Leave one part out; a name that is none's leaves out nothing."""
     with ExitStack() as stack:
-        if name and not patches:
-            stack.enter_context(without_stages(name))
-        for owner, attribute, value in patches:
+        stack.enter_context(without_stages(name))
+        for owner, attribute, value in (BOUNDS | PLAN_SWITCHES).get(name, ()):
             stack.enter_context(patch.object(owner, attribute, value))
         yield

@@ -8,6 +8,7 @@ import networkx as nx
 import numpy as np
 
 import ratt_opt as ro
+from ratt_opt.setfunctions.criteria.registry import CRITERIA
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["UNUSUAL", "unusual_problem"]
 
-CRITERIA = {"trace": ro.TraceObjective, "logdet": ro.LogDetObjective, "maxeig": ro.MaxEigenvalueObjective}
 Data = dict[str, Any]
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.attack_tree import AttackTree
+from ratt_opt.attackers.criterion_attack import CriterionAttack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 from ratt_opt.attackers.staging import recorded, run_stages
@@ -186,5 +187,6 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
         with recorded(task, "earlier search, resumed"):
             return last_stage(task, begun)
     task.memory.seconds = task.budget.seconds_left
-    stages = CRITERION if is_criterion else USER_FUNCTION
-    return run_stages(stages, TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
+    if is_criterion:
+        return run_stages(CRITERION, CriterionAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
+    return run_stages(USER_FUNCTION, TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC

@@ -5,6 +5,7 @@ Those of searches on complete graphs are in ``by_size/size_vector_search.py`` an
 
 from __future__ import annotations
 
+from ratt_opt.attackers.criterion_attack import CriterionAttack as Criterion
 from ratt_opt.attackers.staging import Stage
 from ratt_opt.attackers.team_attack import TeamAttack as Team
 
@@ -56,38 +57,40 @@ USER_FUNCTION: tuple[Stage[Team], ...] = (
 )
 """Set functions that are known by their values alone."""
 
-CRITERION: tuple[Stage[Team], ...] = (
-    Stage("thresholds", Team.thresholds, Team.is_small),
-    Stage("single robots", Team.first_bound),
-    Stage("every attack", Team.every_attack, Team.has_few_attacks),
-    Stage("size vectors", Team.size_vectors, Team.is_planar_and_complete),
-    Stage("size vectors", Team.size_vectors_at_first, Team.is_spatial_and_complete, SPATIAL_SHARE),
-    Stage("greedy steps", Team.greedy, share=GREEDY_SHARE),
-    Stage("listing of groups", Team.list_groups, Team.may_list_groups, LISTING_SHARE),
-    Stage("thresholds", Team.thresholds, Team.is_tabulated),
-    Stage("without protection", Team.without_protection, Team.is_complete_but_for_protection),
+CRITERION: tuple[Stage[Criterion], ...] = (
+    Stage("thresholds", Criterion.thresholds_of_few, Criterion.is_small),
+    Stage("single robots", Criterion.first_bound),
+    Stage("every attack", Criterion.every_attack, Criterion.has_few_attacks),
+    Stage("size vectors", Criterion.size_vectors, Criterion.is_planar_and_complete),
+    Stage("size vectors", Criterion.size_vectors, Criterion.is_spatial_and_complete, SPATIAL_SHARE),
+    Stage("greedy steps", Criterion.greedy, share=GREEDY_SHARE),
+    Stage("listing of groups", Criterion.list_groups, Criterion.may_list_groups, LISTING_SHARE),
+    Stage("thresholds", Criterion.thresholds, Criterion.is_tabulated),
+    Stage("without protection", Criterion.without_protection, Criterion.is_complete_but_for_protection),
     # where all groups are listed, on graphs that are not dense
-    Stage("forced size", Team.forced_size, Team.goes_by_groups),
-    Stage("partitions", Team.partitions_at_first, Team.has_few_groups, SOON_SHARE, SOON_NODES),
-    Stage("annealed attacks", Team.anneal_among_groups, Team.may_anneal_among_groups),
-    Stage("partitions", Team.partitions, Team.has_few_groups),
-    Stage("exact covers", Team.exact_covers, Team.has_many_groups),
+    Stage("forced size", Criterion.forced_size, Criterion.goes_by_groups),
+    Stage("partitions", Criterion.partitions_at_first, Criterion.has_few_groups, SOON_SHARE, SOON_NODES),
+    Stage("annealed attacks", Criterion.anneal_among_groups, Criterion.may_anneal_among_groups),
+    Stage("partitions", Criterion.partitions, Criterion.has_few_groups),
+    Stage("exact covers", Criterion.exact_covers, Criterion.has_many_groups),
     # elsewhere
-    Stage("possible sizes", Team.possible_sizes_alone, Team.may_have_sizes_of_dense, SIZES_SHARE, SIZES_NODES),
-    Stage("forced size", Team.forced_size, Team.is_packed_and_dense, BOUND_SHARE, BOUND_NODES),
-    Stage("tree inequalities", Team.trees),
-    Stage("forced size", Team.forced_size, Team.has_no_prices),
-    Stage("annealed values", Team.annealed_values, Team.has_no_prices_and_a_limit, ANNEALED_SHARE),
-    Stage("branch and bound", Team.tree_of_attacks, Team.has_no_prices_and_a_limit),
-    Stage("annealed attacks", Team.anneal, Team.has_prices),
-    Stage("possible sizes", Team.possible_sizes, Team.looks_at_sizes, SIZES_SHARE, SIZES_NODES),
-    Stage("weak sets", Team.weak_sets, Team.has_weak_sets, FIRST_ASKED, SIZES_NODES),
-    Stage("weak sets", Team.weak_sets, Team.has_weak_sets_and_no_groups, ASKED_SHARE, SIZES_NODES),
-    Stage("forced size", Team.forced_size, Team.has_prices, BOUND_SHARE, BOUND_NODES),
-    Stage("partitions", Team.partitions_at_first, Team.is_dense_with_groups, SPLIT_SHARE, SPLIT_NODES),
-    Stage("possible sizes", Team.possible_sizes, Team.may_have_sizes_again, SIZES_SHARE, SIZES_NODES),
-    Stage("weak sets", Team.weak_sets, Team.has_weak_sets_again, ASKED_SHARE, SIZES_NODES),
-    Stage("forced size", Team.forced_size, Team.is_dense_with_groups, BOUND_SHARE, BOUND_NODES),
-    Stage("dual prices", Team.dual_prices, Team.has_prices),
+    Stage(
+        "possible sizes", Criterion.possible_sizes_alone, Criterion.may_have_sizes_of_dense, SIZES_SHARE, SIZES_NODES
+    ),
+    Stage("forced size", Criterion.forced_size, Criterion.is_packed_and_dense, BOUND_SHARE, BOUND_NODES),
+    Stage("tree inequalities", Criterion.trees),
+    Stage("forced size", Criterion.forced_size, Criterion.has_no_prices),
+    Stage("annealed values", Criterion.annealed_values, Criterion.has_no_prices_and_a_limit, ANNEALED_SHARE),
+    Stage("branch and bound", Criterion.tree_of_attacks, Criterion.has_no_prices_and_a_limit),
+    Stage("annealed attacks", Criterion.anneal, Criterion.has_prices),
+    Stage("possible sizes", Criterion.possible_sizes, Criterion.looks_at_sizes, SIZES_SHARE, SIZES_NODES),
+    Stage("weak sets", Criterion.weak_sets, Criterion.has_weak_sets, FIRST_ASKED, SIZES_NODES),
+    Stage("weak sets", Criterion.weak_sets, Criterion.has_weak_sets_and_no_groups, ASKED_SHARE, SIZES_NODES),
+    Stage("forced size", Criterion.forced_size, Criterion.has_prices, BOUND_SHARE, BOUND_NODES),
+    Stage("partitions", Criterion.partitions_at_first, Criterion.is_dense_with_groups, SPLIT_SHARE, SPLIT_NODES),
+    Stage("possible sizes", Criterion.possible_sizes, Criterion.may_have_sizes_again, SIZES_SHARE, SIZES_NODES),
+    Stage("weak sets", Criterion.weak_sets, Criterion.has_weak_sets_again, ASKED_SHARE, SIZES_NODES),
+    Stage("forced size", Criterion.forced_size, Criterion.is_dense_with_groups, BOUND_SHARE, BOUND_NODES),
+    Stage("dual prices", Criterion.dual_prices, Criterion.has_prices),
 )
 """Criteria of information matrices."""

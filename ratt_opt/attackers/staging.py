@@ -35,7 +35,7 @@ def _always(search: Staged) -> bool:  # noqa: ARG001  (the shape of a condition)
 class Stage(Generic[S]):
     """A row of a schedule.
 
-    ``run`` : what is done; where it returns why it stopped, the schedule ends with that
+    ``run`` : what is done; if it returns why it stopped and has no share, the schedule ends with that
     ``applies`` : when; its docstring says it
     ``share`` : of the seconds, evaluations and nodes left; ``None`` for all of them. ``max_nodes`` : no more than these
     """
@@ -76,6 +76,8 @@ def run_stages(stages: Sequence[Stage[S]], search: S) -> Stop | None:
         stop = None
         with recorded(task, stage.name), _share(stage, search):
             stop = stage.run(search)
+        if stage.share is not None:
+            stop = None  # that was the end of the share
         if stop is None and task.bracket.is_closed:
             stop = Stop.CLOSED
         if stop is None and task.budget.is_interrupted:

@@ -1,70 +1,23 @@
-"""One attack on one plan: what is known of the team, on which the schedule depends, and what each stage asks."""
+"""One attack on one plan, by values alone: what the schedule depends on, and what each stage asks."""
 
 from __future__ import annotations
 
-from functools import cached_property
 from math import isinf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import any_bound, exchange_attack
 from ratt_opt.attackers.attack_tree import AttackTree
-from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN, threshold_search
-from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups, unprotected_bound
+from ratt_opt.attackers.by_partition.threshold_search import threshold_search
 from ratt_opt.attackers.few_attacks import try_every_attack
-from ratt_opt.attackers.first_bound import first_bound
-from ratt_opt.attackers.forced_group import forced_group_bound
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.tree_bound import tree_bound
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import OutOfBudget, Stop
+from ratt_opt.budget import Stop
 from ratt_opt.graph.few_cuts import attacks_are_few
-from ratt_opt.graph.largest_group.spreading import forced_size
 from ratt_opt.graph.threshold import LARGEST_COMPILED
-from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.by_prices.price_search import PriceSearch
     from ratt_opt.attackers.task import AttackTask, Resumable
-    from ratt_opt.graph.separable_groups import SeparableGroups
 
 __all__ = ["TeamAttack", "has_table", "last_stage"]
-
-THRESHOLDS_FASTER = 15
-"""Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
-"""Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
-
-DENSE = 0.5
-"""Share of all links from which partitions have but a share of the seconds, after possible sizes and before prices: a
-disk of 24 robots and mean degree 12 closes in 0.5 s by partitions, and not in 30 by prices; a random graph with 0.7 of
-all links in 6 s by sizes and prices, and not in 60 by partitions."""
-
-PARTITIONED = 10_000
-"""Groups up to which their partitions are searched without prices. Where they are few an attack mostly leaves one large
-group, and what each of them needs blinded is another long proof (hubs of 30 robots, (6, 16): 3,300 groups, 0.1 s each);
-where they are many, some dozens of these proofs say enough of all: the small world of 24 robots with a third blinded
-closes in 2 instead of 9 s, annealing and listing included."""
-
-TREE_SHARE, TREES_SHORT = 0.025, (0.05, 0.5)
-"""Of what is left of the budget for tree inequalities, which on dense graphs are not asked: there they used up their
-share and proved nothing; of a short search more, up to so many seconds, as the first threshold is half-way up from
-what they prove. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the attack in a
-minute, prices 75 % in a second. What they say of sizes counts more: on disk-12 of 50 robots, (10, 45), a group that
-keeps 18 is known after two seconds, 17 after one, and bounds of sizes say 97.2 instead of 96.6 % with it."""
-
-FIRST_STARTS, INNER_STARTS, STARTS_FOR = 18, 3, 24
-"""Annealed attacks before the first threshold, and where only nodes limit or another search sets no time: about every
-fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
-The first grow with the square of the robots beyond these 24: half a second of them at 24 robots, 1.4 s at 30."""
-
-INNER_NODES = 500_000
-"""Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
-teams, none of which need ever close."""
-
-LOOKS_FROM = 2.0
-"""Seconds left from which possible sizes are looked at on sparse graphs, too: of one second they took a fifth, at 30 to
-50 robots, and raised the lower end from 0.80 to 0.83 of the attack, where the first threshold is at 0.9."""
 
 
 def has_table(task: AttackTask) -> bool:
@@ -79,118 +32,25 @@ def last_stage(task: AttackTask, search: Resumable) -> Stop:
 
 
 class TeamAttack:
-    """What the rows of the schedule are about.
+    """What the rows of a schedule are about, whatever the set function.
 
     ``is_inner`` : another search asks, or nodes are limited
     """
 
     def __init__(self, task: AttackTask, *, is_inner: bool) -> None:
-        self.task, self.is_inner = task, is_inner
-        self._plan, self._threat, n_robots = task.values.plan, task.problem.threat, task.problem.n_robots
-        links = len(task.problem.communication.links)
-        self._has_many_links = 2 * links >= DENSE * n_robots * (n_robots - 1)
-        self._is_brief = is_inner and isinf(task.budget.seconds_left)
+        self.task, self.is_inner, self._threat = task, is_inner, task.problem.threat
         self._is_limited = not isinf(min(task.budget.seconds_left, task.budget.evaluations_left))
         self._has_table = has_table(task)
-        self._groups: SeparableGroups | None = None
-        self._sure = 0
-        """Seeing robots that some group is forced to keep."""
-        self._sizes = PossibleGroups(None, 0)
 
     # -- what the schedule asks ----------------------------------------------------------------------------------
-
-    def is_small(self) -> bool:
-        """At most 12 robots."""
-        return self.task.problem.n_robots <= LARGEST_PLAIN
-
-    def has_few_attacks(self) -> bool:
-        """More robots, at most 20,000 attacks, links not all alike."""  # else sizes of groups are fewer still
-        return not self._threat.links_alike and attacks_are_few(self._threat)
-
-    def is_planar_and_complete(self) -> bool:
-        """Planar targets, complete graph, no protected links."""
-        return self._team is not None and self._threat.links_alike and self._team.is_planar
-
-    def is_spatial_and_complete(self) -> bool:
-        """Other targets, complete graph, no protected links."""
-        return self._team is not None and self._threat.links_alike and not self._team.is_planar
-
-    def may_list_groups(self) -> bool:
-        """Packed team of more than 15 robots."""
-        return self._team is not None and self.task.problem.n_robots > THRESHOLDS_FASTER
-
-    def is_tabulated(self) -> bool:
-        """At most 20 robots, groups not listed."""
-        return self.task.problem.n_robots <= LARGEST_COMPILED and self._groups is None
-
-    def is_complete_but_for_protection(self) -> bool:
-        """Packed team, complete graph, protected links."""
-        return self._team is not None and self.task.problem.communication.is_complete
-
-    def goes_by_groups(self) -> bool:
-        """Groups listed, graph not dense."""
-        return self._groups is not None and not self._is_dense
-
-    def has_few_groups(self) -> bool:
-        """At most 10,000 groups listed, or a brief search on a dense graph."""
-        return self.goes_by_groups() and not self._has_many_groups
-
-    def has_many_groups(self) -> bool:
-        """More groups listed, graph not dense."""
-        return self.goes_by_groups() and self._has_many_groups
-
-    def may_anneal_among_groups(self) -> bool:
-        """Groups listed, graph not dense, criterion compiled."""
-        return self.goes_by_groups() and self._prices is not None
-
-    def may_have_sizes_of_dense(self) -> bool:
-        """Dense graph, at most 100 robots."""
-        return self._team is not None and self._is_dense and self._sizes_apply()
-
-    def is_packed_and_dense(self) -> bool:
-        """Packed team, dense graph."""
-        return self._team is not None and self._is_dense
-
-    def has_prices(self) -> bool:
-        """Criterion compiled, budget left."""
-        return self._has_time_for_prices and self._prices is not None
-
-    def has_no_prices(self) -> bool:
-        """Criterion of one's own."""
-        return not self.has_prices()
-
-    def has_no_prices_and_a_limit(self) -> bool:
-        """Criterion of one's own, limit of time."""
-        return self.has_no_prices() and not isinf(self.task.budget.seconds_left)
-
-    def looks_at_sizes(self) -> bool:
-        """Dense graph, or two seconds left; not brief; at most 100 robots."""
-        is_sparse_with_time = self._team is not None and self.task.budget.seconds_left > LOOKS_FROM
-        return not self._is_brief and (self._is_dense or is_sparse_with_time) and self._sizes_apply()
-
-    def has_weak_sets(self) -> bool:
-        """Weak sets listed; partitions to come, or a sparse graph."""
-        return self._sizes.has_sets and (not self._is_dense or self._groups is not None)
-
-    def has_weak_sets_and_no_groups(self) -> bool:
-        """Weak sets listed, graph dense, groups not listed."""
-        return self._sizes.has_sets and self._is_dense and self._groups is None
-
-    def is_dense_with_groups(self) -> bool:
-        """Dense graph, groups listed."""
-        return self._groups is not None and self._is_dense
-
-    def may_have_sizes_again(self) -> bool:
-        """Dense graph, groups listed, at most 100 robots."""
-        return self.is_dense_with_groups() and self._sizes_apply()
-
-    def has_weak_sets_again(self) -> bool:
-        """Dense graph, groups listed, weak sets listed."""
-        return self.is_dense_with_groups() and self._sizes.has_sets
 
     def is_valued_at_once(self) -> bool:
         """More than 20 robots, or a limit."""
         return self.task.problem.n_robots > LARGEST_COMPILED or self._is_limited
+
+    def has_few_attacks(self) -> bool:
+        """More robots, at most 20,000 attacks, links not all alike."""  # else sizes of groups are fewer still
+        return not self._threat.links_alike and attacks_are_few(self._threat)
 
     def has_few_attacks_and_no_table(self) -> bool:
         """More than 20 robots, at most 20,000 attacks."""
@@ -212,7 +72,7 @@ class TeamAttack:
         """A limit, another search asks."""
         return self._is_limited and self.is_inner
 
-    # -- what is asked: any function -----------------------------------------------------------------------------
+    # -- the stages ----------------------------------------------------------------------------------------------
 
     def singles(self) -> None:
         """What single robots and marginals prove."""
@@ -225,15 +85,6 @@ class TeamAttack:
     def annealed_values(self) -> None:
         """Attacks annealed by values alone."""
         annealed_attacks(self.task)
-
-    def thresholds(self) -> Stop:
-        """Values of all sets, thresholds one after the other; without all values, what single robots prove."""
-        try:
-            return threshold_search(self.task)
-        except (OutOfBudget, KeyboardInterrupt):
-            if self.is_small() and isinstance(self.task.problem.objective, InformationObjective):
-                self.first_bound()
-            raise
 
     def every_attack(self) -> Stop:
         """Every attack, valued one by one."""
@@ -250,152 +101,6 @@ class TeamAttack:
         self.task.budget.check()
         return last_stage(self.task, AttackTree(self.task))
 
-    # -- what is asked: criteria of information matrices ----------------------------------------------------------
-
-    def first_bound(self) -> None:
-        """What single robots and the forced size prove at once."""
-        objective = self.task.problem.objective
-        assert isinstance(objective, InformationObjective)
-        self.task.bracket.raise_lower(first_bound(objective, self._plan, self._threat))
-
-    def size_vectors(self) -> Stop:
-        """Families of groups by their sizes."""
-        from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
-
-        assert self._team is not None
-        return SizeVectorSearch(self.task, self._team).run()
-
-    def size_vectors_at_first(self) -> None:
-        """Families of groups by their sizes; dual prices follow."""
-        self.size_vectors()
-
-    def greedy(self) -> None:
-        """Greedy steps."""
-        self.task.offer(greedy_attack(self.task.problem, self._plan, budget=self.task.budget).attack)
-
-    def list_groups(self) -> None:
-        """The groups an attack may leave, where they are few enough, and soon listed."""
-        from ratt_opt.graph.separable_groups import separable_groups  # compiles
-
-        few = FEW_GROUPS if self.task.problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
-        self._groups = separable_groups(self._threat, few, self.task.budget.part())
-
-    def without_protection(self) -> None:
-        """Attackers that may cut protected links too."""
-        assert self._team is not None
-        unprotected_bound(self.task, self._team)
-
-    def forced_size(self) -> None:
-        """The weakest set of the size that some group is forced to keep."""
-        forced_group_bound(self.task, self._team, self._sizes.least)
-
-    def partitions(self) -> Stop:
-        """Partitions of the team into listed groups, by thresholds."""
-        return last_stage(self.task, self._partitions)
-
-    def partitions_at_first(self) -> None:
-        """Partitions of the team into listed groups, by thresholds."""
-        self._partitions.task = self.task
-        self._partitions.run()
-
-    def exact_covers(self) -> Stop:
-        """Dual prices that leave few of the listed groups, then exact covers."""
-        from ratt_opt.attackers.by_covers.cover_search import CoverSearch  # compiles
-
-        assert self._team is not None
-        assert self._groups is not None
-        return last_stage(self.task, CoverSearch(self.task, self._team, self._groups))
-
-    def anneal_among_groups(self) -> None:
-        """Annealed attacks, few where partitions are searched."""
-        assert self._prices is not None
-        self._prices.task = self.task
-        self._prices.anneal(self._starts if self._has_many_groups and not self._is_brief else INNER_STARTS)
-
-    def anneal(self) -> None:
-        """Annealed attacks, and patience for more."""
-        assert self._prices is not None
-        self._prices.task = self.task
-        self._prices.anneal(INNER_STARTS if self._is_brief else self._starts)
-
-    def trees(self) -> None:
-        """Seeing robots that some group is forced to keep, by tree inequalities, and what that is worth."""
-        if self._is_brief and self.task.budget.max_nodes is None:
-            self.task.budget.max_nodes = self.task.budget.nodes + INNER_NODES
-        objective, bracket, (share, seconds) = self.task.problem.objective, self.task.bracket, TREES_SHORT
-        budget = self.task.budget
-        part = budget.part(TREE_SHARE, at_least=min(share * budget.seconds_left, seconds))
-        assert isinstance(objective, InformationObjective)
-        self._sure = forced_size(self._threat, part, self._threat.graph.n_robots)
-        bracket.raise_lower(first_bound(objective, self._plan, self._threat, self._sure))
-        if not (self._is_brief or self._has_many_links):
-            bracket.raise_lower(tree_bound(objective, self._plan, self._threat, part, bracket.upper))
-        budget.check()
-        self._sizes = PossibleGroups(self._team, self._sure)
-
-    def possible_sizes_alone(self) -> None:
-        """Groups of possible sizes, whichever robots are in them."""
-        self._sizes = PossibleGroups(self._team, self._sure)
-        self._sizes.bound(self.task, lists_sets=False)
-
-    def possible_sizes(self) -> None:
-        """Groups of possible sizes, whichever robots are in them; lists the weak sets of these, where they are few."""
-        self._sizes = PossibleGroups(self._team, self._sure)
-        self._sizes.bound(self.task)
-
-    def weak_sets(self) -> None:
-        """Whether an attack can leave the weak sets, one by one."""
-        self._sizes.ask(self.task)
-
-    def dual_prices(self) -> Stop:
-        """Dual prices of robots and links, by thresholds."""
-        assert self._prices is not None
-        return last_stage(self.task, self._prices)
-
-    # -- what is known -------------------------------------------------------------------------------------------
-
-    @property
-    def _is_dense(self) -> bool:
-        return self._has_many_links and not self._is_brief and self.task.problem.n_robots > LARGEST_COMPILED
-
-    @property
-    def _has_many_groups(self) -> bool:
-        return self._groups is not None and len(self._groups.masks) > PARTITIONED and not self._has_many_links
-
-    @property
-    def _starts(self) -> int:
-        return int(FIRST_STARTS * max(self.task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
-
-    def _sizes_apply(self) -> bool:
-        return PossibleGroups.apply(self.task)
-
-    @cached_property
-    def _has_time_for_prices(self) -> bool:
-        """Whether budget was left when prices were first thought of."""
-        return self.task.budget.stop() is None
-
-    @cached_property
-    def _team(self) -> PackedTeam | None:
-        objective = self.task.problem.objective
-        return PackedTeam.of(objective, self._plan) if isinstance(objective, InformationObjective) else None
-
-    @cached_property
-    def _partitions(self) -> Resumable:
-        from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
-
-        assert self._team is not None
-        assert self._groups is not None
-        return SplitSearch(self.task, self._team, self._groups)
-
-    @cached_property
-    def _prices(self) -> PriceSearch | None:
-        """The search by prices, new or begun, for criteria with compiled code."""
-        from ratt_opt.attackers.by_prices.team import PricedTeam
-
-        team = PricedTeam.of(self.task.problem.objective, self._plan)
-        if team is None:
-            return None
-        from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles
-
-        begun = self.task.memory.search
-        return begun if isinstance(begun, PriceSearch) else PriceSearch(self.task, team)
+    def thresholds(self) -> Stop:
+        """Values of all sets, thresholds one after the other."""
+        return threshold_search(self.task)

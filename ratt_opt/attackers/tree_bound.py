@@ -17,18 +17,46 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.first_bound import rounded_down, weakest_average
+from ratt_opt.attackers.first_bound import first_bound, rounded_down, weakest_average
 from ratt_opt.graph.largest_group.spreading import forced_size, forced_weight
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.attackers.task import AttackTask
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["tree_bound"]
+__all__ = ["bound_by_trees", "tree_bound"]
 
 LARGEST_WEIGHT = 2**20
+
+TREE_SHARE, TREES_SHORT = 0.025, (0.05, 0.5)
+"""Of what is left of the budget for tree inequalities, which on dense graphs are not asked: there they used up their
+share and proved nothing; of a short search more, up to so many seconds, as the first threshold is half-way up from
+what they prove. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the attack in a
+minute, prices 75 % in a second. What they say of sizes counts more: on disk-12 of 50 robots, (10, 45), a group that
+keeps 18 is known after two seconds, 17 after one, and bounds of sizes say 97.2 instead of 96.6 % with it."""
+
+
+def bound_by_trees(task: AttackTask, objective: InformationObjective, *, is_about_values: bool) -> int:
+    """Seeing robots that some group is forced to keep, by tree inequalities; the bracket knows what that is worth.
+
+    ``is_about_values`` : also ask for trees weighted by what robots are worth
+
+    Raises
+    ------
+    OutOfBudget : the time is up.
+    """
+    budget, bracket, (share, seconds) = task.budget, task.bracket, TREES_SHORT
+    plan, threat = task.values.plan, task.problem.threat
+    part = budget.part(TREE_SHARE, at_least=min(share * budget.seconds_left, seconds))
+    size = forced_size(threat, part, threat.graph.n_robots)
+    bracket.raise_lower(first_bound(objective, plan, threat, size))
+    if is_about_values:
+        bracket.raise_lower(tree_bound(objective, plan, threat, part, bracket.upper))
+    budget.check()
+    return size
 
 
 def tree_bound(objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, enough: float) -> float:

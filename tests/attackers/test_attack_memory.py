@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import team_attack
+from ratt_opt.attackers import criterion_attack
 from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
@@ -53,8 +53,8 @@ def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) ->
 def test_an_attack_in_pieces_proves_what_one_proves(
     groups: int, few: int, kind: type, nodes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(team_attack, "MANY_GROUPS", groups)
-    monkeypatch.setattr(team_attack, "PARTITIONED", few)
+    monkeypatch.setattr(criterion_attack, "MANY_GROUPS", groups)
+    monkeypatch.setattr(criterion_attack, "PARTITIONED", few)
     problem = ro.network_scenario("hubs", 24, 4, alpha_s=2, alpha_c=8, seed=1).problem()
     plan = ro.ratt(problem).elements
     whole, memory = ro.worst_case_attack(problem, plan), AttackMemory()

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import exact, schedule, team_attack
+from ratt_opt.attackers import criterion_attack, exact, schedule, team_attack
 from ratt_opt.attackers.by_partition import settled_partitions
 from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
 from ratt_opt.attackers.task import AttackMemory
@@ -46,10 +46,10 @@ WAYS = {
         (settled_partitions, "AXIS_NODES"): 3,
         (settled_partitions, "SHARPER_AFTER"): (0, 5),
     },
-    "covers": {(team_attack, "PARTITIONED"): 0},
-    "prices": {(team_attack, "MANY_GROUPS"): 0},
-    "dense": {(team_attack, "DENSE"): 0.0},
-    "dense prices": {(team_attack, "DENSE"): 0.0, (team_attack, "MANY_GROUPS"): 0},
+    "covers": {(criterion_attack, "PARTITIONED"): 0},
+    "prices": {(criterion_attack, "MANY_GROUPS"): 0},
+    "dense": {(criterion_attack, "DENSE"): 0.0},
+    "dense prices": {(criterion_attack, "DENSE"): 0.0, (criterion_attack, "MANY_GROUPS"): 0},
     "no lists": {
         (size_vector_search, "MAYBE_SHORT"): -1,
         (size_vector_search, "LISTED_WHOLE"): 0,
@@ -63,7 +63,9 @@ WAYS = {
     },
 }
 """What makes small teams go each way of large ones."""
-LARGE = {(team_attack, name): 0 for name in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER")}
+LARGE = {(team_attack, "LARGEST_COMPILED"): 0} | {
+    (criterion_attack, name): 0 for name in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER")
+}
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import team_attack
+from ratt_opt.attackers import criterion_attack, team_attack
 from ratt_opt.attackers.forced_group import forced_survivors
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
@@ -78,13 +78,13 @@ def test_a_large_team_on_any_graph_gets_a_valid_bracket(name, dimension):
 
 def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
     """At 500 robots they had 36 of 40 seconds, and nothing more was proved than what is known at once."""
-    given, steps = [], team_attack.greedy_attack
+    given, steps = [], criterion_attack.greedy_attack
 
     def watched(problem, plan, *, budget):
         given.append(budget.seconds_left)
         return steps(problem, plan, budget=budget)
 
-    monkeypatch.setattr(team_attack, "greedy_attack", watched)
+    monkeypatch.setattr(criterion_attack, "greedy_attack", watched)
     prior, information = information_data(np.random.default_rng(1), 30, 3, 2)
     problem = ro.Problem(ro.TraceObjective(prior, information), range(30), nx.cycle_graph(30), 3, 4)
     result = ro.worst_case_attack(problem, np.arange(30), time_limit=2)

@@ -23,7 +23,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
 from ratt_opt.setfunctions.criteria import compiled
 from ratt_opt.setfunctions.information import from_triangles, triangles
-from tests.brackets import attained, worst_value
+from tests.brackets import assert_search_closed, attained, worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph
 
@@ -63,14 +63,6 @@ def by_groups(search):
     return lambda task, team: search(task, team, separable_groups(task.problem.threat, 100_000))
 
 
-def is_closed_at(bracket, stop, problem, elements, expected):
-    assert stop is ro.Stop.CLOSED
-    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
-    assert bracket.lower <= expected * (1 + 1e-12) + 1e-12
-    assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
-    assert problem.team_value(elements, bracket.attack) == bracket.upper
-
-
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize("way", ["lists", "branches"])
@@ -83,7 +75,7 @@ def test_complete_graphs_agree_with_the_threshold_search(name, dimension, way, m
         problem, elements = team_problem(seed, 4 + seed % 6, dimension, name, complete=True)
         expected = worst_value(problem, elements)
         bracket, _, stop = run(SizeVectorSearch, problem, elements)
-        is_closed_at(bracket, stop, problem, elements, expected)
+        assert_search_closed(problem, elements, bracket, stop, expected)
 
 
 @pytest.mark.parametrize("search", [SplitSearch, CoverSearch])
@@ -93,7 +85,7 @@ def test_networks_agree_with_the_definition(search, name, dimension):
     for seed in range(10):
         problem, elements = team_problem(seed, 3 + seed % 4, dimension, name, complete=False)
         bracket, _, stop = run(by_groups(search), problem, elements)
-        is_closed_at(bracket, stop, problem, elements, brute_force_worst_case(problem, elements))
+        assert_search_closed(problem, elements, bracket, stop, brute_force_worst_case(problem, elements))
 
 
 @pytest.mark.parametrize("search", [SizeVectorSearch, by_groups(SplitSearch)])

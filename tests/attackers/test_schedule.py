@@ -10,25 +10,16 @@ import pytest
 
 import ratt_opt as ro
 from analysis.readme import refreshed
-from ratt_opt.attackers import team_attack
+from analysis.schedule import TABLES
+from ratt_opt.attackers import criterion_attack, team_attack
 from ratt_opt.attackers.by_size import size_vector_search
-from ratt_opt.attackers.by_size.family_prices import family_search
-from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 from ratt_opt.attackers.staging import without_stages
 from ratt_opt.attackers.task import AttackMemory
 from tests.documents import ROOT
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
-TABLES = (
-    CRITERION,
-    USER_FUNCTION,
-    size_vector_search.STAGES,
-    family_search.FORCED,
-    family_search.FIRST_TURN,
-    family_search.LATER_TURNS,
-)
-NAMES = sorted({stage.name for table in TABLES for stage in table})
+NAMES = sorted({stage.name for table in TABLES.values() for stage in table})
 
 
 def tree_like():
@@ -90,7 +81,8 @@ def small_teams():
 @pytest.mark.parametrize("name", NAMES)
 def test_brackets_are_true_without_a_stage(name, small_teams, monkeypatch):
     for limit in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER"):
-        monkeypatch.setattr(team_attack, limit, 0)
+        monkeypatch.setattr(criterion_attack, limit, 0)
+    monkeypatch.setattr(team_attack, "LARGEST_COMPILED", 0)
     for seed, (problem, plan, worst) in enumerate(small_teams):
         monkeypatch.setattr(size_vector_search, "MOST_VECTORS", (1, 100)[seed % 2])
         monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", (-1, 10**8)[seed % 5 == 0])
@@ -108,7 +100,7 @@ def test_the_page_of_the_engine_shows_the_schedules(tmp_path):
 
 
 def test_every_condition_says_when():
-    for table in TABLES:
+    for table in TABLES.values():
         for stage in table:
             assert stage.applies.__doc__, stage.name
             assert stage.run.__doc__, stage.name

@@ -46,6 +46,7 @@ def nothing_is_enumerated(monkeypatch):
     """As for problems too large for it."""
     monkeypatch.setattr("ratt_opt.solvers.exhaustive.LARGEST_SEARCH", 0)
     monkeypatch.setattr("ratt_opt.attackers.team_attack.LARGEST_COMPILED", 0)
+    monkeypatch.setattr("ratt_opt.attackers.criterion_attack.LARGEST_COMPILED", 0)
 
 
 LIMITS = [{}, {"time_limit": 0}, {"max_evaluations": 0}, {"max_evaluations": 7}, {"max_evaluations": 60}]

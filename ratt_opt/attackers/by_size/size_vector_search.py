@@ -142,10 +142,6 @@ class SizeVectorSearch:
         self.bracket.lower = self.bracket.upper
         return Stop.CLOSED
 
-    def list_least(self) -> None:
-        """The least sets that decide, where they are listed in no time, and families around the weakest of them."""
-        self._closes_at_once()
-
     def exchange(self) -> None:
         """The weakest families that exchanges find, of each vector or of some."""
         self.families = self.weak.exchanged(self.vectors if self.has_all_vectors else self._some_vectors())
@@ -159,18 +155,6 @@ class SizeVectorSearch:
     def narrow_families(self) -> None:
         """Annealed attacks, dives and dual prices of the vectors that are open, as long as they prove something."""
         FamilySearch(self.task, self.team, self.families, list(self.bounds)).narrow()
-
-    def decide_listed(self) -> None:
-        """Decide the families of every vector, as far as its sets can be listed."""
-        self._decide_listed(self.families)
-
-    def decide_by_largest(self) -> None:
-        """The vectors that are open, by their largest group."""
-        self._decide_by_largest()
-
-    def decide_all_by_largest(self) -> Stop:
-        """The vectors that are open, by their largest group."""
-        return self._decide_by_largest()
 
     def _are_alike(self, families: list[GroupExchanges]) -> bool:
         """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
@@ -200,24 +184,21 @@ class SizeVectorSearch:
                 break
         return vectors
 
-    def _closes_at_once(self) -> bool:
-        """Where the least sets that decide are listed in no time, families around the weakest of them often decide.
+    def list_least(self) -> None:
+        """The least sets that decide, where they are listed in no time, and families around the weakest of them.
 
-        Like exchanges, this costs no nodes.
+        They often decide. Like exchanges, this costs no nodes.
         """
         smallest = min(sizes[0] for sizes in self.vectors)
-        if not (self.has_all_vectors and self._may_be_short(smallest)):
-            return False
-        if not (families := self.weak.deciding(self.vectors, smallest)):
-            return False
+        if not self._may_be_short(smallest) or not (families := self.weak.deciding(self.vectors, smallest)):
+            return
         self._accept(weakest_of(families))
         low = self.lists.at_once(smallest, self.bracket.goal, self.task.budget.part())
         if low is None:
-            return False
+            return
         self.weak.start_from(families, map(self.lists.robots, low.masks.tolist()))
         self._accept(weakest_of(families))
         self.bracket.raise_lower(float(low.values.min(initial=self.bracket.goal)))
-        return self.bracket.is_closed
 
     def _accept(self, groups: Iterable[frozenset[int]]) -> bool:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
@@ -225,11 +206,11 @@ class SizeVectorSearch:
 
     # -- vectors whose sets can be listed ----------------------------------------------------------------------
 
-    def _decide_listed(self, families: list[GroupExchanges]) -> None:
+    def decide_listed(self) -> None:
         """Decide the families of every vector, as far as its sets can be listed."""
         if len(self.team.single) > MOST_ROBOTS:
             return
-        lists = self.lists
+        families, lists = self.families, self.lists
         must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.threat.protected_robots)
         searches = {
             sizes: VectorSearch(lists, sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal)
@@ -290,7 +271,7 @@ class SizeVectorSearch:
     def _raise_lower(self) -> None:
         self.bracket.raise_lower(min([self.bracket.goal, *self.bounds.values()]))
 
-    def _decide_by_largest(self) -> Stop:
+    def decide_by_largest(self) -> Stop:
         """The vectors that are open, by their largest group."""
         self.vectors = list(self.bounds)
         return self._by_largest.run(self.vectors, self.task.budget)
@@ -307,6 +288,6 @@ STAGES: tuple[Stage[SizeVectorSearch], ...] = (
     Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.is_nearly_closed, LARGEST_SHARE[1]),
     Stage("families", SizeVectorSearch.narrow_families, SizeVectorSearch.is_about_families),
     Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_in_share),
-    Stage("largest group", SizeVectorSearch.decide_all_by_largest, SizeVectorSearch.has_few_vectors),
+    Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.has_few_vectors),
 )
 """Of an attack on a complete graph, by vectors of sizes."""

@@ -22,7 +22,7 @@ from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
-from tests.brackets import attained, attains, worst_value
+from tests.brackets import assert_search_closed, attained, attains, worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
 
@@ -64,20 +64,12 @@ def run_split(problem, elements, max_nodes=None, search=SplitSearch):
     return bracket, budget.nodes, stop
 
 
-def check(problem, elements, bracket, stop, expected):
-    assert stop is ro.Stop.CLOSED
-    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
-    assert bracket.lower <= expected * (1 + 1e-12) + 1e-12
-    assert bracket.upper - bracket.lower <= 1.1e-10 * abs(bracket.upper) + 1e-12
-    assert problem.team_value(elements, bracket.attack) == bracket.upper
-
-
 @pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize("seed", range(120))
 def test_value_is_the_definition_s(seed, search):
     problem, elements = team_problem(seed, 1 + seed % 5)
     bracket, _, stop = run_split(problem, elements, search=search)
-    check(problem, elements, bracket, stop, brute_force_worst_case(problem, elements))
+    assert_search_closed(problem, elements, bracket, stop, brute_force_worst_case(problem, elements))
 
 
 @pytest.mark.parametrize("search", SEARCHES)
@@ -100,7 +92,7 @@ def test_agrees_with_the_threshold_search(seed, plain, sharper, search, monkeypa
         monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
     bracket, _, stop = run_split(problem, elements, search=search)
-    check(problem, elements, bracket, stop, worst_value(problem, elements))
+    assert_search_closed(problem, elements, bracket, stop, worst_value(problem, elements))
 
 
 @pytest.mark.parametrize("seed", [seed for seed in range(12) if list(OBJECTIVES)[seed % 3] != "maxeig"])

@@ -122,7 +122,7 @@ def test_shares_that_end_anywhere_lose_no_set(name, seed, monkeypatch):
     while stop is not ro.Stop.CLOSED and nodes < 1e5:
         with suppress(OutOfBudget):
             search.task = replace(search.task, budget=Budget(max_nodes=int(nodes)))
-            stop = search._decide_by_largest()
+            stop = search.decide_by_largest()
         assert bracket.lower <= expected + 1e-12
         nodes *= 1.3
     assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
