@@ -12,11 +12,7 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.base import SetFunction, TableFunction
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt import LogDetObjective, MaxEigenvalueObjective, Problem, SetFunction, TableFunction, TraceObjective
 
 OBJECTIVES = {"trace": TraceObjective, "logdet": LogDetObjective, "maxeig": MaxEigenvalueObjective}
 

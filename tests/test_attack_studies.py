@@ -8,9 +8,7 @@ from analysis import caa_conjecture, caa_validation
 from analysis.benchmarks import attack
 from analysis.benchmarks.network_tables import network_table, read_rows, summary
 from analysis.tables import append_csv, print_table, write_csv
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.scenario.generator import random_scenario
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt import random_scenario, ratt, worst_case_attack
 from tests.documents import ROOT
 
 

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from ratt_opt.budget import Budget, OutOfBudget, Stop
-from ratt_opt.errors import InputError
+from ratt_opt import InputError, Stop
+from ratt_opt.budget import Budget, OutOfBudget
 
 
 def test_without_limits_nothing_stops():

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 import ratt_opt as ro
-from ratt_opt.graph.outcomes import non_dominated_outcomes
 from tests.brackets import attains
 from tests.oracles import brute_force_optimum, brute_force_outcomes, brute_force_worst_case
 from tests.strategies import SEEDED, monotone_tables, problems, problems_with_plans
@@ -50,7 +49,7 @@ def test_exhaustive_search_finds_the_optimum(problem):
 @DRAWN
 @given(problems(kind="logdet", controls=1))
 def test_outcomes_are_those_of_all_raw_attacks_that_no_other_refines(problem):
-    assert {frozenset(o) for o in non_dominated_outcomes(problem.threat)} == brute_force_outcomes(problem)
+    assert {frozenset(o) for o in ro.non_dominated_outcomes(problem.threat)} == brute_force_outcomes(problem)
 
 
 @DRAWN

@@ -8,8 +8,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
 from ratt_opt.attackers.task import PlanValues
-from ratt_opt.bounds.guarantees import NON_DECREASING, Guarantee
-from ratt_opt.problem import Attack
+from ratt_opt.bounds.guarantees import NON_DECREASING
 from ratt_opt.scenario.sensor import jacobian
 from ratt_opt.setfunctions.criteria import registry
 from ratt_opt.setfunctions.information import InformationObjective
@@ -64,7 +63,7 @@ def loudest_attack(problem, elements):
     values = PlanValues(problem, elements)
     degree = [-len(problem.communication.links_of(i)) for i in range(problem.n_robots)]
     order = [int(i) for i in np.argsort(degree, kind="stable") if i not in problem.protected_robots]
-    return heuristic_result(problem, values, Attack(frozenset(order[: problem.alpha_s])))
+    return heuristic_result(problem, values, ro.Attack(frozenset(order[: problem.alpha_s])))
 
 
 def test_recipe_an_attacker():
@@ -79,7 +78,7 @@ def test_recipe_an_attacker():
 def nobody_attacks_bound(problem, *, c):
     """Where nobody attacks, greedy keeps ``1 - c``: its marginals are at least ``(1 - c)`` times any others'."""
     needs = (NON_DECREASING, "total curvature at most c", "no attacks")
-    return Guarantee(1 - c if problem.alpha_s == problem.alpha_c == 0 else 0.0, needs, "a recipe")
+    return ro.Guarantee(1 - c if problem.alpha_s == problem.alpha_c == 0 else 0.0, needs, "a recipe")
 
 
 def test_recipe_a_guarantee():

@@ -12,11 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.tables import print_table
-from ratt_opt import Attack
+from ratt_opt import Attack, AttackResult, Stop, Verified
 from ratt_opt._rounding import bracket_text, down, gap_text, relative_gap, up
-from ratt_opt.attackers.task import AttackResult
-from ratt_opt.budget import Stop
-from ratt_opt.certificates.verifier.verified import Verified
 from ratt_opt.report.tables import attack_tables, share_text
 
 if TYPE_CHECKING:

@@ -12,11 +12,10 @@ from ratt_opt import Problem
 from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import exchange_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.budget import Budget, Stop
-from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt.budget import Budget
 
 
-class Seen(SetFunction):
+class Seen(ro.SetFunction):
     """Weight of the places that somebody sees, and a little of its square: grows, and is not submodular."""
 
     def __init__(self, n: int, seed: int) -> None:
@@ -57,7 +56,7 @@ def test_finds_the_worst_attack_of_few_robots(seed: int) -> None:
     annealed_attacks(task)
     problem.check_attack(task.bracket.attack)
     worst = ro.worst_case_attack(problem, task.values.plan)
-    assert worst.stop in {Stop.CLOSED, Stop.EXHAUSTED}
+    assert worst.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
     assert task.bracket.upper == pytest.approx(worst.upper, rel=1e-12)
     assert problem.team_value(task.values.plan, task.bracket.attack) == pytest.approx(task.bracket.upper, rel=1e-12)
 

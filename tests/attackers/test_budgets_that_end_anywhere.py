@@ -26,7 +26,7 @@ from tests.strategies import random_problem, team_problem
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt.budget import Stop
+    from ratt_opt import Stop
 
 SECONDS = 1000.0
 """Of every limit: it is chance that ends them."""

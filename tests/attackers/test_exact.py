@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget
-from ratt_opt.errors import InputError
 from tests.brackets import attained, attains, is_exact, worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_elements, random_problem, range_bearing
@@ -21,7 +19,7 @@ def test_value_is_the_definition_s(seed):
     rng = np.random.default_rng(seed)
     problem = random_problem(rng)
     elements = random_elements(rng, problem)
-    result = worst_case_attack(problem, elements)
+    result = ro.worst_case_attack(problem, elements)
     assert is_exact(problem, elements, result)
     assert worst_value(problem, elements) == pytest.approx(
         brute_force_worst_case(problem, elements), rel=1e-12, abs=1e-12
@@ -39,7 +37,7 @@ def test_value_is_the_definition_s_for_any_set_function(seed):
         table, draft.robot, draft.graph, draft.alpha_s, draft.alpha_c, draft.protected_robots, draft.protected_links
     )
     elements = random_elements(rng, problem)
-    result = worst_case_attack(problem, elements)
+    result = ro.worst_case_attack(problem, elements)
     assert result.upper == brute_force_worst_case(problem, elements)
 
 
@@ -73,8 +71,8 @@ def test_relabelling_robots_changes_nothing(seed):
     renamed = ro.Problem(problem.objective, new[problem.robot], graph, problem.alpha_s, problem.alpha_c, robots, links)
     moved = np.empty_like(elements)
     moved[new] = elements
-    expected = worst_case_attack(problem, elements).upper
-    assert worst_case_attack(renamed, moved).upper == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    expected = ro.worst_case_attack(problem, elements).upper
+    assert ro.worst_case_attack(renamed, moved).upper == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -82,9 +80,9 @@ def test_the_bracket_is_valid_wherever_the_search_stops(seed):
     rng = np.random.default_rng(seed)
     problem = random_problem(rng, 6)
     elements = random_elements(rng, problem)
-    full = worst_case_attack(problem, elements)
+    full = ro.worst_case_attack(problem, elements)
     for nodes in range(full.nodes + 2):
-        part = worst_case_attack(problem, elements, max_nodes=nodes)
+        part = ro.worst_case_attack(problem, elements, max_nodes=nodes)
         assert part.lower <= full.upper <= part.upper
         assert attains(problem, elements, part)
         assert part.nodes <= nodes
@@ -96,11 +94,11 @@ def test_budgets_are_checked_and_kept():
     rng = np.random.default_rng(3)  # what is known at once does not close it
     problem = random_problem(rng, 5, kind="trace", complete=True)
     elements = random_elements(rng, problem)
-    assert worst_case_attack(problem, elements, time_limit=0).stop is ro.Stop.TIME
-    with pytest.raises(InputError, match="max_nodes"):
-        worst_case_attack(problem, elements, max_nodes=-1)
-    with pytest.raises(InputError, match="time_limit"):
-        worst_case_attack(problem, elements, time_limit=float("nan"))
+    assert ro.worst_case_attack(problem, elements, time_limit=0).stop is ro.Stop.TIME
+    with pytest.raises(ro.InputError, match="max_nodes"):
+        ro.worst_case_attack(problem, elements, max_nodes=-1)
+    with pytest.raises(ro.InputError, match="time_limit"):
+        ro.worst_case_attack(problem, elements, time_limit=float("nan"))
 
 
 @pytest.mark.parametrize("n_robots", [6, 14, 24])
@@ -114,7 +112,7 @@ def test_an_outer_budget_counts_too(n_robots, complete):
     interrupted = Budget()
     interrupted.interrupt()
     for outer, stop in ((Budget(0.0), ro.Stop.TIME), (interrupted, ro.Stop.INTERRUPTED)):
-        result = worst_case_attack(problem, plan, time_limit=60.0, budget=outer)
+        result = ro.worst_case_attack(problem, plan, time_limit=60.0, budget=outer)
         assert (result.stop, result.nodes) == (stop, 0)
         assert result.lower <= attained(problem, plan, result)
         assert attains(problem, plan, result)
@@ -128,30 +126,30 @@ def test_an_attack_that_meets_the_aim_ends_the_search(family, n_robots):
         scenario = ro.network_scenario(family, n_robots, 5, alpha_s=2, alpha_c=6, seed=1)
     problem = scenario.problem()
     plan = ro.ratt(problem).elements
-    worst = worst_case_attack(problem, plan)
+    worst = ro.worst_case_attack(problem, plan)
     for aim in (worst.upper * (1 + 1e-6), problem.team_value(plan, ro.Attack())):
-        result = worst_case_attack(problem, plan, aim=aim)
+        result = ro.worst_case_attack(problem, plan, aim=aim)
         assert result.stop in {ro.Stop.GAP, worst.stop}
         assert result.lower <= worst.upper <= result.upper <= aim
         assert attains(problem, plan, result)
     assert result.stop is ro.Stop.GAP
-    assert worst_case_attack(problem, plan, aim=worst.lower * (1 - 1e-6)) == worst
-    with pytest.raises(InputError, match="aim"):
-        worst_case_attack(problem, plan, aim=np.nan)
+    assert ro.worst_case_attack(problem, plan, aim=worst.lower * (1 - 1e-6)) == worst
+    with pytest.raises(ro.InputError, match="aim"):
+        ro.worst_case_attack(problem, plan, aim=np.nan)
 
 
 @pytest.mark.parametrize("n_robots", [8, 21])
 def test_no_result_is_better_for_the_team_than_a_known_attack(n_robots):
     problem = ro.network_scenario("disk-6", n_robots, 5, alpha_s=2, alpha_c=6, seed=1).problem()
     plan = ro.ratt(problem).elements
-    worst = worst_case_attack(problem, plan)
+    worst = ro.worst_case_attack(problem, plan)
     for seed in range(3):
         known = ro.random_attack(problem, plan, seed=seed).attack
-        result = worst_case_attack(problem, plan, known=known, max_nodes=0)
+        result = ro.worst_case_attack(problem, plan, known=known, max_nodes=0)
         assert result.lower <= worst.upper <= result.upper <= problem.team_value(plan, known)
-    assert worst_case_attack(problem, plan, known=worst.attack, max_nodes=0).upper == worst.upper
-    with pytest.raises(InputError, match="attack robot"):
-        worst_case_attack(problem, plan, known=ro.Attack(frozenset({n_robots})))
+    assert ro.worst_case_attack(problem, plan, known=worst.attack, max_nodes=0).upper == worst.upper
+    with pytest.raises(ro.InputError, match="attack robot"):
+        ro.worst_case_attack(problem, plan, known=ro.Attack(frozenset({n_robots})))
 
 
 @pytest.mark.parametrize("n_robots", [5, 14])
@@ -159,8 +157,8 @@ def test_results_are_plain_values(n_robots):
     rng = np.random.default_rng(1)
     plan = np.arange(n_robots)
     problem = ro.Problem(ro.LogDetObjective(*range_bearing(rng, n_robots, 3, 1)), plan, None, 2, n_robots)
-    result = worst_case_attack(problem, plan)
-    assert result == worst_case_attack(problem, plan)
+    result = ro.worst_case_attack(problem, plan)
+    assert result == ro.worst_case_attack(problem, plan)
     assert pickle.loads(pickle.dumps(result)) == result
     assert result != ro.greedy_attack(problem, plan)
     assert [type(x) for x in (result.lower, result.upper, result.nodes, result.evaluations)] == [float, float, int, int]
@@ -195,10 +193,10 @@ def interruptible(n_robots, graph, batches):
 def test_an_interrupt_at_any_batch_returns_the_bracket(graph):
     """How many batches there are depends on the clock: a slow function has smaller ones."""
     plan = np.arange(6)
-    expected = worst_case_attack(interruptible(6, graph, 0), plan)
+    expected = ro.worst_case_attack(interruptible(6, graph, 0), plan)
     for batches in count(1):
         problem = interruptible(6, graph, batches)
-        result = worst_case_attack(problem, plan)
+        result = ro.worst_case_attack(problem, plan)
         if problem.objective.left > 0:
             break
         assert result.stop is ro.Stop.INTERRUPTED
@@ -211,7 +209,7 @@ def test_an_interrupt_at_any_batch_returns_the_bracket(graph):
 def test_an_interrupt_is_heard_by_the_searches_around():
     problem = interruptible(6, None, 2)
     outer = Budget()
-    assert worst_case_attack(problem, np.arange(6), budget=outer).stop is ro.Stop.INTERRUPTED
+    assert ro.worst_case_attack(problem, np.arange(6), budget=outer).stop is ro.Stop.INTERRUPTED
     assert outer.stop() is ro.Stop.INTERRUPTED
 
 
@@ -222,14 +220,14 @@ def test_a_search_that_is_stopped_relies_on_no_property_of_the_objective():
     problem = ro.Problem(ro.TableFunction(values), np.arange(4), None, 1, 2)
     expected = brute_force_worst_case(problem, np.arange(4))
     for nodes in range(4):
-        result = worst_case_attack(problem, np.arange(4), max_nodes=nodes)
+        result = ro.worst_case_attack(problem, np.arange(4), max_nodes=nodes)
         assert result.lower <= expected <= result.upper
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("budget", [(3, 11), (5, 15), (6, 22)])
 def test_ten_robots_match_the_enumeration_of_outcomes(name, budget):
-    from ratt_opt.graph.outcomes import non_dominated_outcomes
+    from ratt_opt import non_dominated_outcomes
 
     rng = np.random.default_rng(7)
     problem = ro.Problem(OBJECTIVES[name](*range_bearing(rng, 10, 15)), np.repeat(np.arange(10), 12), None, *budget)
@@ -250,4 +248,4 @@ def test_far_fewer_evaluations_than_raw_attacks():
     elements = random_elements(rng, problem)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 5)
     raw_attacks = 15 * 3003  # blind 2 of 6 robots, cut 5 of 15 links
-    assert worst_case_attack(problem, elements).evaluations * 100 <= raw_attacks
+    assert ro.worst_case_attack(problem, elements).evaluations * 100 <= raw_attacks

@@ -10,7 +10,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.few_attacks import try_every_attack
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.few_cuts import attacks_are_few
@@ -21,7 +20,7 @@ from tests.strategies import random_elements, random_problem
 
 
 def tried(problem, elements, max_nodes=None):
-    first = bounded_rational_attack(problem, elements)
+    first = ro.bounded_rational_attack(problem, elements)
     bracket = AttackBracket(first.attack, attained(problem, elements, first), 0.0)
     try:
         task = AttackTask(problem, PlanValues(problem, elements), bracket, Budget(max_nodes=max_nodes))

@@ -11,7 +11,6 @@ from ratt_opt.attackers import criterion_attack, team_attack
 from ratt_opt.attackers.forced_group import forced_survivors
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.graph.outcomes import non_dominated_outcomes
 from tests.brackets import attains, is_exact
 from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
 
@@ -56,7 +55,7 @@ def test_both_large_searches_agree_on_a_complete_graph(seed):
 @pytest.mark.parametrize("seed", range(100))
 def test_a_group_of_the_forced_size_always_survives(seed):
     threat = random_problem(np.random.default_rng(seed), kind="logdet").threat
-    assert forced_survivors(threat) <= min(max(map(len, outcome)) for outcome in non_dominated_outcomes(threat))
+    assert forced_survivors(threat) <= min(max(map(len, outcome)) for outcome in ro.non_dominated_outcomes(threat))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

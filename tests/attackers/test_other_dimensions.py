@@ -12,7 +12,6 @@ from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_size import size_vector_search
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.enumeration import Enumeration
 from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size
@@ -49,7 +48,7 @@ def team_problem(seed, n_robots, dimension, name, *, complete):
 
 
 def run(search, problem, elements, max_nodes=None):
-    values, first = PlanValues(problem, elements), bounded_rational_attack(problem, elements)
+    values, first = PlanValues(problem, elements), ro.bounded_rational_attack(problem, elements)
     bracket, budget = AttackBracket(first.attack, attained(problem, elements, first), 0.0), Budget(max_nodes=max_nodes)
     try:
         task, team = AttackTask(problem, values, bracket, budget), PackedTeam.of(problem.objective, values.plan)

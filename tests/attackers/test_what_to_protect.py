@@ -8,8 +8,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attackers.by_partition.threshold_search import threshold_search
-from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
-from ratt_opt.errors import InputError
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
@@ -19,7 +17,7 @@ def test_ranking_against_the_definition(seed):
     rng = np.random.default_rng(seed)
     problem = random_problem(rng, int(rng.integers(1, 5)))
     elements = random_elements(rng, problem)
-    ranking = criticality_ranking(problem, elements)
+    ranking = ro.criticality_ranking(problem, elements)
     links = problem.communication.links
     assert {row.target for row in ranking} == {*range(problem.n_robots), *links}
     base = brute_force_worst_case(problem, elements)
@@ -46,12 +44,12 @@ def test_a_bridge_is_the_link_to_protect():
     weights = np.arange(2**6)[:, None] >> np.arange(6) & 1
     graph = nx.barbell_graph(3, 0)
     problem = ro.Problem(ro.TableFunction(weights.sum(axis=1).astype(float)), np.arange(6), graph, 0, 1)
-    first = criticality_ranking(problem, np.arange(6))[0]
+    first = ro.criticality_ranking(problem, np.arange(6))[0]
     assert (first.target, first.loss, first.gain_lower) == ((2, 3), 3.0, 3.0)
-    only = criticality_ranking(problem, np.arange(6), links=[(0, 1)])
+    only = ro.criticality_ranking(problem, np.arange(6), links=[(0, 1)])
     assert [row.target for row in only if not isinstance(row.target, int)] == [(0, 1)]
-    with pytest.raises(InputError, match="link"):
-        criticality_ranking(problem, np.arange(6), links=[(0, 5)])
+    with pytest.raises(ro.InputError, match="link"):
+        ro.criticality_ranking(problem, np.arange(6), links=[(0, 5)])
 
 
 @pytest.mark.parametrize("seed", range(25))
@@ -69,7 +67,7 @@ def test_smallest_budgets_against_every_budget(seed):
         if brute_force_worst_case(replace(problem, alpha_s=s, alpha_c=c), elements) < goal
     }
     minimal = {b for b in below if not any(o != b and o[0] <= b[0] and o[1] <= b[1] for o in below)}
-    found = breaking_budgets(problem, elements, goal)
+    found = ro.breaking_budgets(problem, elements, goal)
     assert {(b.alpha_s, b.alpha_c) for b in found} == minimal
     for budget in found:
         assert budget.is_proved
@@ -85,7 +83,7 @@ def test_what_an_open_attack_supports(seed):
     elements = random_elements(rng, problem)
     limits = [{"max_nodes": 1}, {"max_nodes": 3}, {"time_limit": 0}][seed % 3]
     base = brute_force_worst_case(problem, elements)
-    for row in criticality_ranking(problem, elements, **limits):
+    for row in ro.criticality_ranking(problem, elements, **limits):
         one = {row.target}
         safer = (
             replace(problem, protected_robots=problem.protected_robots | one)
@@ -101,21 +99,21 @@ def test_budgets_that_were_left_open_are_not_exhausted(monkeypatch):
     problem = random_problem(np.random.default_rng(2), 4, kind="trace", complete=True, protect=False)
     plan = random_elements(np.random.default_rng(2), problem)
     goal = brute_force_worst_case(replace(problem, alpha_s=0, alpha_c=0), plan) * 0.5
-    assert breaking_budgets(problem, plan, goal).stop is ro.Stop.EXHAUSTED
+    assert ro.breaking_budgets(problem, plan, goal).stop is ro.Stop.EXHAUSTED
 
     def open_attack(asked, elements, **_):
         found = ro.worst_case_attack(replace(asked, alpha_s=0, alpha_c=0), elements)
         return replace(found, lower=0.0, stop=ro.Stop.NODES)
 
     monkeypatch.setattr("ratt_opt.attackers.criticality.worst_case_attack", open_attack)
-    left_open = breaking_budgets(problem, plan, goal)
+    left_open = ro.breaking_budgets(problem, plan, goal)
     assert (len(left_open), left_open.stop) == (0, ro.Stop.NODES)
 
 
 def test_a_value_that_is_not_a_number_is_refused():
     problem = random_problem(np.random.default_rng(0), 3)
-    with pytest.raises(InputError, match="value"):
-        breaking_budgets(problem, [c[0] for c in problem.choices], float("nan"))
+    with pytest.raises(ro.InputError, match="value"):
+        ro.breaking_budgets(problem, [c[0] for c in problem.choices], float("nan"))
 
 
 def test_after_an_interrupt_nothing_more_is_searched(monkeypatch):
@@ -123,7 +121,7 @@ def test_after_an_interrupt_nothing_more_is_searched(monkeypatch):
     problem = random_problem(np.random.default_rng(2), 5, kind="trace", complete=True, protect=False)
     problem = replace(problem, alpha_s=1, alpha_c=3)
     plan = random_elements(np.random.default_rng(2), problem)
-    exact = {row.target: row for row in criticality_ranking(problem, plan)}
+    exact = {row.target: row for row in ro.criticality_ranking(problem, plan)}
     goal = ro.worst_case_attack(problem, plan).upper * 1.01
     tasks = []
 
@@ -134,11 +132,11 @@ def test_after_an_interrupt_nothing_more_is_searched(monkeypatch):
         return threshold_search(task)
 
     monkeypatch.setattr("ratt_opt.attackers.team_attack.threshold_search", interrupted_once)
-    for row in criticality_ranking(problem, plan):
+    for row in ro.criticality_ranking(problem, plan):
         assert row.gain_lower <= exact[row.target].gain_lower + 1e-12
         assert row.gain_upper >= exact[row.target].gain_upper - 1e-12
     tasks.clear()
-    found = breaking_budgets(problem, plan, goal)
+    found = ro.breaking_budgets(problem, plan, goal)
     assert all(one.value < goal and not (one.is_proved and one.alpha_c) for one in found)
     assert len(tasks) == 1
     assert found.stop is ro.Stop.INTERRUPTED

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.errors import InputError
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from tests.strategies import monotone_table, random_graph, random_objective
 
@@ -181,7 +180,7 @@ def test_what_does_not_apply_is_said_with_its_reason():
 def test_bad_arguments_are_refused(call, text):
     problem = ro.random_scenario(3, 2, alpha_s=1, alpha_c=0, seed=0).problem()
     c = ro.total_curvature(problem.objective, problem.robot)
-    with pytest.raises(InputError, match=text):
+    with pytest.raises(ro.InputError, match=text):
         call(problem, c)
 
 

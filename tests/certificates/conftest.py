@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ratt_opt.certificates.verifier.verified import Verified
+    from ratt_opt import Verified
 
 LARGEST = 50_000
 """Bytes of a file that is looked at: of larger ones, which hold more of the same, it would take seconds."""

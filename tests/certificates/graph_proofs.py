@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, ratt
+from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, problem_document, ratt
 from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
@@ -15,7 +15,7 @@ from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.write import _prior_range, problem_document
+from ratt_opt.certificates.write import _prior_range
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
 

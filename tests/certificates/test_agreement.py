@@ -15,15 +15,13 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.certificates.agreement import differences
 from ratt_opt.certificates.verifier.work import limited
-from ratt_opt.certificates.write import problem_document
 from ratt_opt.cli import run
 from ratt_opt.errors import UndecidedError
-from ratt_opt.scenario.sensor import Sensor
 
 SENSORS = [
-    Sensor(),
-    Sensor(law="std", range_noise=0.3, bearing_noise=0.02),
-    Sensor(max_range=60.0, field_of_view=2.0),
+    ro.Sensor(),
+    ro.Sensor(law="std", range_noise=0.3, bearing_noise=0.02),
+    ro.Sensor(max_range=60.0, field_of_view=2.0),
 ]
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -57,7 +55,7 @@ def _shifted(record: dict[str, Any], rng: np.random.Generator, ulps: int) -> dic
 @pytest.mark.parametrize("seed", range(12))
 def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
     scenario, rng = _drawn(seed), np.random.default_rng(seed)
-    record = problem_document(scenario.problem("logdet"))
+    record = ro.problem_document(scenario.problem("logdet"))
     difference = differences(scenario, "logdet")
     assert difference(record) == ""
     moved = _shifted(record, rng, 2)
@@ -65,7 +63,7 @@ def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
     assert difference(moved) == ""
     assert difference(_shifted(record, rng, 2) | {"alpha_s": 0}) == "its field 'alpha_s' differs"
     assert "its prior is not what comes of" in difference(record | {"prior": record["prior"][::-1]})
-    assert difference(problem_document(scenario.problem("trace"))) == "its criterion is trace, not logdet"
+    assert difference(ro.problem_document(scenario.problem("trace"))) == "its criterion is trace, not logdet"
     first, *others = scenario.targets
     for changed in (
         scenario.replace(targets=(first.replace(x=first.x + 1e-9), *others)),
@@ -75,16 +73,16 @@ def test_ulps_are_covered_and_changes_are_not(seed: int) -> None:
         scenario.replace(sampling_period=scenario.sampling_period * (1 + 1e-8)),
         scenario.replace(alpha_c=0),
     ):
-        other = problem_document(changed.problem("logdet"))
+        other = ro.problem_document(changed.problem("logdet"))
         assert other == record or difference(other)
     weighted = scenario.replace(targets=(first.replace(weight=1.0 + 2**-52), *others))
-    assert difference(problem_document(weighted.problem("logdet"))) == "its field 'weights' differs"
+    assert difference(ro.problem_document(weighted.problem("logdet"))) == "its field 'weights' differs"
 
 
 def test_a_comparison_counts_as_work_of_the_verifier() -> None:
     """Of a thousand robots and targets it takes minutes."""
     scenario = _drawn(0)
-    moved = _shifted(problem_document(scenario.problem()), np.random.default_rng(0), 2)
+    moved = _shifted(ro.problem_document(scenario.problem()), np.random.default_rng(0), 2)
     with limited(1e-9), pytest.raises(UndecidedError, match="not decided within"):
         differences(scenario, "trace")(moved)
 
@@ -95,7 +93,7 @@ def test_links_within_a_range_may_differ_where_rounding_decides() -> None:
     places = ((0.1, 0.0), (0.1, 3.0), (4.1, 3.0))
     robots = tuple(robot.replace(x=x, y=y) for robot, (x, y) in zip(made.robots, places, strict=True))
     scenario = made.replace(robots=robots, communication_range=5.0)
-    record, difference = problem_document(scenario.problem()), differences(scenario, "trace")
+    record, difference = ro.problem_document(scenario.problem()), differences(scenario, "trace")
     assert difference(record) == ""
     for links, same in (
         ([[0, 1], [1, 2]], True),

@@ -19,7 +19,9 @@ from ratt_opt import (
     ProofError,
     TableFunction,
     TraceObjective,
+    certify,
     exhaustive_optimum,
+    problem_document,
     random_scenario,
     solve_maxmin,
     verify_certificate,
@@ -29,7 +31,7 @@ from ratt_opt.certificates.lower import lower_proof
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced
 from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.write import _prior_range, certify, problem_document
+from ratt_opt.certificates.write import _prior_range
 from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified

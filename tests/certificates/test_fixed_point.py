@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import random_scenario
+from ratt_opt import problem_document, random_scenario
 from ratt_opt.certificates.verifier.fixed_point import FixedPoint
 from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.write import problem_document
 from tests.strategies import OBJECTIVES
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import random_scenario, ratt, worst_case_attack
+from ratt_opt import ProofError, problem_document, random_scenario, ratt, worst_case_attack
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.certificates import forced_size, lower, size_tree
 from ratt_opt.certificates.forced_size import forced_size_tree
@@ -15,8 +15,8 @@ from ratt_opt.certificates.size_tree import _SizeTree
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.work import limited, watched
-from ratt_opt.certificates.write import _prior_range, problem_document
-from ratt_opt.errors import ProofError, UndecidedError
+from ratt_opt.certificates.write import _prior_range
+from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.strategies import OBJECTIVES
 

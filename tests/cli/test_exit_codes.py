@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from rich.table import Table
 
-from ratt_opt import LogDetObjective, Problem, certify, solve_maxmin
+from ratt_opt import InputError, LogDetObjective, Problem, certify, solve_maxmin
 from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.cli import run
 from ratt_opt.cli.terminal import print_tables
-from ratt_opt.errors import InputError, printable
+from ratt_opt.errors import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget
 from ratt_opt.curvatures.separable.marginal_brackets import choices_beside
-from ratt_opt.errors import InputError
 from tests.setfunctions import oracle
 from tests.strategies import OBJECTIVES, information_data, monotone_table, random_objective, range_bearing
 
@@ -41,7 +40,7 @@ def test_total_curvature_is_its_definition_on_random_monotone_tables():
         owners = random_owners(rng, n)
         found = ro.total_curvature(f, owners)
         assert found.lower == found.upper == pytest.approx(oracle.total_curvature(f.values, owners), abs=1e-12)
-        assert found.stop is Stop.EXHAUSTED
+        assert found.stop is ro.Stop.EXHAUSTED
         if found.element is not None:
             assert ratio_shown(f, found) == pytest.approx(found.lower, abs=1e-12)
 
@@ -70,7 +69,7 @@ def test_any_table_is_measured_or_refused_by_the_definition():
         falls = oracle.worst_slack(values, "non-decreasing") < 0
         refused += falls
         if falls:
-            with pytest.raises(InputError, match="f must be non-decreasing; got adding"):
+            with pytest.raises(ro.InputError, match="f must be non-decreasing; got adding"):
                 ro.total_curvature(f)
         else:
             assert ro.total_curvature(f).upper == pytest.approx(oracle.total_curvature(values), abs=1e-12)
@@ -79,7 +78,7 @@ def test_any_table_is_measured_or_refused_by_the_definition():
 
 def test_curvature_refuses_what_is_not_submodular():
     f = ro.reference("convex of modular", 5, np.random.default_rng(0)).function
-    with pytest.raises(InputError, match="f must be submodular"):
+    with pytest.raises(ro.InputError, match="f must be submodular"):
         ro.curvature(f)
 
 
@@ -218,8 +217,8 @@ def test_budgets_stop_the_search_and_keep_the_bracket(monkeypatch):
     free = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400)
     hurried = ro.total_curvature(f, owners, gap=1e-6, time_limit=0.0)
     counted = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=f.n)
-    assert hurried.stop is Stop.TIME
-    assert counted.stop is Stop.NODES
+    assert hurried.stop is ro.Stop.TIME
+    assert counted.stop is ro.Stop.NODES
     for found in (hurried, counted):
         assert found.lower <= free.upper + 1e-12
         assert free.lower <= found.upper + 1e-12
@@ -232,18 +231,18 @@ def test_an_outer_budget_gives_its_seconds_and_hears_of_interrupts(monkeypatch):
     monkeypatch.setattr(LIMIT, 1)
     monkeypatch.setattr("ratt_opt.curvatures.ratios.LARGEST_ENUMERATION", 1)
     for measure in (ro.total_curvature, ro.curvature, ro.submodularity_ratio, ro.generalised_curvature):
-        assert measure(f, owners, budget=Budget(0.0)).stop is Stop.TIME
+        assert measure(f, owners, budget=Budget(0.0)).stop is ro.Stop.TIME
     outer = Budget()
     free = ro.total_curvature(f, owners, time_limit=None, max_nodes=30, budget=outer)
     assert free == ro.total_curvature(f, owners, time_limit=None, max_nodes=30)
-    assert (free.stop, outer.nodes, outer.stop()) == (Stop.NODES, 0, None)
+    assert (free.stop, outer.nodes, outer.stop()) == (ro.Stop.NODES, 0, None)
 
     def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted)
-    assert ro.total_curvature(f, owners, budget=outer).stop is Stop.INTERRUPTED
-    assert outer.stop() is Stop.INTERRUPTED
+    assert ro.total_curvature(f, owners, budget=outer).stop is ro.Stop.INTERRUPTED
+    assert outer.stop() is ro.Stop.INTERRUPTED
 
 
 def test_results_are_values(monkeypatch):
@@ -282,7 +281,7 @@ def test_an_interrupt_returns_the_bracket(monkeypatch):
 
         monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted)
         found = ro.total_curvature(f, owners, gap=1e-9, time_limit=None)
-        assert found.stop is Stop.INTERRUPTED
+        assert found.stop is ro.Stop.INTERRUPTED
         assert found.lower <= exact.upper
         assert exact.lower <= found.upper
         monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", plain)
@@ -301,7 +300,7 @@ def test_an_interrupt_returns_the_bracket(monkeypatch):
     ],
 )
 def test_bad_arguments_are_refused(call, text):
-    with pytest.raises(InputError, match=text):
+    with pytest.raises(ro.InputError, match=text):
         call(ro.TableFunction(np.arange(8.0)))
 
 
@@ -315,7 +314,7 @@ def test_bad_arguments_are_refused(call, text):
     ],
 )
 def test_bad_tables_are_refused(values, text):
-    with pytest.raises(InputError, match=text):
+    with pytest.raises(ro.InputError, match=text):
         ro.TableFunction(values)
 
 
@@ -325,9 +324,9 @@ def test_domains_too_large_for_a_table_have_a_bracket_and_no_table():
     assert found.lower <= 1e-12  # it has none
     assert found.upper >= 0
     assert found.stop is ro.Stop.HEURISTIC
-    with pytest.raises(InputError, match="8 GiB"):
+    with pytest.raises(ro.InputError, match="8 GiB"):
         f.table()
-    with pytest.raises(InputError, match="must not repeat"):
+    with pytest.raises(ro.InputError, match="must not repeat"):
         f([1, 1])
     assert ro.curvature(f).upper == 0  # the ends of the lattice need no table
 
@@ -373,7 +372,7 @@ def test_a_max_eigenvalue_marginal_that_is_truly_zero_has_a_witness(monkeypatch)
 @pytest.mark.parametrize("measure", [ro.curvature, ro.total_curvature])
 def test_values_that_are_no_numbers_are_refused(bad, n, measure):
     f = ro.ConcaveOfModular(np.ones(n), lambda totals: np.where(totals == n, bad, totals))
-    with pytest.raises(InputError, match="must have finite values"):
+    with pytest.raises(ro.InputError, match="must have finite values"):
         measure(f)
 
 

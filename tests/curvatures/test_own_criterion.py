@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget
 from ratt_opt.setfunctions.information import InformationObjective
 from tests.setfunctions import oracle
 from tests.strategies import information_data
@@ -82,7 +82,7 @@ def test_beyond_that_the_bracket_holds_and_says_what_it_rests_on(criterion, monk
             bent = ro.curvature(f, OWNERS, gap=0.0, time_limit=None) if f.is_submodular else found
         for bracket in (found, bent):
             assert bracket.lower - 1e-8 <= exact <= bracket.upper + 1e-8
-            assert bracket.stop in {Stop.EXHAUSTED, Stop.GAP, Stop.CLOSED}
+            assert bracket.stop in {ro.Stop.EXHAUSTED, ro.Stop.GAP, ro.Stop.CLOSED}
             assert bracket.how.startswith("bounds for all contexts and attained contexts")
         informative += found.upper < 1
     assert informative > 15 if criterion.is_submodular else informative == 0

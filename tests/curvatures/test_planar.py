@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import linprog
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget
 from ratt_opt.curvatures.planar import context_search
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
@@ -264,7 +264,7 @@ def test_the_bracket_is_tight_on_section_six(seed):
     found = ro.total_curvature(f, owners, gap=0.1, time_limit=None, max_nodes=4000)
     assert found.upper < 1
     assert (1 - found.lower) / (1 - found.upper) <= 1.1 + 1e-9
-    assert found.stop is Stop.GAP
+    assert found.stop is ro.Stop.GAP
 
 
 def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
@@ -284,7 +284,7 @@ def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
     for after in (0, 3, 10, 40):  # noqa: B007  (read by the function above)
         calls[0] = 0
         found = ro.total_curvature(f, owners, gap=0.0, time_limit=None)
-        assert found.stop is Stop.INTERRUPTED
+        assert found.stop is ro.Stop.INTERRUPTED
         assert found.lower - 1e-9 <= exact.upper <= found.upper + 1e-9
 
 

@@ -7,7 +7,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.curvatures import ratios
-from ratt_opt.errors import InputError
 from tests.setfunctions import oracle
 from tests.strategies import monotone_table, random_objective
 
@@ -106,7 +105,7 @@ def test_relabelling_and_scaling_change_nothing():
 def test_a_function_that_falls_is_refused():
     f = ro.TableFunction([0.0, 1.0, 1.0, 0.5])
     for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
-        with pytest.raises(InputError, match="f must be non-decreasing"):
+        with pytest.raises(ro.InputError, match="f must be non-decreasing"):
             quantity(f)
 
 

@@ -12,9 +12,17 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, Problem, TraceObjective, curvature, exhaustive_optimum, ratt, total_curvature
-from ratt_opt.graph.largest_group.smallest import smallest_largest_group
-from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt import (
+    Attack,
+    Problem,
+    TableFunction,
+    TraceObjective,
+    curvature,
+    exhaustive_optimum,
+    ratt,
+    smallest_largest_group,
+    total_curvature,
+)
 from tests.oracles import brute_force_worst_case
 
 FORMAL = Path(__file__).parents[2] / "formal"

@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ratt_opt as ro
-from ratt_opt.errors import InputError
 
 KINDS = (nx.Graph, nx.DiGraph, nx.MultiGraph, nx.MultiDiGraph)
 NODES = st.one_of(
@@ -57,7 +56,7 @@ def test_the_rule(graph):
     has_parallel = any(count > 1 for *_, count in found.edges(data="count"))
     if has_parallel:
         with pytest.raises(
-            InputError, match=r'^graph must have no parallel edges \(parallel="count" takes them\); got'
+            ro.InputError, match=r'^graph must have no parallel edges \(parallel="count" takes them\); got'
         ):
             ro.communication_graph(graph, parallel="refuse")
     else:
@@ -89,7 +88,7 @@ def test_order_and_names():
 
 def test_what_is_refused():
     for graph, text in ((3, "must be a networkx graph; got int"), (nx.Graph(), "must have at least one node")):
-        with pytest.raises(InputError, match=text):
+        with pytest.raises(ro.InputError, match=text):
             ro.communication_graph(graph)
-    with pytest.raises(InputError, match="parallel must be one of count, refuse; got sum"):
+    with pytest.raises(ro.InputError, match="parallel must be one of count, refuse; got sum"):
         ro.communication_graph(nx.path_graph(2), parallel="sum")

@@ -4,9 +4,8 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt.errors import InputError
+from ratt_opt import InputError, count_outcomes, non_dominated_outcomes, realise
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.outcomes import count_outcomes, non_dominated_outcomes, realise
 from ratt_opt.graph.threat import Threat
 from tests.oracles import brute_force_outcomes, groups_left
 from tests.strategies import random_problem

@@ -15,7 +15,6 @@ from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
 from ratt_opt.graph.largest_group.counting import counting_bound, largest_left
-from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.largest_group.spreading import SCALE, TreeProgram, forced_size, forced_weight
 from ratt_opt.graph.threat import Threat
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
@@ -82,7 +81,7 @@ def test_any_multipliers_prove_something_true(seed):
 
 def test_trees_settle_a_path_and_a_star():
     for graph, alpha_c, size in ((nx.path_graph(30), 2, 10), (nx.star_graph(20), 5, 16), (nx.cycle_graph(24), 4, 6)):
-        found = smallest_largest_group(graph, alpha_c, method="spreading")
+        found = ro.smallest_largest_group(graph, alpha_c, method="spreading")
         assert (found.lower, found.upper) == (size, size)
 
 
@@ -100,11 +99,11 @@ def test_it_is_never_worse_than_counting(family):
 
 def test_a_hundred_robots_get_a_narrow_bracket():
     graph = ro.network_scenario("disk-6", 100, 5, alpha_s=0, alpha_c=0, seed=0).problem("trace").communication
-    found = smallest_largest_group(graph, len(graph.links) * 3 // 20, method="spreading")
+    found = ro.smallest_largest_group(graph, len(graph.links) * 3 // 20, method="spreading")
     assert found.upper <= 1.2 * found.lower
 
 
 def test_a_spent_budget_leaves_what_counting_knows():
     graph = nx.random_regular_graph(4, 40, seed=0)
-    found = smallest_largest_group(graph, 20, method="spreading", time_limit=0)
-    assert found.lower == smallest_largest_group(graph, 20, method="counting").lower
+    found = ro.smallest_largest_group(graph, 20, method="spreading", time_limit=0)
+    assert found.lower == ro.smallest_largest_group(graph, 20, method="counting").lower

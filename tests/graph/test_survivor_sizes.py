@@ -5,8 +5,8 @@ from math import comb
 
 import pytest
 
+from ratt_opt import count_outcomes
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.outcomes import count_outcomes
 from ratt_opt.graph.survivor_sizes import (
     forced_group_size,
     iterate_non_dominated_sizes,

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt import Stop
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph import compiled_threshold
 from ratt_opt.graph.compiled_threshold import CompiledThresholdTest
 from ratt_opt.graph.threshold import ThresholdTest

@@ -10,7 +10,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.certificates import write
-from ratt_opt.errors import InputError, ProofError, UndecidedError
+from ratt_opt.errors import UndecidedError
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
 
@@ -60,9 +60,9 @@ def test_a_time_limit_leaves_an_honest_bracket():
     ],
 )
 def test_bad_arguments_are_refused(arguments, text):
-    with pytest.raises(InputError, match=text):
+    with pytest.raises(ro.InputError, match=text):
         ro.bound(ro.random_scenario(2, 1, alpha_s=0, alpha_c=0, seed=0), **arguments)
-    with pytest.raises(InputError, match="scenario_or_problem"):
+    with pytest.raises(ro.InputError, match="scenario_or_problem"):
         ro.bound("scenario.json")
 
 
@@ -103,15 +103,15 @@ def test_an_interrupt_while_the_certificate_is_written_keeps_the_report(monkeypa
 
 def test_a_proof_with_a_fault_raises_and_keeps_the_report(tmp_path, monkeypatch):
     def faulty(*_):
-        raise ProofError("claim: false")
+        raise ro.ProofError("claim: false")
 
     monkeypatch.setattr(write, "_write_verified", faulty)
-    with pytest.raises(ProofError, match="claim: false") as caught:
+    with pytest.raises(ro.ProofError, match="claim: false") as caught:
         ro.bound(SMALL, certificate=tmp_path / "c.json")
     report = caught.value.report
     assert report == replace(ro.bound(SMALL), certificate=report.certificate)
     assert report.certificate.why_not == "the proof has a fault: claim: false"
-    assert ProofError("other").report is None
+    assert ro.ProofError("other").report is None
 
 
 def test_a_proof_that_is_not_decided_is_a_reason(tmp_path, monkeypatch):

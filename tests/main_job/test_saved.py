@@ -9,7 +9,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.cli import run
-from ratt_opt.scenario.files import load_input
 from tests.oracles import brute_force_worst_case
 
 SCENARIO = ro.random_scenario(5, 3, alpha_s=1, alpha_c=4, seed=3)
@@ -45,7 +44,7 @@ def test_the_archive_runs_again_and_says_the_same(saved, tmp_path):
     report, out, _ = saved
     document = json.loads((out / "report.json").read_text())
     (tmp_path / "again.json").write_text(json.dumps(document["input"]["document"]))
-    again = load_input(tmp_path / "again.json")
+    again = ro.load_input(tmp_path / "again.json")
     assert again == SCENARIO
     redone = ro.bound(again).to_dict()
     for name in ("input", "ratt", "optimum", "baselines", "guarantees", "seeds", "control_values", "views"):

@@ -13,6 +13,7 @@ from ratt_opt import (
     Attack,
     BearingOnly,
     InputError,
+    MaxMinPlanner,
     Measurement,
     MissionModel,
     PositionSensor,
@@ -25,7 +26,6 @@ from ratt_opt import (
     random_scenario,
     ratt,
 )
-from ratt_opt.missions.players.planners import MaxMinPlanner
 from tests.missions import numpy_filter
 
 STILL = ((0.0, 0.0),)

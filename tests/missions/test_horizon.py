@@ -9,12 +9,20 @@ from itertools import product
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, random_scenario, ratt, run_mission, solve_maxmin, worst_case_attack
+from ratt_opt import (
+    Attack,
+    InputError,
+    MissionModel,
+    random_scenario,
+    ratt,
+    run_mission,
+    solve_maxmin,
+    worst_case_attack,
+)
 from ratt_opt.missions.ahead.dominance import undominated
 from ratt_opt.missions.beam import beam_sequences, solve_by_columns
 from ratt_opt.missions.players.attack_models import RenewedAttacks
-from ratt_opt.missions.world import MissionModel, World
-from ratt_opt.problem import Attack
+from ratt_opt.missions.world import World
 from tests.oracles import brute_force_worst_case
 
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, random_scenario
-from ratt_opt.missions.belief import Belief
+from ratt_opt import Belief, ConstantVelocity, InputError, random_scenario
 from ratt_opt.missions.memory import Memory, Pieces
-from ratt_opt.missions.models.targets import ConstantVelocity
 
 
 def pieces(rng, n_robots, n_targets):

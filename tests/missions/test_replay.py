@@ -16,13 +16,13 @@ from ratt_opt import (
     fit_sensor,
     load_scenario,
     random_scenario,
+    read_mrclam,
     replay_mrclam,
     save_scenario,
     worst_case_attack,
 )
 from ratt_opt.missions.replay.cameras import CAMERA_PLANNERS, camera_planner
 from ratt_opt.missions.replay.fit_sensor import mrclam_residuals
-from ratt_opt.scenario.mrclam_reader import read_mrclam
 from tests.strategies import information_data
 
 REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "mrclam"

@@ -12,21 +12,22 @@ from hypothesis import strategies as st
 from ratt_opt import (
     Attack,
     InputError,
+    MaxMinPlanner,
+    MissionModel,
+    PermanentFailures,
+    PersistentAttacks,
+    PositionSensor,
     Robot,
     Scenario,
     Sensor,
     Target,
     random_scenario,
     ratt,
+    run_mission,
     solve_maxmin,
     worst_case_attack,
 )
 from ratt_opt.budget import Budget
-from ratt_opt.missions.models.sensors import PositionSensor
-from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
-from ratt_opt.missions.players.planners import MaxMinPlanner
-from ratt_opt.missions.run import run_mission
-from ratt_opt.missions.world import MissionModel
 from tests.missions import numpy_filter
 
 

@@ -14,10 +14,9 @@ import pytest
 from ratt_audit import ledger as ledger_module
 from ratt_audit.appendix.entry import ClaimEntry, Entry
 from ratt_audit.appendix.misprints import MISPRINTS
-from ratt_audit.ledger import all_entries, decide_entry, run_audit
+from ratt_audit.ledger import all_entries, decide_entry
 from ratt_audit.report.pages import html_report, markdown_report
-from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt import InputError, TableFunction, run_audit
 
 HERE = Path(__file__).parent
 PAPER = HERE.parents[2] / "shared" / "paper" / "ratt.tex"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.scenario.networks import NETWORK_FAMILIES, network_links, network_scenario
+from ratt_opt.scenario.networks import NETWORK_FAMILIES, network_links
 
 
 @pytest.mark.parametrize("family", NETWORK_FAMILIES)
@@ -47,7 +47,7 @@ def test_hubs_have_far_more_links_than_the_mean():
 
 @pytest.mark.parametrize("family", NETWORK_FAMILIES)
 def test_a_scenario_has_the_robots_of_its_seed_and_shares_of_the_network(family):
-    scenario = network_scenario(family, 20, 5, alpha_s=0.2, alpha_c=0.15, seed=4)
+    scenario = ro.network_scenario(family, 20, 5, alpha_s=0.2, alpha_c=0.15, seed=4)
     plain = ro.random_scenario(20, 5, alpha_s=0, alpha_c=0, seed=4)
     assert scenario.robots == plain.robots
     assert scenario.targets == plain.targets
@@ -56,7 +56,7 @@ def test_a_scenario_has_the_robots_of_its_seed_and_shares_of_the_network(family)
 
 
 def test_numbers_of_robots_and_links_are_taken_as_they_are():
-    scenario = network_scenario("disk-6", 20, 5, alpha_s=1, alpha_c=0, seed=4)
+    scenario = ro.network_scenario("disk-6", 20, 5, alpha_s=1, alpha_c=0, seed=4)
     assert (scenario.alpha_s, scenario.alpha_c) == (1, 0)
 
 
@@ -73,4 +73,4 @@ def test_numbers_of_robots_and_links_are_taken_as_they_are():
 def test_bad_input_is_refused_in_one_line(arguments, text):
     given = {"family": "dense", "n_robots": 6, "n_targets": 2, "alpha_s": 1, "alpha_c": 1, "seed": 0} | arguments
     with pytest.raises(ro.InputError, match=text):
-        network_scenario(given.pop("family"), given.pop("n_robots"), given.pop("n_targets"), **given)
+        ro.network_scenario(given.pop("family"), given.pop("n_robots"), given.pop("n_targets"), **given)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, Sensor, random_scenario, ratt
-from ratt_opt.scenario.simulation import simulate_tracking
+from ratt_opt import InputError, Sensor, random_scenario, ratt, simulate_tracking
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -12,7 +12,6 @@ import ratt_opt as ro
 from ratt_opt import InputError
 from ratt_opt.cli import run
 from ratt_opt.scenario import files, problem_record
-from ratt_opt.scenario.information_input import InformationInput
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +49,7 @@ def test_repeated_entries_are_refused_everywhere_alike(field: str, entries: Any)
         "prior": [[[1.0]]], "information": [[[[1.0]]]] * 3, "robot": [0, 1, 2], "alpha_s": 0, "alpha_c": 0,
     }  # fmt: skip
     with pytest.raises(InputError, match=rf"{field}\[2\] must not be repeated"):
-        InformationInput(**given, **{field: entries})
+        ro.InformationInput(**given, **{field: entries})
 
 
 def test_teams_that_do_not_fit_are_refused_before_they_are_made(
@@ -128,10 +127,10 @@ def test_a_scenario_names_the_sensor_and_the_covariance_that_do_not_fit() -> Non
 
 def test_matrices_and_limits_take_numbers_of_any_kind_but_no_booleans(tmp_path: Path) -> None:
     given: dict[str, Any] = {"information": [[[[1.0]]], [[[np.int64(2)]]]], "robot": [np.int8(0), 1], "alpha_s": 1}
-    team = InformationInput(**given, prior=[[[np.float32(2)]]], weights=[np.uint8(3)], alpha_c=np.int16(0))
+    team = ro.InformationInput(**given, prior=[[[np.float32(2)]]], weights=[np.uint8(3)], alpha_c=np.int16(0))
     assert team.information[1][0][0][0] == 2.0
     with pytest.raises(InputError, match=r"prior\[0\]\[0\]\[0\] must be a number"):
-        InformationInput(**given, prior=[[[True]]], alpha_c=0)
+        ro.InformationInput(**given, prior=[[[True]]], alpha_c=0)
     assert SCENARIO.sensor.replace(field_of_view=np.int64(2)).field_of_view == 2
     problem = team.problem()
     assert ro.solve_maxmin(problem, time_limit=np.int64(9), gap=np.float32(0)).lower > 0

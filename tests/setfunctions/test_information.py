@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ratt_opt as ro
-from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.information import InformationObjective
 from tests.strategies import OBJECTIVES, information_data
 
@@ -115,7 +114,7 @@ def test_extreme_scales_keep_their_digits():
     ],
 )
 def test_bad_matrices_are_refused(kind, prior, information, text):
-    with pytest.raises(InputError, match=text):
+    with pytest.raises(ro.InputError, match=text):
         OBJECTIVES[kind](prior, information)
 
 
@@ -123,7 +122,7 @@ def test_rounding_below_zero_is_accepted_and_indices_are_checked():
     f = ro.TraceObjective([np.eye(2)], [[np.diag([1.0, -1e-10])]])
     assert f([0]) == pytest.approx(0.5)
     for bad in ([1], [-1], [0, 0], [0.5]):
-        with pytest.raises(InputError):
+        with pytest.raises(ro.InputError):
             f(bad)
 
 
@@ -150,7 +149,7 @@ def test_individual_values_are_kept_and_those_of_these_elements(kind, monkeypatc
 @given(st.integers(-9, 3), st.integers(16, 24))
 def test_a_prior_that_is_only_badly_scaled_is_refused_by_its_condition(low: int, decades: int) -> None:
     prior = np.diag([10.0 ** (low + decades), 10.0**low])
-    with pytest.raises(InputError, match=r"prior\[0\] must have a condition below 4.5e15: rescale"):
+    with pytest.raises(ro.InputError, match=r"prior\[0\] must have a condition below 4.5e15: rescale"):
         ro.TraceObjective([prior], np.zeros((1, 1, 2, 2)))
 
 
@@ -160,5 +159,5 @@ def test_float32_information_is_repaired_with_a_warning(defect: float, size: flo
     with pytest.warns(UserWarning, match="float32 rounding repaired in 1 matrices"):
         f = ro.TraceObjective([np.eye(2)], np.array([[given_matrix]]))
     np.testing.assert_allclose(f.information[0, 0], np.diag([given_matrix[0, 0], 0]), atol=1e-12 * size)
-    with pytest.raises(InputError, match="positive semidefinite"):
+    with pytest.raises(ro.InputError, match="positive semidefinite"):
         ro.TraceObjective([np.eye(2)], [[given_matrix.astype(np.float64)]])

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.budget import Budget
-from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import SetFunction, TableFunction
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.lattice import second_differences
-from ratt_opt.setfunctions.properties import (
+from ratt_opt import (
+    InputError,
+    LogDetObjective,
     NotFound,
+    SetFunction,
+    TableFunction,
+    TraceObjective,
     find_modularity_violation,
     find_monotonicity_violation,
     find_negativity,
@@ -20,6 +19,8 @@ from ratt_opt.setfunctions.properties import (
     find_subadditivity_violation,
     find_submodularity_violation,
 )
+from ratt_opt.budget import Budget
+from ratt_opt.setfunctions.lattice import second_differences
 from tests.setfunctions.oracle import pair_slack, worst_slack
 from tests.strategies import information_data, monotone_table
 

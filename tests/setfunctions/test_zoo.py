@@ -5,18 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.curvatures.curvature import curvature, total_curvature
-from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.properties import find_monotonicity_violation, find_submodularity_violation
-from ratt_opt.setfunctions.reference import (
+from ratt_opt import (
+    REFERENCE_FAMILIES,
     ConcaveOfModular,
     Coverage,
     Cut,
     FacilityLocation,
+    InputError,
     Modular,
     PartitionMatroidRank,
+    curvature,
+    find_monotonicity_violation,
+    find_submodularity_violation,
+    reference,
+    total_curvature,
 )
-from ratt_opt.setfunctions.zoo import REFERENCE_FAMILIES, reference
 from tests.setfunctions import oracle
 
 

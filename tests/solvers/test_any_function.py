@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
-from ratt_opt.errors import InputError
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import SEEDED, Drawn, Opaque, Submodular, information_data, monotone_table, random_problem
 
@@ -182,7 +181,7 @@ def test_values_that_are_no_numbers_are_refused_at_the_call_that_produced_them(b
         lambda: f(range(8)),
         f.table,
     ):
-        with pytest.raises(InputError, match=text):
+        with pytest.raises(ro.InputError, match=text):
             call()
 
 
@@ -193,7 +192,7 @@ def test_small_functions_that_fall_are_refused_with_the_witness(problem, data):
     top = problem.choices[0][0]
     values[1 << int(top)] = -1.0 - data.draw(st.integers(0, 3))  # below nothing at all
     falling = replace(problem, objective=ro.TableFunction(values))
-    with pytest.raises(InputError, match=r"must be non-decreasing.*changes it by -"):
+    with pytest.raises(ro.InputError, match=r"must be non-decreasing.*changes it by -"):
         ro.solve_maxmin(falling)
 
 

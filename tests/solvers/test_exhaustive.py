@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, Problem, TableFunction, TraceObjective, exhaustive_optimum, worst_case_attack
-from ratt_opt.budget import Budget, Stop
+from ratt_opt import InputError, Problem, Stop, TableFunction, TraceObjective, exhaustive_optimum, worst_case_attack
+from ratt_opt.budget import Budget
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import information_data, random_problem, range_bearing
 

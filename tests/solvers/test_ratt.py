@@ -9,8 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratt_opt import (
+    Attack,
     Problem,
     SetFunction,
+    Stop,
     TableFunction,
     caa,
     greedy,
@@ -21,8 +23,7 @@ from ratt_opt import (
     random_scenario,
     ratt,
 )
-from ratt_opt.budget import Budget, Stop
-from ratt_opt.problem import Attack
+from ratt_opt.budget import Budget
 from ratt_opt.solvers import ratt as ratt_module
 from ratt_opt.solvers.maxmin import solve
 from ratt_opt.solvers.maxmin.solve import nonrobust_search

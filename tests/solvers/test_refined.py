@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import (
+    Attack,
     InputError,
     Plan,
     Problem,
@@ -19,7 +20,6 @@ from ratt_opt import (
     run_mission,
     solve_maxmin,
 )
-from ratt_opt.problem import Attack
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_problem
 

@@ -8,11 +8,19 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ratt_opt import InputError, Problem, ProofError, TableFunction, exhaustive_optimum, ratt, worst_case_attack
+from ratt_opt import (
+    InputError,
+    Problem,
+    ProofError,
+    TableFunction,
+    exhaustive_optimum,
+    ratt,
+    worst_case_attack,
+    worst_case_ratio,
+)
 from ratt_opt.bounds.survivors import survivor_share
 from ratt_opt.worst_ratio.closed_form import known_ratio, proved_ratio, sensing_ratio, three_left_ratio
 from ratt_opt.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
-from ratt_opt.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.worst_ratio.witness import attaining_instance, replay
 
 HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)

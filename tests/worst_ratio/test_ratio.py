@@ -10,10 +10,19 @@ import numpy as np
 import pytest
 
 from ratt_audit.enumeration.tightness import tightness_entries
-from ratt_opt import InputError, Problem, ProofError, Stop, TableFunction, exhaustive_optimum, ratt, worst_case_attack
+from ratt_opt import (
+    InputError,
+    Problem,
+    ProofError,
+    Stop,
+    TableFunction,
+    exhaustive_optimum,
+    ratt,
+    worst_case_attack,
+    worst_case_ratio,
+)
 from ratt_opt.worst_ratio import witness
 from ratt_opt.worst_ratio.closed_form import pattern_free_ratio
-from ratt_opt.worst_ratio.ratio import worst_case_ratio
 from ratt_opt.worst_ratio.witness import replay
 
 

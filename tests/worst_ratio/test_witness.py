@@ -7,8 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from ratt_opt import InputError, ProofError
-from ratt_opt.worst_ratio.ratio import worst_case_ratio
+from ratt_opt import InputError, ProofError, worst_case_ratio
 from ratt_opt.worst_ratio.witness import attaining_instance, limit_instance, limit_ratio, replay
 
 

@@ -16,7 +16,6 @@ from ratt_opt.attackers.by_partition.settled_partitions import SettledPartitions
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_prices.starts import Starts
 from ratt_opt.attackers.by_prices.team import Links, PricedTeam
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
@@ -53,7 +52,7 @@ SEARCHES = [SplitSearch, CoverSearch]
 def run_split(problem, elements, max_nodes=None, search=SplitSearch):
     """The search itself, whatever ``worst_case_attack`` would choose for this team."""
     values = PlanValues(problem, elements)
-    first = bounded_rational_attack(problem, elements)
+    first = ro.bounded_rational_attack(problem, elements)
     bracket, budget = AttackBracket(first.attack, attained(problem, elements, first), 0.0), Budget(max_nodes=max_nodes)
     team = PackedTeam.planar(problem.objective, values.plan)
     groups = separable_groups(problem.threat, 100_000)

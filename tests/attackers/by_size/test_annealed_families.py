@@ -7,14 +7,13 @@ from math import comb
 import numpy as np
 import pytest
 
+from ratt_opt import Problem, worst_case_attack
 from ratt_opt.attackers.by_size import annealed_families as module
 from ratt_opt.attackers.by_size import size_vector_search
 from ratt_opt.attackers.by_size.annealed_families import AnnealedFamilies
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget
 from ratt_opt.graph.survivor_sizes import cheapest_cut
-from ratt_opt.problem import Problem
 from tests.brackets import attains
 from tests.strategies import OBJECTIVES, information_data
 

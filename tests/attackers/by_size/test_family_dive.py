@@ -8,15 +8,14 @@ from math import comb
 import numpy as np
 import pytest
 
+from ratt_opt import Problem, worst_case_attack
 from ratt_opt.attackers.by_size.annealed_families import Cooling, annealed_from
 from ratt_opt.attackers.by_size.family_prices.family_dive import FamilyDive
 from ratt_opt.attackers.by_size.family_prices.family_program import Choice, FamilyProgram
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.survivor_sizes import cheapest_cut
-from ratt_opt.problem import Problem
 from tests.strategies import OBJECTIVES, information_data
 
 N_ROBOTS = 10

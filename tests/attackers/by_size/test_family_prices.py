@@ -9,6 +9,7 @@ from math import comb
 import numpy as np
 import pytest
 
+from ratt_opt import Attack, Problem, Stop, worst_case_attack
 from ratt_opt.attackers.by_size import annealed_families, size_vector_search, weak_families
 from ratt_opt.attackers.by_size.family_prices import family_search, paying_tree, set_finder, threshold_bound
 from ratt_opt.attackers.by_size.family_prices.annealed_sets import annealed_of_size, annealed_sets
@@ -18,13 +19,11 @@ from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Que
 from ratt_opt.attackers.by_size.family_prices.set_finder import SetFinder
 from ratt_opt.attackers.by_size.family_prices.size_vectors import SizeVectors
 from ratt_opt.attackers.by_size.family_prices.threshold_bound import ThresholdBound, _Verdict
-from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.attackers.weakest_set.pair_bound import fill_pairs, mean_of_least, views, weakest_bound
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
-from ratt_opt.problem import Attack, Problem
 from tests.brackets import worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data

@@ -19,7 +19,6 @@ from ratt_opt.attackers.by_size import (
 )
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
@@ -49,7 +48,7 @@ def team_problem(seed, n_robots, name, *, protect=False):
 def run_large(problem, elements, max_nodes=None):
     """The large-team search, also where ``worst_case_attack`` would use the one for small teams."""
     values = PlanValues(problem, elements)
-    start = bounded_rational_attack(problem, elements)
+    start = ro.bounded_rational_attack(problem, elements)
     bracket, budget = AttackBracket(start.attack, attained(problem, elements, start), 0.0), Budget(max_nodes=max_nodes)
     team = PackedTeam.planar(problem.objective, values.plan)
     try:
@@ -111,7 +110,7 @@ def test_shares_that_end_anywhere_lose_no_set(name, seed, monkeypatch):
     pack_again(monkeypatch)
     problem, elements = team_problem(seed, 6 + seed % 4, name, protect=seed % 3 == 0)
     expected, values = worst_value(problem, elements), PlanValues(problem, elements)
-    start = bounded_rational_attack(problem, elements)
+    start = ro.bounded_rational_attack(problem, elements)
     bracket, team = (
         AttackBracket(start.attack, attained(problem, elements, start), 0.0),
         PackedTeam.planar(problem.objective, values.plan),

@@ -7,11 +7,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from ratt_opt import Stop
 from ratt_opt.attackers.by_size import packing
 from ratt_opt.attackers.by_size.packing import Packer
 from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget
 from tests.strategies import OBJECTIVES, information_data
 
 N_ROBOTS = 8

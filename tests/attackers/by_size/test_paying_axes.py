@@ -7,10 +7,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from ratt_opt import MaxEigenvalueObjective
 from ratt_opt.attackers.by_size.family_prices.paying_sets import PayingSets, Question
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from tests.strategies import information_data
 
 N_ROBOTS, N_TARGETS = 7, 3

@@ -12,7 +12,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt import links_to_add, links_to_protect
-from ratt_opt.errors import InputError
 from tests.oracles import brute_force_worst_case
 from tests.strategies import information_data, random_elements, random_problem
 
@@ -100,15 +99,15 @@ def test_the_bridge_is_protected_or_doubled():
 
 def test_what_cannot_be_chosen_is_refused():
     problem, elements = two_teams()
-    with pytest.raises(InputError, match="links of the graph"):
+    with pytest.raises(ro.InputError, match="links of the graph"):
         links_to_protect(problem, elements, 1, candidates=[(0, 5)])
-    with pytest.raises(InputError, match="without a link"):
+    with pytest.raises(ro.InputError, match="without a link"):
         links_to_add(problem, elements, 1, candidates=[(0, 1)])
-    with pytest.raises(InputError, match="without a link"):
+    with pytest.raises(ro.InputError, match="without a link"):
         links_to_add(problem, elements, 1, candidates=[(0, 6)])
-    with pytest.raises(InputError, match="repeated"):
+    with pytest.raises(ro.InputError, match="repeated"):
         links_to_add(problem, elements, 1, candidates=[(0, 5), (5, 0)])
-    with pytest.raises(InputError, match="k must be an integer"):
+    with pytest.raises(ro.InputError, match="k must be an integer"):
         links_to_protect(problem, elements, -1)
 
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_audit.appendix.roles import Side, Team, optimum, worst_for
-from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt import Problem, TableFunction
 from ratt_opt.solvers.ratt import bait_and_greedy
 from tests.strategies import monotone_table
 

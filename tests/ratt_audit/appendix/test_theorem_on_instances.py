@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.problem import Problem
-from ratt_opt.setfunctions.base import TableFunction
-from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.ratt import ratt
+from ratt_opt import Problem, TableFunction, exhaustive_optimum, ratt, worst_case_attack
 from tests.strategies import random_graph
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_audit.engine.claim import elementary, elementary_keys
-from ratt_opt.errors import ProofError
+from ratt_opt import ProofError
 from ratt_opt.worst_ratio.function_class import FunctionClass, check_class
 from tests.ratt_audit.engine.abc_claims import ABC, ANY, ND, SUB
 

@@ -10,7 +10,7 @@ import pytest
 from ratt_audit.engine.claim import Inequality
 from ratt_audit.engine.decide import Decision, decide
 from ratt_audit.engine.evidence import check_witness
-from ratt_opt.errors import ProofError
+from ratt_opt import ProofError
 from tests.ratt_audit.engine.abc_claims import ND, claim, f
 
 

@@ -15,7 +15,7 @@ from ratt_audit.engine.evidence import check_proof
 from ratt_audit.engine.polynomials import ONE, T, constant
 from ratt_audit.engine.prover import find_proof
 from ratt_audit.engine.refuter import find_witness
-from ratt_opt.errors import ProofError
+from ratt_opt import ProofError
 from ratt_opt.worst_ratio.function_class import FunctionClass
 from tests.ratt_audit.engine.abc_claims import ABC, ANY, ND, SUB, claim, f
 

@@ -12,7 +12,7 @@ from ratt_audit.engine.decide import Decision, decide
 from ratt_audit.engine.evidence import ProofStep, check_proof
 from ratt_audit.engine.polynomials import ONE, T, constant
 from ratt_audit.engine.prover import find_proof
-from ratt_opt.errors import ProofError
+from ratt_opt import ProofError
 from tests.ratt_audit.engine.abc_claims import ANY, ND, claim, f
 
 

@@ -14,8 +14,7 @@ from ratt_audit.enumeration.running_time import (
     lazy_greedy_picks,
     measured_growth,
 )
-from ratt_opt import InputError, Problem, TableFunction, random_scenario, ratt
-from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt import InputError, Problem, SetFunction, TableFunction, random_scenario, ratt
 
 
 class Counting(SetFunction):

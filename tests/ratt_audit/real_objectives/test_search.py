@@ -16,8 +16,15 @@ from ratt_audit.ledger import all_entries
 from ratt_audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
 from ratt_audit.real_objectives.search import Origin, Trial, exact_violation, search_real_objectives
 from ratt_audit.report.records import real_record
-from ratt_opt import InputError, MaxEigenvalueObjective, TraceObjective, exhaustive_optimum, random_scenario, ratt
-from ratt_opt.scenario.model import Scenario
+from ratt_opt import (
+    InputError,
+    MaxEigenvalueObjective,
+    Scenario,
+    TraceObjective,
+    exhaustive_optimum,
+    random_scenario,
+    ratt,
+)
 
 ENTRIES = [entry for entry in all_entries() if isinstance(entry, ClaimEntry)]
 

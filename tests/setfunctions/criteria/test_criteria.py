@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criteria import compiled
 from ratt_opt.setfunctions.criteria.registry import CRITERIA, criterion_called
 from ratt_opt.setfunctions.criteria.two_by_two import triples
@@ -145,14 +144,14 @@ def test_what_is_missing_is_refused_by_its_name():
             size = np.linalg.slogdet(posterior_information)[1] - np.linalg.slogdet(self.prior_information)[1]
             return size.sum(axis=-1)
 
-    with pytest.raises(InputError, match=r"must define criterion\(posterior_information\).*got Nothing"):
+    with pytest.raises(ro.InputError, match=r"must define criterion\(posterior_information\).*got Nothing"):
         Nothing(prior, information)
     f = ValueAlone(prior, information)
     assert f([]) == 0
     assert f([0, 2]) == pytest.approx(ro.LogDetObjective(prior, information)([0, 2]))
-    with pytest.raises(InputError, match=r"must define gradient\(posterior_information\).*got ValueAlone"):
+    with pytest.raises(ro.InputError, match=r"must define gradient\(posterior_information\).*got ValueAlone"):
         f.tangent(f.prior_information, None)
-    with pytest.raises(InputError, match="objective must be trace, logdet or maxeig"):
+    with pytest.raises(ro.InputError, match="objective must be trace, logdet or maxeig"):
         criterion_called("squares")
 
 

@@ -15,13 +15,13 @@ from ratt_opt import (
     MaxMinResult,
     Problem,
     ProofError,
+    Stop,
     certify,
     limited_view_scenario,
     solve_maxmin,
     verify_certificate,
     worst_case_attack,
 )
-from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.levels.elements import Elements

@@ -9,6 +9,7 @@ import pytest
 
 from ratt_opt import (
     Attack,
+    AttackResult,
     Problem,
     Stop,
     TraceObjective,
@@ -19,7 +20,6 @@ from ratt_opt import (
     ratt,
     worst_case_attack,
 )
-from ratt_opt.attackers.task import AttackResult
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.solvers.maxmin.plans import incumbent
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary

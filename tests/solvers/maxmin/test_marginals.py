@@ -17,12 +17,12 @@ from ratt_opt import (
     MaxMinResult,
     Problem,
     ProofError,
+    Stop,
     certify,
     limited_view_scenario,
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.budget import Stop
 from ratt_opt.certificates.verifier.exact_matrices import definite
 from ratt_opt.solvers.maxmin import upper_ends
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, exhaustive_optimum, random_scenario, solve_maxmin
+from ratt_opt import Attack, exhaustive_optimum, random_scenario, ratt, solve_maxmin
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-from ratt_opt.solvers.ratt import ratt
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, ragged, threatened
 

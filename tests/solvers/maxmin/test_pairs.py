@@ -7,8 +7,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from ratt_opt import Problem, certify, exhaustive_optimum, solve_maxmin, verify_certificate, worst_case_attack
-from ratt_opt.budget import Stop
+from ratt_opt import Problem, Stop, certify, exhaustive_optimum, solve_maxmin, verify_certificate, worst_case_attack
 from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes, PairValues
 from ratt_opt.solvers.maxmin.task import Task
 from tests.solvers.maxmin.proofs import proved_upper

@@ -17,6 +17,7 @@ from ratt_opt import (
     InputError,
     LogDetObjective,
     Problem,
+    Stop,
     TraceObjective,
     exhaustive_optimum,
     greedy,
@@ -26,7 +27,7 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
