@@ -7,12 +7,23 @@ elements and small round numbers, where equal elements, useless robots and rank-
 
 from __future__ import annotations
 
+import sys
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from ratt_opt import LogDetObjective, MaxEigenvalueObjective, Problem, SetFunction, TableFunction, TraceObjective
+from ratt_opt import (
+    ConcaveOfModular,
+    LogDetObjective,
+    MaxEigenvalueObjective,
+    Problem,
+    SetFunction,
+    TableFunction,
+    TraceObjective,
+)
 
 OBJECTIVES = {"trace": TraceObjective, "logdet": LogDetObjective, "maxeig": MaxEigenvalueObjective}
 
@@ -265,3 +276,138 @@ def problems_with_plans(draw, n_robots=None, **options):
     """A problem and a plan for it."""
     problem = draw(problems(n_robots, **options))
     return problem, random_elements(Drawn(draw), problem)
+
+
+@st.composite
+def table_problems(draw):
+    """Monotone tables with few distinct values, so that ties are common; ragged, interleaved owners."""
+    n_robots = draw(st.integers(1, 4))
+    extra = draw(st.lists(st.integers(0, n_robots - 1), max_size=3))
+    robot = np.array(draw(st.permutations([*range(n_robots), *extra])))
+    n = len(robot)
+    steps = draw(st.lists(st.integers(0, 3), min_size=2**n, max_size=2**n))
+    values = np.zeros(2**n)
+    for mask in range(1, 2**n):
+        below = [values[mask & ~(1 << e)] for e in range(n) if mask >> e & 1]
+        values[mask] = max(below) + steps[mask]
+    alpha_s = draw(st.integers(0, n_robots))
+    alpha_c = draw(st.integers(0, n_robots * (n_robots - 1) // 2))
+    return Problem(TableFunction(values), robot, None, alpha_s, alpha_c)
+
+
+_NODES = st.one_of(
+    st.integers(-3, 12),
+    st.text("ab01 \n\u202e²", max_size=3),
+    st.tuples(st.integers(0, 2), st.sampled_from(["x", "y10", "y9"])),
+    st.floats(-2, 2),
+    st.binary(max_size=2),
+    st.frozensets(st.integers(0, 3), max_size=2),
+)
+
+
+@st.composite
+def networkx_graphs(draw):
+    """Graphs of any kind and nodes, with labels, loops and parallel edges."""
+    kind = draw(st.sampled_from((nx.Graph, nx.DiGraph, nx.MultiGraph, nx.MultiDiGraph)))
+    nodes = draw(st.lists(_NODES, min_size=1, max_size=8))
+    graph = kind()
+    graph.add_nodes_from(nodes)
+    ends = st.sampled_from(nodes)
+    graph.add_edges_from(draw(st.lists(st.tuples(ends, ends), max_size=20)))
+    for node in draw(st.lists(ends, max_size=3)):
+        graph.nodes[node]["label"] = draw(st.one_of(st.text(max_size=3), st.integers()))
+    return graph
+
+
+class Curved(Opaque):
+    """The same of a function whose total curvature is at most a half."""
+
+    most_total_curvature = 0.5
+
+
+@st.composite
+def functions_by_value(draw, n):
+    """A non-decreasing function of ``n`` elements that says as much of itself as is true, or nothing."""
+    rng, kind = Drawn(draw), draw(st.sampled_from(["table", "submodular", "curved"]))
+    if kind == "table":
+        return Opaque(TableFunction(monotone_table(rng, n)))
+    weights = np.array([draw(st.integers(0, 4)) for _ in range(n)], dtype=float)
+    if kind == "submodular":
+        return Submodular(ConcaveOfModular(weights, np.sqrt))
+    size = np.bitwise_count(np.arange(2**n)).astype(float)
+    return Curved(TableFunction(size + np.maximum(size - 2, 0)))  # marginals are 1 or 2
+
+
+@st.composite
+def problems_by_value(draw, largest=4):
+    """A small problem of such a function on any graph."""
+    drawn = random_problem(Drawn(draw), draw(st.integers(1, largest)), kind="trace", controls=2)
+    return replace(drawn, objective=draw(functions_by_value(drawn.objective.n)))
+
+
+@st.composite
+def degenerate_problems(draw):
+    """Small teams with ties, nothing to see, one line of sight, or information of any size against the prior's."""
+    n_robots, controls = draw(st.integers(1, 4)), draw(st.integers(1, 2))
+    rng = Drawn(draw)
+    prior, information = information_data(rng, n_robots * controls, draw(st.integers(1, 3)), 2)
+    kind = draw(st.sampled_from(["line", "useless", "identical", "scaled", "out of reach"]))
+    if kind == "line":
+        v = rng.normal((*information.shape[:2], 2))
+        information = v[..., :, None] * v[..., None, :]
+    elif kind == "useless":
+        information = np.zeros_like(information)
+    elif kind == "identical":
+        information = np.repeat(information[:1], len(information), axis=0)
+    elif kind == "scaled":
+        information = information * 10.0 ** draw(st.integers(-10, 8))
+    else:
+        information[:, 0] = 0.0
+    links = n_robots * (n_robots - 1) // 2
+    budgets = draw(st.integers(0, n_robots)), draw(st.integers(0, links))
+    name = draw(st.sampled_from(sorted(OBJECTIVES)))
+    return Problem(OBJECTIVES[name](prior, information), np.repeat(np.arange(n_robots), controls), None, *budgets)
+
+
+@st.composite
+def degenerate_networks(draw):
+    """Networks of 13 to 24 robots that know all the same, or of whom only some see anything."""
+    n_robots, dimension = draw(st.integers(13, 24)), draw(st.integers(1, 3))
+    rng = np.random.default_rng(draw(st.integers(0, 2**16)))
+    prior, information = information_data(rng, n_robots, 2, dimension)
+    seeing = rng.random(n_robots) < draw(st.sampled_from([0.2, 1.0]))
+    information = np.repeat(information[:1] + 0.1 * np.eye(dimension), n_robots, axis=0) * seeing[:, None, None, None]
+    graph = nx.gnp_random_graph(n_robots, draw(st.sampled_from([0.2, 0.5])), seed=draw(st.integers(0, 2**16)))
+    budgets = draw(st.integers(0, n_robots)), draw(st.integers(0, graph.number_of_edges()))
+    name = draw(st.sampled_from(sorted(OBJECTIVES)))
+    return Problem(OBJECTIVES[name](prior, information), np.arange(n_robots), graph, *budgets)
+
+
+@st.composite
+def budgets(draw, robots):
+    """Any number of blinded robots and cut links of a complete graph."""
+    return draw(st.integers(0, robots - 1)), draw(st.integers(0, robots * (robots - 1) // 2))
+
+
+coefficients = st.lists(st.fractions(min_value=-3, max_value=3, max_denominator=7), max_size=5)
+points = st.fractions(min_value=0, max_value=1, max_denominator=11)
+"""Of polynomials, and where they are evaluated."""
+
+
+coordinates = st.floats(-50, 50)
+angles = st.floats(-10, 10)
+"""Of poses [m, rad]."""
+
+
+FLOATS = st.floats(allow_nan=False, allow_infinity=False)
+POSITIVE = st.floats(min_value=0, exclude_min=True, allow_infinity=False)
+DIGITS = st.integers(1, 15)
+"""Ends of brackets, and digits that they are printed with."""
+
+
+def close_above(low: float, rounding: int) -> float:
+    """A float a little above another one, as ends of brackets that are nearly closed."""
+    return min(low + abs(low) * 10.0**-rounding, sys.float_info.max)
+
+
+NEARLY_CLOSED = st.builds(close_above, st.floats(-1e300, 1e300), st.integers(1, 17))

@@ -13,7 +13,14 @@ from hypothesis import strategies as st
 import ratt_opt as ro
 from tests.brackets import attains
 from tests.oracles import brute_force_optimum, brute_force_worst_case
-from tests.strategies import OBJECTIVES, SEEDED, Drawn, information_data, problems_with_plans
+from tests.strategies import (
+    OBJECTIVES,
+    SEEDED,
+    degenerate_networks,
+    degenerate_problems,
+    information_data,
+    problems_with_plans,
+)
 
 DONE = {ro.Stop.CLOSED, ro.Stop.EXHAUSTED, ro.Stop.GAP}
 
@@ -29,44 +36,6 @@ def test_any_limit_leaves_a_valid_bracket(drawn_pair, limit):
     assert attains(problem, plan, attack)
     found = ro.solve_maxmin(problem, time_limit=limit)
     assert found.lower <= brute_force_worst_case(problem, found.elements) * (1 + 1e-9) + 1e-9
-
-
-@st.composite
-def degenerate_problems(draw):
-    """Small teams with ties, nothing to see, one line of sight, or information of any size against the prior's."""
-    n_robots, controls = draw(st.integers(1, 4)), draw(st.integers(1, 2))
-    rng = Drawn(draw)
-    prior, information = information_data(rng, n_robots * controls, draw(st.integers(1, 3)), 2)
-    kind = draw(st.sampled_from(["line", "useless", "identical", "scaled", "out of reach"]))
-    if kind == "line":
-        v = rng.normal((*information.shape[:2], 2))
-        information = v[..., :, None] * v[..., None, :]
-    elif kind == "useless":
-        information = np.zeros_like(information)
-    elif kind == "identical":
-        information = np.repeat(information[:1], len(information), axis=0)
-    elif kind == "scaled":
-        information = information * 10.0 ** draw(st.integers(-10, 8))
-    else:
-        information[:, 0] = 0.0
-    links = n_robots * (n_robots - 1) // 2
-    budgets = draw(st.integers(0, n_robots)), draw(st.integers(0, links))
-    name = draw(st.sampled_from(sorted(OBJECTIVES)))
-    return ro.Problem(OBJECTIVES[name](prior, information), np.repeat(np.arange(n_robots), controls), None, *budgets)
-
-
-@st.composite
-def degenerate_networks(draw):
-    """Networks of 13 to 24 robots that know all the same, or of whom only some see anything."""
-    n_robots, dimension = draw(st.integers(13, 24)), draw(st.integers(1, 3))
-    rng = np.random.default_rng(draw(st.integers(0, 2**16)))
-    prior, information = information_data(rng, n_robots, 2, dimension)
-    seeing = rng.random(n_robots) < draw(st.sampled_from([0.2, 1.0]))
-    information = np.repeat(information[:1] + 0.1 * np.eye(dimension), n_robots, axis=0) * seeing[:, None, None, None]
-    graph = nx.gnp_random_graph(n_robots, draw(st.sampled_from([0.2, 0.5])), seed=draw(st.integers(0, 2**16)))
-    budgets = draw(st.integers(0, n_robots)), draw(st.integers(0, graph.number_of_edges()))
-    name = draw(st.sampled_from(sorted(OBJECTIVES)))
-    return ro.Problem(OBJECTIVES[name](prior, information), np.arange(n_robots), graph, *budgets)
 
 
 @SEEDED

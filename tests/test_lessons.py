@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 
 import ratt_opt as ro
 from tests.oracles import brute_force_optimum, brute_force_worst_case
-from tests.strategies import OBJECTIVES, SEEDED, information_data, random_elements, random_problem
+from tests.strategies import OBJECTIVES, SEEDED, budgets, information_data, random_elements, random_problem
 
 FEW = settings(SEEDED, max_examples=8)
 DONE = {ro.Stop.CLOSED, ro.Stop.EXHAUSTED, ro.Stop.GAP}
@@ -30,12 +30,6 @@ DONE = {ro.Stop.CLOSED, ro.Stop.EXHAUSTED, ro.Stop.GAP}
 def team(robots, controls, seed, name="trace", targets=3):
     prior, information = information_data(np.random.default_rng(seed), robots * controls, targets, 2)
     return OBJECTIVES[name](prior, information), np.repeat(np.arange(robots), controls)
-
-
-@st.composite
-def budgets(draw, robots):
-    """Any number of blinded robots and cut links of a complete graph."""
-    return draw(st.integers(0, robots - 1)), draw(st.integers(0, robots * (robots - 1) // 2))
 
 
 @FEW

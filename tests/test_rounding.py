@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -15,22 +14,12 @@ from analysis.tables import print_table
 from ratt_opt import Attack, AttackResult, Stop, Verified
 from ratt_opt._rounding import bracket_text, down, gap_text, relative_gap, up
 from ratt_opt.report.tables import attack_tables, share_text
+from tests.strategies import DIGITS, FLOATS, NEARLY_CLOSED, POSITIVE, close_above
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FLOATS = st.floats(allow_nan=False, allow_infinity=False)
-POSITIVE = st.floats(min_value=0, exclude_min=True, allow_infinity=False)
-DIGITS = st.integers(1, 15)
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
-
-
-def _close(low: float, rounding: int) -> float:
-    """A float a little above another one, as ends of brackets that are nearly closed."""
-    return min(low + abs(low) * 10.0**-rounding, sys.float_info.max)
-
-
-NEARLY_CLOSED = st.builds(_close, st.floats(-1e300, 1e300), st.integers(1, 17))
 
 
 @given(value=FLOATS, digits=DIGITS)
@@ -44,7 +33,7 @@ def test_down_and_up_are_the_nearest_decimals_on_either_side(value: float, digit
 
 @given(lower=st.one_of(FLOATS, NEARLY_CLOSED), other=st.one_of(FLOATS, st.integers(1, 17)), digits=DIGITS)
 def test_a_printed_bracket_holds_the_bracket(lower: float, other: float | int, digits: int) -> None:
-    upper = _close(lower, other) if isinstance(other, int) else max(lower, other)
+    upper = close_above(lower, other) if isinstance(other, int) else max(lower, other)
     shown = [Fraction(number) for number in NUMBER.findall(bracket_text(lower, upper, digits=digits))]
     if lower == upper:
         assert len(shown) == 1

@@ -11,31 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ratt_opt as ro
-
-KINDS = (nx.Graph, nx.DiGraph, nx.MultiGraph, nx.MultiDiGraph)
-NODES = st.one_of(
-    st.integers(-3, 12),
-    st.text("ab01 \n\u202e²", max_size=3),
-    st.tuples(st.integers(0, 2), st.sampled_from(["x", "y10", "y9"])),
-    st.floats(-2, 2),
-    st.binary(max_size=2),
-    st.frozensets(st.integers(0, 3), max_size=2),
-)
+from tests.strategies import networkx_graphs
 
 
-@st.composite
-def graphs(draw):
-    kind, nodes = draw(st.sampled_from(KINDS)), draw(st.lists(NODES, min_size=1, max_size=8))
-    graph = kind()
-    graph.add_nodes_from(nodes)
-    ends = st.sampled_from(nodes)
-    graph.add_edges_from(draw(st.lists(st.tuples(ends, ends), max_size=20)))
-    for node in draw(st.lists(ends, max_size=3)):
-        graph.nodes[node]["label"] = draw(st.one_of(st.text(max_size=3), st.integers()))
-    return graph
-
-
-@given(graphs())
+@given(networkx_graphs())
 def test_the_rule(graph):
     before = graph.copy()
     found = ro.communication_graph(graph)

@@ -14,12 +14,10 @@ from pydantic import ValidationError
 from ratt_opt import InputError, Robot, Scenario, Sensor, Target, random_scenario
 from ratt_opt.scenario.motion import move_robots, predict_targets
 from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
+from tests.strategies import angles, coordinates
 
 PINNED = [38.26911772203264, 52.66818260948598, 67.11128139283758, 5 / 3]
 """Numbers this generator gave when it was written; any machine must give them again."""
-
-coordinates = st.floats(-50, 50)
-angles = st.floats(-10, 10)
 
 
 @given(coordinates, coordinates, angles, st.floats(0.5, 60), angles)

@@ -8,10 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratt_audit.engine.polynomials import ONE, Polynomial, T, constant
+from tests.strategies import coefficients, points
 
-coefficients = st.lists(st.fractions(min_value=-3, max_value=3, max_denominator=7), max_size=5)
 polynomials = coefficients.map(Polynomial)
-points = st.fractions(min_value=0, max_value=1, max_denominator=11)
 
 
 @given(polynomials, polynomials, points)
