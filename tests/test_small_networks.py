@@ -14,10 +14,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_prices.team import PricedTeam
-from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.budget import Budget
+from tests.attackers.engine import searched
 from tests.strategies import OBJECTIVES, information_data, range_bearing
 
 LARGEST = 6
@@ -70,16 +67,6 @@ def team(rng, name, n_robots, controls):
     return OBJECTIVES[name](*data), owners
 
 
-def by_prices(problem, plan):
-    """The search that larger teams need, whatever would be chosen for this one."""
-    values, nothing = PlanValues(problem, plan), ro.Attack()
-    bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
-    search = PriceSearch(AttackTask(problem, values, bracket, Budget()), PricedTeam.of(problem.objective, values.plan))
-    search.anneal(1)
-    search.run()
-    return bracket
-
-
 def check_attacks(graph, seed, budgets, priced):
     """One graph and one plan: the chosen search at so many budgets (``None``: at all), and prices at the first few."""
     rng = np.random.default_rng(seed)
@@ -91,7 +78,8 @@ def check_attacks(graph, seed, budgets, priced):
         found = ro.worst_case_attack(problem, owners)
         assert found.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
         assert problem.team_value(owners, found.attack) == pytest.approx(found.upper, **CLOSE)
-        for bracket in (found, by_prices(problem, owners)) if k < priced else (found,):
+        by_prices = [searched("annealed attacks and dual prices", problem, owners)[0]] if k < priced else []
+        for bracket in (found, *by_prices):
             assert bracket.lower == pytest.approx(truth[s, c], **CLOSE)
             assert bracket.upper == pytest.approx(truth[s, c], **CLOSE)
 

@@ -9,10 +9,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt import Problem
-from ratt_opt.attackers.annealed_values import annealed_attacks
-from ratt_opt.attackers.any_function import exchange_attack
-from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.budget import Budget
+from tests.attackers.engine import searched
 
 
 class Seen(ro.SetFunction):
@@ -43,33 +40,26 @@ def drawn(n_robots: int, family: str, seed: int) -> Problem:
     return replace(base, objective=Seen(n_robots, seed), robot=np.arange(n_robots), **own)
 
 
-def task_of(problem: Problem) -> AttackTask:
-    """The attack on the only plan, from no attack at all."""
-    values = PlanValues(problem, np.arange(problem.n_robots))
-    return AttackTask(problem, values, AttackBracket(ro.Attack(), values(range(values.n)), 0.0), Budget())
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_finds_the_worst_attack_of_few_robots(seed: int) -> None:
     problem = drawn(9, ("disk-6", "hubs", "small-world")[seed % 3], seed)
-    task = task_of(problem)
-    annealed_attacks(task)
-    problem.check_attack(task.bracket.attack)
-    worst = ro.worst_case_attack(problem, task.values.plan)
+    plan = np.arange(9)
+    bracket, _, _ = searched("annealed values", problem, plan)
+    problem.check_attack(bracket.attack)
+    worst = ro.worst_case_attack(problem, plan)
     assert worst.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
-    assert task.bracket.upper == pytest.approx(worst.upper, rel=1e-12)
-    assert problem.team_value(task.values.plan, task.bracket.attack) == pytest.approx(task.bracket.upper, rel=1e-12)
+    assert bracket.upper == pytest.approx(worst.upper, rel=1e-12)
+    assert problem.team_value(plan, bracket.attack) == pytest.approx(bracket.upper, rel=1e-12)
 
 
 def test_finds_worse_attacks_than_exchanges_on_networks() -> None:
     better = 0
     for seed in range(2):
         problem = drawn(24, "disk-6", seed)
-        task = task_of(problem)
-        exchange_attack(task)
-        exchanged = task.bracket.upper
+        plan = np.arange(24)
+        exchanged = searched("exchanges", problem, plan)[0].upper
         asked = problem.objective.asked
-        found = ro.worst_case_attack(problem, task.values.plan, max_evaluations=3_000)
+        found = ro.worst_case_attack(problem, plan, max_evaluations=3_000)
         assert problem.objective.asked <= asked + 3_100
         problem.check_attack(found.attack)
         assert found.upper <= exchanged

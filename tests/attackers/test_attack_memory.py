@@ -8,16 +8,12 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import criterion_attack
-from ratt_opt.attackers.by_covers.cover_search import CoverSearch
-from ratt_opt.attackers.by_partition.split_search import SplitSearch
-from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_prices.team import PricedTeam
-from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget
+from tests.attackers.engine import WAYS, AttackMemory, Search
 from tests.brackets import assert_closed
 from tests.oracles import brute_force_worst_case
 from tests.strategies import Opaque, random_elements, random_problem, team_problem
+from tests.ways import go
 
 PIECES = 20_000
 """Budgets after which a search that learns nothing from one to the next would still not have ended."""
@@ -26,35 +22,22 @@ PIECES = 20_000
 @pytest.mark.parametrize("seed", range(1, 13))
 def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) -> None:
     problem, plan = team_problem(seed, 3 + seed % 4)
-    values, nothing = PlanValues(problem, plan), ro.Attack()
-    bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
-    team = PricedTeam.of(problem.objective, values.plan)
-    assert team is not None
-    search = PriceSearch(AttackTask(problem, values, bracket, Budget()), team)
+    search = Search("dual prices", problem, plan)
+    bracket = search.bracket
     truth, ends = brute_force_worst_case(problem, plan), (bracket.lower, bracket.upper)
     for piece in range(PIECES):
-        search.task = AttackTask(problem, values, bracket, Budget(max_nodes=1 + piece % 50))
-        try:
-            search.run()
-        except OutOfBudget:
-            assert ends[0] <= bracket.lower <= truth * (1 + 1e-9) + 1e-10
-            assert truth <= bracket.upper * (1 + 1e-9) + 1e-10
-            assert bracket.upper <= ends[1]
-            ends = bracket.lower, bracket.upper
-        else:
+        if search.run(Budget(max_nodes=1 + piece % 50)) is ro.Stop.CLOSED:
             break
+        assert ends[0] <= bracket.lower <= truth * (1 + 1e-9) + 1e-10
+        assert truth <= bracket.upper * (1 + 1e-9) + 1e-10
+        assert bracket.upper <= ends[1]
+        ends = bracket.lower, bracket.upper
     assert_closed(problem, plan, bracket, truth)
 
 
-@pytest.mark.parametrize(
-    ("groups", "few", "kind", "nodes"),
-    [(300_000, 300_000, SplitSearch, 5_000), (300_000, 0, CoverSearch, 5), (0, 0, PriceSearch, 20_000)],
-)
-def test_an_attack_in_pieces_proves_what_one_proves(
-    groups: int, few: int, kind: type, nodes: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(criterion_attack, "MANY_GROUPS", groups)
-    monkeypatch.setattr(criterion_attack, "PARTITIONED", few)
+@pytest.mark.parametrize(("way", "nodes"), [("partitions", 5_000), ("exact covers", 5), ("dual prices", 20_000)])
+def test_an_attack_in_pieces_proves_what_one_proves(way: str, nodes: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    go(monkeypatch, WAYS[way])
     problem = ro.network_scenario("hubs", 24, 4, alpha_s=2, alpha_c=8, seed=1).problem()
     plan = ro.ratt(problem).elements
     whole, memory = ro.worst_case_attack(problem, plan), AttackMemory()
@@ -66,7 +49,8 @@ def test_an_attack_in_pieces_proves_what_one_proves(
         assert whole.lower * (1 - 1e-9) <= parts[-1].upper <= parts[-2].upper
     assert parts[-1].stop is ro.Stop.CLOSED
     assert parts[-1].upper == pytest.approx(whole.upper, rel=1e-9)
-    assert isinstance(memory.search, kind)
+    begun = [row.name for part in parts for row in part.stages if row.name != "earlier search, resumed"]
+    assert begun[-1] == way
     assert len(parts) > 2
 
 

@@ -10,15 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
-from ratt_opt.attackers import attack_tree
-from ratt_opt.attackers.attack_tree import AttackTree
-from ratt_opt.attackers.link_choice import best_links
-from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
-from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.setfunctions.metered import Metered
+from ratt_opt.budget import Budget
+from tests.attackers.engine import AttackMemory, Search, open_nodes, share_of_attacks
 from tests.oracles import brute_force_worst_case
 from tests.strategies import SEEDED, Opaque, Submodular, information_data, team_problem
 from tests.test_own_criterion import RootObjective
+from tests.ways import go
 
 DONE = {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
 LIMITED = {ro.Stop.TIME, ro.Stop.EVALUATIONS, *DONE}
@@ -29,23 +26,19 @@ LIMITED = {ro.Stop.TIME, ro.Stop.EVALUATIONS, *DONE}
 @pytest.mark.parametrize("seed", range(12))
 def test_against_the_definition_in_pieces(seed, most, limit, monkeypatch):
     """However a piece ends no attack is lost, and the bracket is valid: teams, graphs and what is protected drawn."""
-    monkeypatch.setattr(attack_tree, "MOST_OPEN", most)
+    go(monkeypatch, open_nodes(most))
     problem, plan = team_problem(seed, 3 + seed % 4)
     truth, known = brute_force_worst_case(problem, plan), {}
-    values, nothing = PlanValues(problem, plan), ro.Attack()
-    bracket = AttackBracket(nothing, problem.team_value(plan, nothing), 0.0)
-    tree = AttackTree(AttackTask(problem, values, bracket, Budget()))
+    tree = Search("branch and bound", problem, plan)
+    bracket = tree.bracket
     least = 1 if limit == "nodes" else 8  # values that dividing one node may take
     for piece in range(20_000):
         budget = Budget(**{f"max_{limit}": least + piece % 3})
-        values.objective = Metered(problem.objective, budget, known if limit == "evaluations" else None)
-        tree.task = AttackTask(problem, values, bracket, budget)
-        try:
-            assert tree.run() in DONE
+        tree.meter(budget, known if limit == "evaluations" else None)
+        if tree.run(budget) in DONE:
             break
-        except OutOfBudget:
-            assert bracket.lower <= truth * (1 + 1e-9) + 1e-10
-            assert bracket.upper >= truth * (1 - 1e-9) - 1e-10
+        assert bracket.lower <= truth * (1 + 1e-9) + 1e-10
+        assert bracket.upper >= truth * (1 - 1e-9) - 1e-10
     assert bracket.is_closed
     assert bracket.upper == pytest.approx(truth, rel=2e-10, abs=1e-10)
     assert problem.team_value(plan, bracket.attack) == bracket.upper
@@ -86,7 +79,7 @@ def test_nothing_ends_before_its_values_are_spent(robots, seed, family, most):
 @pytest.mark.parametrize("seed", range(2))
 def test_links_of_functions_known_by_their_values_are_chosen_until_the_time_is_up(seed, share, monkeypatch):
     """Also where the first attacks have no time to begin their trees."""
-    monkeypatch.setattr(best_links, "ATTACK_SHARE", share)
+    go(monkeypatch, share_of_attacks(share))
     problem, plan, as_it_is = network(24, seed, alpha_s=5, alpha_c=11)
     for search, candidates in (ro.links_to_add, [(0, 1), (2, 3), (4, 5)]), (ro.links_to_protect, as_it_is.graph.edges):
         free = [link for link in candidates if search is ro.links_to_protect or not as_it_is.graph.has_edge(*link)]

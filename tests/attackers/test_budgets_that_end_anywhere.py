@@ -7,7 +7,6 @@ what is left of it. So whatever a search had in hand when it ended must still co
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -15,13 +14,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import criterion_attack, exact, schedule, team_attack
-from ratt_opt.attackers.by_partition import settled_partitions
-from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
-from ratt_opt.attackers.task import AttackMemory
-from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.budget import Budget
+from tests.attackers.engine import LARGE, WAYS, AttackMemory
 from tests.strategies import random_problem, team_problem
+from tests.ways import go
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,41 +27,6 @@ if TYPE_CHECKING:
 SECONDS = 1000.0
 """Of every limit: it is chance that ends them."""
 CALLS = 12
-
-SOON_OVER = tuple(
-    replace(stage, max_nodes=20) if stage.name == "partitions" and stage.max_nodes else stage
-    for stage in schedule.CRITERION
-)
-"""Partitions are searched for at most 20 nodes at first."""
-
-WAYS = {
-    "partitions": {},
-    "sharp partitions": {
-        (exact, "CRITERION"): SOON_OVER,
-        (settled_partitions, "PLAIN_NODES"): 3,
-        (settled_partitions, "AXIS_NODES"): 3,
-        (settled_partitions, "SHARPER_AFTER"): (0, 5),
-    },
-    "covers": {(criterion_attack, "PARTITIONED"): 0},
-    "prices": {(criterion_attack, "MANY_GROUPS"): 0},
-    "dense": {(criterion_attack, "DENSE"): 0.0},
-    "dense prices": {(criterion_attack, "DENSE"): 0.0, (criterion_attack, "MANY_GROUPS"): 0},
-    "no lists": {
-        (size_vector_search, "MAYBE_SHORT"): -1,
-        (size_vector_search, "LISTED_WHOLE"): 0,
-        (size_vector_search, "LONGEST_LIST"): -1,
-        (branch_and_bound, "AT_ONCE"): 0,
-        (branch_and_bound, "SHORTEST_ENUMERATION"): 1,
-        (branch_and_bound, "LONGEST_ENUMERATION"): 1,
-        (packing, "LONGEST_PACKING"): -1,
-        (largest_first, "FIRST_EFFORT"): 3,
-        (size_vector_search, "ALIKE"): 0.0,
-    },
-}
-"""What makes small teams go each way of large ones."""
-LARGE = {(team_attack, "LARGEST_COMPILED"): 0} | {
-    (criterion_attack, name): 0 for name in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER")
-}
 
 
 @pytest.fixture
@@ -86,11 +47,6 @@ def end_with(monkeypatch: pytest.MonkeyPatch) -> Callable[[float, int], None]:
     return begin
 
 
-def go(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for (module, name), value in (LARGE | WAYS[way]).items():
-        monkeypatch.setattr(module, name, value)
-
-
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("seed", range(8))
 def test_attacks(seed: int, way: str, end_with: Callable[[float, int], None], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +58,7 @@ def test_attacks(seed: int, way: str, end_with: Callable[[float, int], None], mo
     )
     truth, memory = ro.worst_case_attack(problem, plan).upper, AttackMemory()
     rounding = 1e-9 * abs(truth) + 1e-10
-    go(way, monkeypatch)
+    go(monkeypatch, LARGE, WAYS[way])
     for call in range(CALLS):
         end_with(10 ** rng.uniform(-2.5, -1) * 0.8**call, seed)
         found = ro.worst_case_attack(problem, plan, time_limit=SECONDS, memory=memory)
@@ -122,7 +78,7 @@ def test_best_plans(
     problem = random_problem(rng, int(rng.integers(3, 6)), kind=["trace", "logdet", "maxeig"][seed % 3])
     truth, start = ro.exhaustive_optimum(problem).upper, None
     rounding = 1e-8 * abs(truth) + 1e-9
-    go(way, monkeypatch)
+    go(monkeypatch, LARGE, WAYS[way])
     for call in range(CALLS):
         end_with(10 ** rng.uniform(-2.5, -1) * 0.7**call, seed)
         best = ro.solve_maxmin(problem, gap=1e-9, time_limit=SECONDS, start=start)

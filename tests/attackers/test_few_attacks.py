@@ -9,25 +9,15 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.few_attacks import try_every_attack
-from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.graph.few_cuts import attacks_are_few
-from ratt_opt.graph.threat import Threat
+from tests.attackers.engine import searched
 from tests.brackets import attained, is_exact
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
 
 def tried(problem, elements, max_nodes=None):
-    first = ro.bounded_rational_attack(problem, elements)
-    bracket = AttackBracket(first.attack, attained(problem, elements, first), 0.0)
-    try:
-        task = AttackTask(problem, PlanValues(problem, elements), bracket, Budget(max_nodes=max_nodes))
-        try_every_attack(task)
-    except OutOfBudget:
-        pass
-    return bracket
+    first = ro.bounded_rational_attack(problem, elements).attack
+    return searched("every attack", problem, elements, first, max_nodes=max_nodes)[0]
 
 
 @pytest.mark.parametrize("seed", range(80))
@@ -81,18 +71,3 @@ def test_one_cut_on_a_sparse_network(seed, n_robots, alpha_s, kind):
     assert attained(problem, np.arange(n_robots), found) == pytest.approx(truth, rel=1e-12)
     largest = ro.smallest_largest_group(graph, 1)
     assert (largest.lower, largest.upper) == (min(max(map(len, groups)) for groups in outcomes),) * 2
-
-
-def test_two_cuts_and_a_limit():
-    rng = np.random.default_rng(371)
-    graph = sparse_network(rng, 60, 3)
-    threat = Threat(ro.Problem(ro.Modular(np.ones(60)), np.arange(60), graph, 0, 2).communication, 0, 2)
-    assert attacks_are_few(threat)
-    truth = min(
-        max(len(group) for group in threat.graph.groups(cut)) for cut in combinations(sorted(threat.graph.links), 2)
-    )
-    found = ro.smallest_largest_group(graph, 2)
-    assert (found.lower, found.upper) == (truth, truth)
-    soon = ro.smallest_largest_group(graph, 2, max_nodes=5)
-    assert soon.lower <= truth <= soon.upper
-    assert ro.smallest_largest_group(graph, 2, time_limit=0).upper >= truth

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers import criterion_attack, team_attack
 from ratt_opt.attackers.forced_group import forced_survivors
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
+from tests.attackers.engine import watch
 from tests.brackets import attains, is_exact
 from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
 
@@ -46,7 +45,6 @@ def test_both_large_searches_agree_on_a_complete_graph(seed):
     plan = np.arange(13)
     shown = ro.worst_case_attack(ro.Problem(ro.TraceObjective(prior, information), plan, None, *budgets), plan)
     hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, None, *budgets), plan)
-    assert PackedTeam.planar(Hidden(prior, information), plan) is None
     assert shown.stop is ro.Stop.CLOSED
     assert hidden.stop is ro.Stop.EXHAUSTED
     assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)
@@ -77,13 +75,13 @@ def test_a_large_team_on_any_graph_gets_a_valid_bracket(name, dimension):
 
 def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
     """At 500 robots they had 36 of 40 seconds, and nothing more was proved than what is known at once."""
-    given, steps = [], criterion_attack.greedy_attack
+    given = []
 
-    def watched(problem, plan, *, budget):
-        given.append(budget.seconds_left)
-        return steps(problem, plan, budget=budget)
+    def watched(search, run):
+        given.append(search.task.budget.seconds_left)
+        return run(search)
 
-    monkeypatch.setattr(criterion_attack, "greedy_attack", watched)
+    watch(monkeypatch, "greedy steps", watched)
     prior, information = information_data(np.random.default_rng(1), 30, 3, 2)
     problem = ro.Problem(ro.TraceObjective(prior, information), range(30), nx.cycle_graph(30), 3, 4)
     result = ro.worst_case_attack(problem, np.arange(30), time_limit=2)
@@ -94,15 +92,16 @@ def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
 
 def test_attacks_under_a_criterion_of_one_s_own_are_annealed_for_half_of_the_time(monkeypatch):
     """From greedy steps alone they were up to 6 % milder than the worst one."""
-    given, annealed = [], team_attack.annealed_attacks
+    given = []
 
-    def watched(task):
-        given.append((task.budget.seconds_left, task.bracket.upper))
+    def watched(search, run):
+        given.append((search.task.budget.seconds_left, search.task.bracket.upper))
+        search.task = replace(search.task, budget=Budget(time_limit=3))
         with pytest.raises(OutOfBudget):
-            annealed(replace(task, budget=Budget(time_limit=3)))
+            run(search)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(team_attack, "annealed_attacks", watched)
+    watch(monkeypatch, "annealed values", watched)
     problem = ro.network_scenario("hubs", 24, 6, alpha_s=1 / 3, alpha_c=0.3, seed=1).problem("trace")
     own = ro.Problem(
         Hidden(problem.objective.prior, problem.objective.information), problem.robot, problem.graph, 8, problem.alpha_c

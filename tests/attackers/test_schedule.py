@@ -11,13 +11,11 @@ import pytest
 import ratt_opt as ro
 from analysis.readme import refreshed
 from analysis.schedule import TABLES
-from ratt_opt.attackers import criterion_attack, team_attack
-from ratt_opt.attackers.by_size import size_vector_search
-from ratt_opt.attackers.staging import without_stages
-from ratt_opt.attackers.task import AttackMemory
+from tests.attackers.engine import LARGE, AttackMemory, size_vectors, without_stages
 from tests.documents import ROOT
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
+from tests.ways import go
 
 NAMES = sorted({stage.name for table in TABLES.values() for stage in table})
 
@@ -80,12 +78,9 @@ def small_teams():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_brackets_are_true_without_a_stage(name, small_teams, monkeypatch):
-    for limit in ("LARGEST_PLAIN", "LARGEST_COMPILED", "THRESHOLDS_FASTER"):
-        monkeypatch.setattr(criterion_attack, limit, 0)
-    monkeypatch.setattr(team_attack, "LARGEST_COMPILED", 0)
+    go(monkeypatch, LARGE)
     for seed, (problem, plan, worst) in enumerate(small_teams):
-        monkeypatch.setattr(size_vector_search, "MOST_VECTORS", (1, 100)[seed % 2])
-        monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", (-1, 10**8)[seed % 5 == 0])
+        go(monkeypatch, size_vectors(most=(1, 100)[seed % 2], maybe_short=(-1, 10**8)[seed % 5 == 0]))
         with without_stages(name):
             found = ro.worst_case_attack(problem, plan, time_limit=0.3)
         slack = 1e-9 * abs(worst) + 1e-10

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_partition.threshold_search import threshold_search
+from tests.attackers.engine import watch
+from tests.interrupts import interrupted_at
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_elements, random_problem
 
@@ -123,20 +124,13 @@ def test_after_an_interrupt_nothing_more_is_searched(monkeypatch):
     plan = random_elements(np.random.default_rng(2), problem)
     exact = {row.target: row for row in ro.criticality_ranking(problem, plan)}
     goal = ro.worst_case_attack(problem, plan).upper * 1.01
-    tasks = []
-
-    def interrupted_once(task):
-        tasks.append(task)
-        if len(tasks) == 1:
-            raise KeyboardInterrupt
-        return threshold_search(task)
-
-    monkeypatch.setattr("ratt_opt.attackers.team_attack.threshold_search", interrupted_once)
+    asked = interrupted_at(1, lambda search, run: run(search))
+    watch(monkeypatch, "thresholds", asked)
     for row in ro.criticality_ranking(problem, plan):
         assert row.gain_lower <= exact[row.target].gain_lower + 1e-12
         assert row.gain_upper >= exact[row.target].gain_upper - 1e-12
-    tasks.clear()
+    asked.calls = 0
     found = ro.breaking_budgets(problem, plan, goal)
     assert all(one.value < goal and not (one.is_proved and one.alpha_c) for one in found)
-    assert len(tasks) == 1
+    assert asked.calls == 1
     assert found.stop is ro.Stop.INTERRUPTED

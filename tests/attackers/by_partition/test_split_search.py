@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from itertools import combinations
-
 import networkx as nx
 import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition import settled_partitions
-from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, MinorantsOfSizes, least_in_groups
-from ratt_opt.attackers.by_partition.settled_partitions import SettledPartitions
-from ratt_opt.attackers.by_partition.split_search import SplitSearch
-from ratt_opt.attackers.by_prices.starts import Starts
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
-from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set import branch_and_bound
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.graph.separable_groups import separable_groups
-from tests.brackets import assert_search_closed, attained, attains, worst_value
+from ratt_opt.budget import Budget
+from tests.attackers.engine import NO_LISTS, annealed_value, searched
+from tests.brackets import assert_search_closed, attains, worst_value
+from tests.interrupts import interrupted_at
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_elements, random_graph, range_bearing
+from tests.ways import go
 
 
 def team_problem(seed, n_robots, *, density=None):
@@ -46,21 +37,13 @@ def team_problem(seed, n_robots, *, density=None):
     return problem, random_elements(rng, problem)
 
 
-SEARCHES = [SplitSearch, CoverSearch]
+SEARCHES = ["partitions", "exact covers"]
 
 
-def run_split(problem, elements, max_nodes=None, search=SplitSearch):
+def run_split(problem, elements, max_nodes=None, search="partitions"):
     """The search itself, whatever ``worst_case_attack`` would choose for this team."""
-    values = PlanValues(problem, elements)
-    first = ro.bounded_rational_attack(problem, elements)
-    bracket, budget = AttackBracket(first.attack, attained(problem, elements, first), 0.0), Budget(max_nodes=max_nodes)
-    team = PackedTeam.planar(problem.objective, values.plan)
-    groups = separable_groups(problem.threat, 100_000)
-    try:
-        stop = search(AttackTask(problem, values, bracket, budget), team, groups).run()
-    except OutOfBudget as out:
-        stop = out.stop
-    return bracket, budget.nodes, stop
+    first = ro.bounded_rational_attack(problem, elements).attack
+    return searched(search, problem, elements, first, max_nodes=max_nodes)
 
 
 @pytest.mark.parametrize("search", SEARCHES)
@@ -86,28 +69,10 @@ def test_agrees_with_the_threshold_search(seed, plain, sharper, search, monkeypa
     monkeypatch.setattr(settled_partitions, "AXIS_NODES", plain)
     monkeypatch.setattr(settled_partitions, "SHARPER_AFTER", (sharper // 2, sharper))
     if not plain:
-        monkeypatch.setattr(branch_and_bound, "AT_ONCE", 0)
-        monkeypatch.setattr(branch_and_bound, "SHORTEST_ENUMERATION", 1)
-        monkeypatch.setattr(branch_and_bound, "LONGEST_ENUMERATION", 1)
+        go(monkeypatch, NO_LISTS)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])
     bracket, _, stop = run_split(problem, elements, search=search)
     assert_search_closed(problem, elements, bracket, stop, worst_value(problem, elements))
-
-
-@pytest.mark.parametrize("seed", [seed for seed in range(12) if list(OBJECTIVES)[seed % 3] != "maxeig"])
-def test_minorants_of_sizes_hold_in_every_group(seed):
-    problem, elements = team_problem(1998 + seed, 7, density=0.4)
-    team, groups = PackedTeam.planar(problem.objective, elements), separable_groups(problem.threat, 100_000)
-    minorants, members = MinorantsOfSizes(team), [groups.members(group).tolist() for group in range(len(groups.masks))]
-    for size in range(6, 0, -1):
-        rows = np.array([row for row, robots in enumerate(members) if len(robots) >= size], dtype=np.int64)
-        least = np.array([min(team.value(robots) for robots in combinations(members[row], size)) for row in rows])
-        threshold = float(np.median(least)) if len(least) else 1.0
-        sharper = (minorants.sharper(size, threshold, step, Budget()) for step in range(len(SHARPER_AFTER)))
-        for minorant in (minorants.rough(size), *sharper):
-            if minorant is not None:
-                assert np.all(least_in_groups(minorant, groups, rows, size) <= least + 1e-9 * abs(least))
-        assert minorants.of(size) is not None
 
 
 @pytest.mark.parametrize("family", ["hubs", "disk-6", "disk-12", "small-world"])
@@ -116,11 +81,10 @@ def test_few_links_and_many_blinded_are_attacked_no_less_than_by_one_annealing(f
     """Few groups can be left, so nothing was annealed: attacks were 1 to 3 % too mild."""
     problem = ro.network_scenario(family, 40, 15, alpha_s=0.35, alpha_c=0.06, seed=5).problem(name)
     plan = ro.ratt(problem).elements
-    team = PricedTeam.of(problem.objective, plan)
-    annealed = Starts(team, Links.of(problem.threat), problem.threat, seed=99).next(Budget())
+    annealed = annealed_value(problem, plan, seed=99)
     result = ro.worst_case_attack(problem, plan, max_nodes=300_000)
-    assert result.upper <= annealed.value * (1 + 5e-4)
-    assert result.lower <= annealed.value
+    assert result.upper <= annealed * (1 + 5e-4)
+    assert result.lower <= annealed
 
 
 @pytest.mark.parametrize("search", SEARCHES)
@@ -183,23 +147,15 @@ def test_relabelling_changes_nothing(seed):
     assert values[0] == pytest.approx(values[1], rel=1e-9)
 
 
-@pytest.mark.parametrize("batches", [1, 2, 5, 20])
-def test_an_interrupt_returns_the_bracket_reached(batches, monkeypatch):
+@pytest.mark.parametrize("calls", [1, 2, 5, 20])
+def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     rng = np.random.default_rng(2)
     problem = ro.Problem(ro.TraceObjective(*range_bearing(rng, 24, 4, 1)), np.arange(24), disk_graph(2, 24, 5), 4, 9)
     expected = ro.worst_case_attack(problem, np.arange(24))
-    left = [batches]
-    can_be_weak = SettledPartitions._can_be_weak
-
-    def interrupted(*arguments):
-        left[0] -= 1
-        if left[0] == 0:
-            raise KeyboardInterrupt
-        return can_be_weak(*arguments)
-
-    monkeypatch.setattr(SettledPartitions, "_can_be_weak", interrupted)
+    asked = interrupted_at(calls, Budget.spend)
+    monkeypatch.setattr(Budget, "spend", asked)
     result = ro.worst_case_attack(problem, np.arange(24))
-    assert result.stop is (ro.Stop.CLOSED if left[0] > 0 else ro.Stop.INTERRUPTED)
+    assert result.stop is (ro.Stop.INTERRUPTED if asked.calls >= calls else ro.Stop.CLOSED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
     assert attains(problem, np.arange(24), result)
 

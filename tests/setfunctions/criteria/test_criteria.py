@@ -14,8 +14,8 @@ from ratt_opt.setfunctions.criteria import compiled
 from ratt_opt.setfunctions.criteria.registry import CRITERIA, criterion_called
 from ratt_opt.setfunctions.criteria.two_by_two import triples
 from ratt_opt.setfunctions.criterion_parts import OPTIONAL_PARTS, CriterionParts
-from ratt_opt.setfunctions.information import InformationObjective
-from tests.strategies import information_data
+from ratt_opt.setfunctions.information import InformationObjective, from_triangles, triangles
+from tests.strategies import OBJECTIVES, information_data
 
 
 class SquaredVariances(InformationObjective):
@@ -166,3 +166,18 @@ def test_a_criterion_is_copied_pickled_and_shown(criterion):
     assert repr(f) == f"{criterion.__name__}(6 elements, {f.n_targets} targets, d = 2)"
     assert repr(ro.TableFunction([0.0, 1.0])) == "TableFunction(n=1)"
     assert (f.restricted_to(np.array([4, 1])).table() == [f([]), f([4]), f([1]), f([1, 4])]).all()
+
+
+@pytest.mark.parametrize("name", OBJECTIVES)
+@pytest.mark.parametrize("dimension", [1, 2, 3, 4, 5, 6])
+def test_the_compiled_criteria_are_those_of_the_definition(name, dimension):
+    rng = np.random.default_rng(dimension)
+    for scale in [1e-9, 1e-3, 1.0, 1e3, 1e7]:
+        for weights in [None, rng.uniform(0.2, 3, 4)]:
+            prior, information = information_data(rng, 5, 4, dimension)
+            f = OBJECTIVES[name](prior, scale * information, weights)
+            sums = f.prior_information + f.information
+            packed = triangles(sums)
+            assert from_triangles(packed) == pytest.approx(sums)
+            ours = compiled.team_criteria(f.compiled_code, np.array(f.weights), packed)
+            assert ours == pytest.approx(f.combine(f.criterion(sums)), rel=1e-7 if scale > 1e3 else 1e-9)

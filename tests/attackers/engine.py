@@ -1,0 +1,229 @@
+"""The attack engine as tests know it: searches by name, the ways that large teams go, and watched stages.
+
+What a search answers is asked here, or of ``worst_case_attack``. This file alone names the engine's modules; so do,
+beside an inner part, the tests that compare its loops with the definition.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import ratt_opt as ro
+from ratt_opt.attackers import attack_tree, criterion_attack, criticality, exact, schedule, survey, team_attack
+from ratt_opt.attackers.annealed_values import annealed_attacks
+from ratt_opt.attackers.any_function import exchange_attack
+from ratt_opt.attackers.by_covers.cover_search import CoverSearch
+from ratt_opt.attackers.by_partition import settled_partitions
+from ratt_opt.attackers.by_partition.split_search import SplitSearch
+from ratt_opt.attackers.by_prices.price_search import PriceSearch
+from ratt_opt.attackers.by_prices.starts import Starts
+from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
+from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
+from ratt_opt.attackers.few_attacks import try_every_attack
+from ratt_opt.attackers.link_choice import best_links
+from ratt_opt.attackers.staging import without_stages
+from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
+from ratt_opt.attackers.weakest_set import branch_and_bound
+from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.separable_groups import separable_groups
+from ratt_opt.setfunctions.metered import Metered
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import pytest
+
+    from ratt_opt import Attack, Problem, Stop
+    from tests.ways import Way
+
+__all__ = [
+    "COMMAND",
+    "LARGE",
+    "NO_LISTS",
+    "NO_TABLES",
+    "PACK_AGAIN",
+    "WAYS",
+    "AttackMemory",
+    "Search",
+    "annealed_value",
+    "exchanges_near",
+    "first_attack",
+    "open_nodes",
+    "searched",
+    "share_of_attacks",
+    "size_vectors",
+    "watch",
+    "without_stages",
+]
+
+
+class Once:
+    """A bound or a heuristic with the face of a search: it narrows the bracket of its task once."""
+
+    def __init__(self, task: AttackTask, narrow: Callable[[AttackTask], Stop | None]) -> None:
+        self.task, self._narrow = task, narrow
+
+    def run(self) -> Stop | None:
+        return self._narrow(self.task)
+
+
+def _packed(task: AttackTask) -> PackedTeam | None:
+    return PackedTeam.of(task.problem.objective, task.values.plan)
+
+
+def _priced(task: AttackTask) -> PriceSearch:
+    return PriceSearch(task, PricedTeam.of(task.problem.objective, task.values.plan))
+
+
+def _annealed_then_priced(task: AttackTask) -> Stop:
+    search = _priced(task)
+    search.anneal(4)
+    return search.run()
+
+
+SEARCHES = {
+    "size vectors": lambda task: SizeVectorSearch(task, _packed(task)),
+    "partitions": lambda task: SplitSearch(task, _packed(task), separable_groups(task.problem.threat, 100_000)),
+    "exact covers": lambda task: CoverSearch(task, _packed(task), separable_groups(task.problem.threat, 100_000)),
+    "dual prices": _priced,
+    "branch and bound": attack_tree.AttackTree,
+    "annealed attacks and dual prices": lambda task: Once(task, _annealed_then_priced),
+    "every attack": lambda task: Once(task, try_every_attack),
+    "annealed values": lambda task: Once(task, annealed_attacks),
+    "exchanges": lambda task: Once(task, exchange_attack),
+}
+"""By the names of their stages; each alone, on any team that its theory is about."""
+
+
+@dataclass
+class Search:
+    """A search of the attacks on one plan, whole or in pieces, from the bracket that a first attack gives.
+
+    ``first`` : no attack by default
+    """
+
+    name: str
+    problem: Problem
+    plan: object
+    first: Attack | None = None
+
+    def __post_init__(self) -> None:
+        self.values, attack = PlanValues(self.problem, self.plan), ro.Attack() if self.first is None else self.first
+        self.bracket = AttackBracket(attack, self.problem.team_value(self.values.plan, attack), 0.0)
+        self._search = None
+
+    def meter(self, budget: Budget, known: dict | None) -> None:
+        """Count the values that are asked for in a budget; those ``known`` cost nothing."""
+        self.values.objective = Metered(self.problem.objective, budget, known)
+
+    def run(self, budget: Budget) -> Stop | None:
+        """Begin, or go on, within a budget; why it stopped."""
+        task = AttackTask(self.problem, self.values, self.bracket, budget)
+        try:
+            if self._search is None:
+                self._search = SEARCHES[self.name](task)
+            self._search.task = task
+            return self._search.run()
+        except OutOfBudget as out:
+            return out.stop
+
+
+def searched(name: str, problem: Problem, plan: object, first: Attack | None = None, **limits):
+    """The bracket that a search ends with, the nodes it took, and why it stopped."""
+    search, budget = Search(name, problem, plan, first), Budget(**limits)
+    stop = search.run(budget)
+    return search.bracket, budget.nodes, stop
+
+
+NO_LISTS = {
+    (size_vector_search, "MAYBE_SHORT"): -1,
+    (size_vector_search, "LISTED_WHOLE"): 0,
+    (size_vector_search, "LONGEST_LIST"): -1,
+    (branch_and_bound, "AT_ONCE"): 0,
+    (branch_and_bound, "SHORTEST_ENUMERATION"): 1,
+    (branch_and_bound, "LONGEST_ENUMERATION"): 1,
+}
+"""No lists of sets and hardly any enumeration, so that bounds and branches decide."""
+PACK_AGAIN = {
+    (packing, "LONGEST_PACKING"): -1,
+    (largest_first, "FIRST_EFFORT"): 3,
+    (largest_first, "MORE_EFFORT"): 4,
+}
+"""No list for the other groups either: what is packed around a largest one is given up at first."""
+SOON_OVER = tuple(
+    replace(stage, max_nodes=20) if stage.name == "partitions" and stage.max_nodes else stage
+    for stage in schedule.CRITERION
+)
+"""Partitions are searched for at most 20 nodes at first."""
+SHARP_SOON = {
+    (settled_partitions, "PLAIN_NODES"): 3,
+    (settled_partitions, "AXIS_NODES"): 3,
+    (settled_partitions, "SHARPER_AFTER"): (0, 5),
+}
+NO_TABLES = {(module, "LARGEST_COMPILED"): 0 for module in (team_attack, criterion_attack)}
+"""Sets of robots are too many for a table of their values."""
+LARGE = NO_TABLES | {(criterion_attack, name): 0 for name in ("LARGEST_PLAIN", "THRESHOLDS_FASTER")}
+"""Small teams are attacked as large ones are."""
+COMMAND = {
+    "attack_survey": survey,
+    "criticality_ranking": criticality,
+    "breaking_budgets": criticality,
+    "links_to_protect": best_links,
+    "links_to_add": best_links,
+}
+"""What the command ``attack`` asks for, in this order, and where it is."""
+WAYS = {
+    "partitions": {(criterion_attack, "MANY_GROUPS"): 300_000, (criterion_attack, "PARTITIONED"): 300_000},
+    "sharp partitions": SHARP_SOON | {(exact, "CRITERION"): SOON_OVER},
+    "exact covers": {(criterion_attack, "PARTITIONED"): 0},
+    "dual prices": {(criterion_attack, "MANY_GROUPS"): 0},
+    "dense": {(criterion_attack, "DENSE"): 0.0},
+    "dense, dual prices": {(criterion_attack, "DENSE"): 0.0, (criterion_attack, "MANY_GROUPS"): 0},
+    "no lists": NO_LISTS | PACK_AGAIN | {(size_vector_search, "ALIKE"): 0.0},
+}
+"""Which stages decide, where it is not what the team is like that says so."""
+
+
+def size_vectors(most: int, maybe_short: int) -> Way:
+    """Vectors of sizes that are searched, and sets of a size that may be listed in no time."""
+    return {(size_vector_search, "MOST_VECTORS"): most, (size_vector_search, "MAYBE_SHORT"): maybe_short}
+
+
+def open_nodes(most: int) -> Way:
+    """Nodes of branch and bound that are kept by their bounds."""
+    return {(attack_tree, "MOST_OPEN"): most}
+
+
+def share_of_attacks(share: float) -> Way:
+    """Share of the time that the first attacks have where links are chosen."""
+    return {(best_links, "ATTACK_SHARE"): share}
+
+
+def first_attack(monkeypatch: pytest.MonkeyPatch, instead: Callable) -> None:
+    """Let ``instead(real)`` find the attack that a search begins with."""
+    monkeypatch.setattr(exact, "bounded_rational_attack", instead(exact.bounded_rational_attack))
+
+
+def exchanges_near(monkeypatch: pytest.MonkeyPatch, instead: Callable) -> None:
+    """Let ``instead`` exchange robots of known groups."""
+    monkeypatch.setattr(GroupExchanges, "near", instead)
+
+
+def watch(monkeypatch: pytest.MonkeyPatch, name: str, called: Callable) -> None:
+    """Let ``called(search, run)`` run the stages of a name; ``run(search)`` is what they are otherwise."""
+    for table in ("CRITERION", "USER_FUNCTION"):
+        stages = (
+            replace(stage, run=lambda search, run=stage.run: called(search, run)) if stage.name == name else stage
+            for stage in getattr(exact, table)
+        )
+        monkeypatch.setattr(exact, table, tuple(stages))
+
+
+def annealed_value(problem: Problem, plan: object, seed: int) -> float:
+    """What one annealed attack leaves, from a start that the engine does not make."""
+    team = PricedTeam.of(problem.objective, plan)
+    return Starts(team, Links.of(problem.threat), problem.threat, seed=seed).next(Budget()).value
