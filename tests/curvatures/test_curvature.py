@@ -11,10 +11,12 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.budget import Budget
 from ratt_opt.curvatures.separable.marginal_brackets import choices_beside
+from tests.curvatures.engine import RATIOS_SEARCHED, SEARCHED, enumerated
+from tests.interrupts import interrupted_at
 from tests.setfunctions import oracle
 from tests.strategies import OBJECTIVES, information_data, monotone_table, random_objective, range_bearing
+from tests.ways import go
 
-LIMIT = "ratt_opt.curvatures.curvature.LARGEST_ENUMERATION"
 KINDS = sorted(OBJECTIVES)
 
 
@@ -136,7 +138,7 @@ def test_brackets_hold_the_exact_value(kind, seed, monkeypatch):
     f = OBJECTIVES[kind](prior, information, rng.uniform(0.5, 2, len(prior)))
     owners = rng.integers(0, 3, n) if rng.random() < 0.7 else None
     exact = ro.total_curvature(f, owners)
-    monkeypatch.setattr(LIMIT, 1)
+    go(monkeypatch, SEARCHED)
     for gap, nodes in ((0.0, 0), (0.1, 40), (0.0, 3000)):
         found = ro.total_curvature(f, owners, gap=gap, max_nodes=nodes)
         assert found.lower - 1e-9 <= exact.upper
@@ -203,7 +205,7 @@ def test_an_enumerable_section_six_domain_agrees_with_the_bracket(monkeypatch):
         f, owners = section_six(kind, 4)
         exact = ro.total_curvature(f, owners)
         assert exact.lower == exact.upper < 1
-        monkeypatch.setattr(LIMIT, 1)
+        go(monkeypatch, SEARCHED)
         found = ro.total_curvature(f, owners, gap=0.01, max_nodes=500)
         monkeypatch.undo()
         assert found.lower - 1e-9 <= exact.upper <= found.upper + 1e-9
@@ -213,7 +215,7 @@ def test_an_enumerable_section_six_domain_agrees_with_the_bracket(monkeypatch):
 
 def test_budgets_stop_the_search_and_keep_the_bracket(monkeypatch):
     f, owners = section_six()
-    monkeypatch.setattr(LIMIT, 1)
+    go(monkeypatch, SEARCHED)
     free = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400)
     hurried = ro.total_curvature(f, owners, gap=1e-6, time_limit=0.0)
     counted = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=f.n)
@@ -228,8 +230,7 @@ def test_budgets_stop_the_search_and_keep_the_bracket(monkeypatch):
 
 def test_an_outer_budget_gives_its_seconds_and_hears_of_interrupts(monkeypatch):
     f, owners = section_six()
-    monkeypatch.setattr(LIMIT, 1)
-    monkeypatch.setattr("ratt_opt.curvatures.ratios.LARGEST_ENUMERATION", 1)
+    go(monkeypatch, SEARCHED, RATIOS_SEARCHED)
     for measure in (ro.total_curvature, ro.curvature, ro.submodularity_ratio, ro.generalised_curvature):
         assert measure(f, owners, budget=Budget(0.0)).stop is ro.Stop.TIME
     outer = Budget()
@@ -248,7 +249,7 @@ def test_an_outer_budget_gives_its_seconds_and_hears_of_interrupts(monkeypatch):
 def test_results_are_values(monkeypatch):
     f, owners = section_six("maxeig", 3)
     for limit in (2**24, 1):
-        monkeypatch.setattr(LIMIT, limit)
+        go(monkeypatch, enumerated(limit))
         found, again = (ro.total_curvature(f, owners, time_limit=None, max_nodes=50) for _ in range(2))
         copied = pickle.loads(pickle.dumps(found))
         assert found == again == copied
@@ -267,19 +268,11 @@ def test_results_are_values(monkeypatch):
 
 def test_an_interrupt_returns_the_bracket(monkeypatch):
     f, owners = section_six()
-    monkeypatch.setattr(LIMIT, 1)
+    go(monkeypatch, SEARCHED)
     exact = ro.total_curvature(f, owners, gap=1e-3, time_limit=None)
     plain = ro.TraceObjective.marginal_minorant
-    for after in (5, 300, 800):
-        calls = [0]
-
-        def interrupted(*arguments, calls=calls, after=after):
-            calls[0] += 1
-            if calls[0] > after:
-                raise KeyboardInterrupt
-            return plain(*arguments)
-
-        monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted)
+    for call in (6, 301, 801):
+        monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted_at(call, plain))
         found = ro.total_curvature(f, owners, gap=1e-9, time_limit=None)
         assert found.stop is ro.Stop.INTERRUPTED
         assert found.lower <= exact.upper
@@ -361,7 +354,7 @@ def test_a_max_eigenvalue_marginal_that_is_truly_zero_has_a_witness(monkeypatch)
     """Element 0 only sees across; once element 1 has seen along, the other axis is the worst, and 2 alone helps it."""
     prior = np.eye(2)[None] * 4.0
     information = np.array([np.diag([1.0, 0.0]), np.diag([0.0, 1.0]), np.diag([2.0, 0.5])])[:, None]
-    monkeypatch.setattr(LIMIT, 1)
+    go(monkeypatch, SEARCHED)
     found = ro.total_curvature(ro.MaxEigenvalueObjective(prior, information), [0, 1, 2])
     assert found.lower == found.upper == 1
     assert ratio_shown(ro.MaxEigenvalueObjective(prior, information), found) == 1

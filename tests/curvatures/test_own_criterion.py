@@ -11,8 +11,10 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.budget import Budget
 from ratt_opt.setfunctions.information import InformationObjective
+from tests.curvatures.engine import SEARCHED
 from tests.setfunctions import oracle
 from tests.strategies import information_data
+from tests.ways import go
 
 OWNERS = np.array([0, 0, 1, 1, 2, 3])
 
@@ -77,7 +79,7 @@ def test_beyond_that_the_bracket_holds_and_says_what_it_rests_on(criterion, monk
             assert max(found) <= ceiling[x] * (1 + 1e-9)
         exact = oracle.total_curvature(values, OWNERS)
         with monkeypatch.context() as patch:
-            patch.setattr("ratt_opt.curvatures.curvature.LARGEST_ENUMERATION", 1)
+            go(patch, SEARCHED)
             found = ro.total_curvature(f, OWNERS, gap=0.0, time_limit=None)
             bent = ro.curvature(f, OWNERS, gap=0.0, time_limit=None) if f.is_submodular else found
         for bracket in (found, bent):

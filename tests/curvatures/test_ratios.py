@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.curvatures import ratios
+from tests.curvatures.engine import FEW_PAIRS, RATIOS_SEARCHED, SEARCHED
 from tests.setfunctions import oracle
 from tests.strategies import monotone_table, random_objective
+from tests.ways import go
 
 
 def random_owners(rng, n):
@@ -58,12 +59,11 @@ def test_brackets_hold_the_exact_value_where_the_domain_is_taken_for_too_large(s
     owners = np.array([0, 0, 1, 1, 2, 3])
     values = f.table()
     exact = oracle.submodularity_ratio(values, owners), oracle.generalised_curvature(values, owners)
-    monkeypatch.setattr(ratios, "LARGEST_PAIRS", 1)
+    go(monkeypatch, FEW_PAIRS)
     ratio = ro.submodularity_ratio(f, owners)
     check_ratio(f, ratio, exact[0])
     assert ratio.how.startswith("later marginals")
-    monkeypatch.setattr(ratios, "LARGEST_ENUMERATION", 1)
-    monkeypatch.setattr("ratt_opt.curvatures.curvature.LARGEST_ENUMERATION", 1)
+    go(monkeypatch, SEARCHED, RATIOS_SEARCHED)
     check_ratio(f, ro.submodularity_ratio(f, owners), exact[0])
     check_curvature(f, ro.generalised_curvature(f, owners), exact[1])
 

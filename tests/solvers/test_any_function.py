@@ -10,42 +10,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
+from tests.attackers.engine import NO_TABLES
 from tests.oracles import brute_force_optimum, brute_force_worst_case
-from tests.strategies import SEEDED, Drawn, Opaque, Submodular, information_data, monotone_table, random_problem
-
-
-class Curved(Opaque):
-    """The same of a function whose total curvature is at most a half."""
-
-    most_total_curvature = 0.5
-
-
-@st.composite
-def drawn_functions(draw, n):
-    """A non-decreasing function of ``n`` elements that says as much of itself as is true, or nothing."""
-    rng, kind = Drawn(draw), draw(st.sampled_from(["table", "submodular", "curved"]))
-    if kind == "table":
-        return Opaque(ro.TableFunction(monotone_table(rng, n)))
-    weights = np.array([draw(st.integers(0, 4)) for _ in range(n)], dtype=float)
-    if kind == "submodular":
-        return Submodular(ro.ConcaveOfModular(weights, np.sqrt))
-    size = np.bitwise_count(np.arange(2**n)).astype(float)
-    return Curved(ro.TableFunction(size + np.maximum(size - 2, 0)))  # marginals are 1 or 2
-
-
-@st.composite
-def drawn_problems(draw, largest=4):
-    """A small problem of such a function on any graph."""
-    drawn = random_problem(Drawn(draw), draw(st.integers(1, largest)), kind="trace", controls=2)
-    return replace(drawn, objective=draw(drawn_functions(drawn.objective.n)))
+from tests.solvers.maxmin.engine import NO_PLANS_LISTED, open_nodes
+from tests.strategies import (
+    SEEDED,
+    Opaque,
+    Submodular,
+    information_data,
+    problems_by_value,
+)
+from tests.ways import go
 
 
 @pytest.fixture
 def nothing_is_enumerated(monkeypatch):
     """As for problems too large for it."""
-    monkeypatch.setattr("ratt_opt.solvers.exhaustive.LARGEST_SEARCH", 0)
-    monkeypatch.setattr("ratt_opt.attackers.team_attack.LARGEST_COMPILED", 0)
-    monkeypatch.setattr("ratt_opt.attackers.criterion_attack.LARGEST_COMPILED", 0)
+    go(monkeypatch, NO_PLANS_LISTED)
+    go(monkeypatch, NO_TABLES)
 
 
 LIMITS = [{}, {"time_limit": 0}, {"max_evaluations": 0}, {"max_evaluations": 7}, {"max_evaluations": 60}]
@@ -63,19 +45,19 @@ def check_brackets(problem, limits):
 
 @pytest.mark.usefixtures("nothing_is_enumerated")
 @SEEDED
-@given(drawn_problems(), st.sampled_from(LIMITS))
+@given(problems_by_value(), st.sampled_from(LIMITS))
 def test_brackets_of_what_is_too_large_to_enumerate_hold(problem, limits):
     check_brackets(problem, limits)
 
 
 @SEEDED
-@given(drawn_problems(), st.sampled_from(LIMITS))
+@given(problems_by_value(), st.sampled_from(LIMITS))
 def test_brackets_of_what_is_enumerated_hold(problem, limits):
     check_brackets(problem, limits)
 
 
 @SEEDED
-@given(drawn_problems())
+@given(problems_by_value())
 def test_small_problems_are_solved(problem):
     found = ro.solve_maxmin(problem)
     assert found.stop is ro.Stop.EXHAUSTED
@@ -84,7 +66,7 @@ def test_small_problems_are_solved(problem):
 
 @pytest.mark.usefixtures("nothing_is_enumerated")
 @SEEDED
-@given(drawn_problems(), st.sampled_from([1, 3, 10, 40]))
+@given(problems_by_value(), st.sampled_from([1, 3, 10, 40]))
 def test_brackets_hold_at_every_node_count(problem, nodes):
     check_brackets(problem, {"max_nodes": nodes})
 
@@ -92,12 +74,12 @@ def test_brackets_hold_at_every_node_count(problem, nodes):
 @pytest.fixture
 def attacks_are_exact(monkeypatch):
     """Only plans are too many to be enumerated."""
-    monkeypatch.setattr("ratt_opt.solvers.exhaustive.LARGEST_SEARCH", 0)
+    go(monkeypatch, NO_PLANS_LISTED)
 
 
 @pytest.mark.usefixtures("attacks_are_exact")
 @SEEDED
-@given(drawn_problems(largest=5))
+@given(problems_by_value(largest=5))
 def test_what_is_not_enumerated_is_divided_until_it_closes(problem):
     """Once it ended as heuristic with most of its time left, and 60 % open at ten robots."""
     found = ro.solve_maxmin(problem, time_limit=600)
@@ -108,10 +90,10 @@ def test_what_is_not_enumerated_is_divided_until_it_closes(problem):
 
 @pytest.mark.usefixtures("attacks_are_exact")
 @settings(SEEDED, max_examples=20)
-@given(drawn_problems(largest=5), st.integers(1, 4))
+@given(problems_by_value(largest=5), st.integers(1, 4))
 def test_plans_beyond_what_is_kept_by_bounds_are_divided_last_first(problem, most):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("ratt_opt.solvers.by_values.plan_tree.MOST_OPEN", most)
+        go(patch, open_nodes(most))
         found = ro.solve_maxmin(problem, time_limit=600)
     assert found.lower == pytest.approx(brute_force_optimum(problem), abs=1e-9)
     assert found.upper == pytest.approx(found.lower, abs=1e-9)
@@ -186,7 +168,7 @@ def test_values_that_are_no_numbers_are_refused_at_the_call_that_produced_them(b
 
 
 @SEEDED
-@given(drawn_problems(), st.data())
+@given(problems_by_value(), st.data())
 def test_small_functions_that_fall_are_refused_with_the_witness(problem, data):
     values = problem.objective.f.table().copy()
     top = problem.choices[0][0]

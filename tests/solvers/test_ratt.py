@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from ratt_opt import (
     Attack,
@@ -15,6 +16,7 @@ from ratt_opt import (
     Stop,
     TableFunction,
     caa,
+    exhaustive_optimum,
     greedy,
     myopic,
     network_scenario,
@@ -22,13 +24,12 @@ from ratt_opt import (
     random_plan,
     random_scenario,
     ratt,
+    solve_maxmin,
 )
 from ratt_opt.budget import Budget
-from ratt_opt.solvers import ratt as ratt_module
-from ratt_opt.solvers.maxmin import solve
-from ratt_opt.solvers.maxmin.solve import nonrobust_search
-from ratt_opt.solvers.ratt import equivalent_sensing_attacks
-from tests.strategies import OBJECTIVES, information_data, random_problem
+from tests.solvers.maxmin.engine import LAZY, NO_PLANS_LISTED
+from tests.strategies import OBJECTIVES, information_data, random_problem, table_problems
+from tests.ways import go
 
 
 def algorithm_1(f: SetFunction, choices: list[list[int]], alpha: int) -> tuple[list[int], list[int]]:
@@ -62,23 +63,6 @@ def algorithm_1(f: SetFunction, choices: list[list[int]], alpha: int) -> tuple[l
     return [plan[i] for i in robots], sorted(bait)
 
 
-@st.composite
-def table_problems(draw: st.DrawFn) -> Problem:
-    """Monotone tables with few distinct values, so that ties are common; ragged, interleaved owners."""
-    n_robots = draw(st.integers(1, 4))
-    extra = draw(st.lists(st.integers(0, n_robots - 1), max_size=3))
-    robot = np.array(draw(st.permutations([*range(n_robots), *extra])))
-    n = len(robot)
-    steps = draw(st.lists(st.integers(0, 3), min_size=2**n, max_size=2**n))
-    values = np.zeros(2**n)
-    for mask in range(1, 2**n):
-        below = [values[mask & ~(1 << e)] for e in range(n) if mask >> e & 1]
-        values[mask] = max(below) + steps[mask]
-    alpha_s = draw(st.integers(0, n_robots))
-    alpha_c = draw(st.integers(0, n_robots * (n_robots - 1) // 2))
-    return Problem(TableFunction(values), robot, None, alpha_s, alpha_c)
-
-
 @given(table_problems())
 @settings(max_examples=300, deadline=None)
 def test_planners_are_algorithm_1(problem: Problem) -> None:
@@ -109,7 +93,7 @@ def test_nonrobust_optimum_is_the_best_plan_without_attack(problem: Problem) -> 
 def test_nonrobust_optimum_by_search_equals_every_plan(kind: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     problem = random_problem(np.random.default_rng([8, seed]), 4, kind=kind)
     every = nonrobust_optimum(problem)
-    monkeypatch.setattr(solve, "FEW_PLANS", 0)
+    go(monkeypatch, NO_PLANS_LISTED)
     searched = nonrobust_optimum(problem)
     values = [problem.team_value(plan.elements, Attack()) for plan in (every, searched)]
     assert values[1] == pytest.approx(values[0], rel=1e-9)
@@ -118,9 +102,11 @@ def test_nonrobust_optimum_by_search_equals_every_plan(kind: str, seed: int, mon
 @pytest.mark.parametrize("kind", OBJECTIVES)
 def test_nonrobust_optimum_of_thirty_robots_is_proved_and_no_worse_than_greedy(kind: str) -> None:
     problem = random_scenario(30, 10, alpha_s=10, alpha_c=108, seed=0).problem(kind)
-    result = nonrobust_search(problem)
-    assert result.stop is Stop.CLOSED
-    assert result.lower >= problem.team_value(greedy(problem).elements, Attack()) * (1 - 1e-9)
+    value, by_greedy = (problem.team_value(plan(problem).elements, Attack()) for plan in (nonrobust_optimum, greedy))
+    proved = solve_maxmin(replace(problem, alpha_s=0, alpha_c=0))
+    assert proved.stop is Stop.CLOSED
+    assert value >= proved.lower * (1 - 1e-9)
+    assert value >= by_greedy * (1 - 1e-9)
 
 
 class CountingFunction(TableFunction):
@@ -165,7 +151,7 @@ def test_lazy_evaluation_changes_nothing(name: str, seed: int, monkeypatch: pyte
     weights = rng.uniform(0.2, 3, 5) if seed % 2 else None
     problem = Problem(OBJECTIVES[name](prior, information, weights), np.repeat(np.arange(8), 3), None, seed % 4, 0)
     plain = ratt(problem)
-    monkeypatch.setattr(ratt_module, "PLAIN_WORK", -1)
+    go(monkeypatch, LAZY)
     lazy = ratt(problem)
     assert lazy == plain
 
@@ -178,9 +164,9 @@ def test_no_attack_needs_no_outcomes(n_robots: int, controls: int) -> None:
     owners = np.concatenate([np.arange(n_robots), np.arange(13 * (controls - 1))])
     objective = OBJECTIVES["trace"](*information_data(rng, len(owners), 2))
     problem = Problem(objective, owners, nx.path_graph(n_robots), 1, 1)
-    found = nonrobust_search(problem)
+    found = exhaustive_optimum(replace(problem, alpha_s=0, alpha_c=0))
     assert found.stop is Stop.EXHAUSTED
-    value = problem.objective(found.elements)
+    value = problem.objective(nonrobust_optimum(problem).elements)
     assert (found.lower, found.upper) == problem.outward(value, value)
     assert value >= problem.objective(ratt(problem).elements) * (1 - 1e-12)
 
@@ -188,4 +174,4 @@ def test_no_attack_needs_no_outcomes(n_robots: int, controls: int) -> None:
 @pytest.mark.parametrize("family", ["dense", "disk-6", "hubs"])
 def test_the_plan_of_a_small_network_does_not_depend_on_the_limit(family):
     problem = network_scenario(family, 14, 4, alpha_s=0.2, alpha_c=0.3, seed=2).problem()
-    assert ratt(problem).alpha_cs == equivalent_sensing_attacks(problem, Budget(0.0)) > 0
+    assert ratt(problem).alpha_cs == ratt(problem, budget=Budget(0.0)).alpha_cs > 0

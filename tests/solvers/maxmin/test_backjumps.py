@@ -5,23 +5,18 @@ from __future__ import annotations
 import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, random_scenario, solve_maxmin
-from ratt_opt.solvers.maxmin import descent
 from ratt_opt.solvers.maxmin.backjumps import Backjumps
-from ratt_opt.solvers.maxmin.groups import pair_outcomes, small_groups
-from ratt_opt.solvers.maxmin.plans import outcome_pool
 from ratt_opt.solvers.maxmin.proof import nodes_below
+from tests.solvers.maxmin.engine import LISTED, NO_GROUPS, TREES_SOON, UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import small_team
+from tests.ways import go
 
 
 @pytest.fixture(autouse=True)
 def depth_first(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small teams, searched as large ones are: nothing is listed, and trees with floors come soon."""
-    monkeypatch.setattr(small_groups, "LARGEST_GROUP", 0)
-    monkeypatch.setattr(pair_outcomes, "MOST_VALUES", 0)
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
-    monkeypatch.setattr(descent, "FIRST_NODES", 1)
-    monkeypatch.setattr(descent, "NARROW", 0.0)
+    go(monkeypatch, NO_GROUPS, UNLISTED, TREES_SOON)
 
 
 @pytest.fixture
@@ -70,7 +65,7 @@ def test_what_is_left_is_a_proof_wherever_the_search_stops(taken_back: dict[bool
     for seed in range(3):
         problem = random_scenario(9, 6, alpha_s=0, alpha_c=24, seed=seed).problem("maxeig")
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(outcome_pool, "LISTED_ROBOTS", 12)
+            go(patch, LISTED)
             optimum = solve_maxmin(problem).upper
         for max_nodes in (3, 9, None):
             checked(problem, optimum, max_nodes)

@@ -7,13 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
-from ratt_opt.solvers.maxmin import descent
-from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
-from ratt_opt.solvers.maxmin.subtrees import shared_search
+from ratt_opt import certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
+from tests.solvers.maxmin.engine import BLIND, NEVER_NEARLY, SHARED_AT_ONCE, SMALL_TREES, UNLISTED, floors_used
 from tests.solvers.maxmin.proofs import proved_upper
-from tests.solvers.maxmin.workers import Here
+from tests.solvers.maxmin.subtrees.workers import Here
 from tests.strategies import OBJECTIVES, small_team
+from tests.ways import go
 
 """(N, sensing, links)."""
 
@@ -23,26 +22,15 @@ pytestmark = pytest.mark.usefixtures("floors")
 @pytest.fixture
 def floors(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, float]]:
     """Many small trees, as where searches of large teams are long; best plan, floor and bound as they began."""
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
-    monkeypatch.setattr(descent, "FIRST_NODES", 1)
-    monkeypatch.setattr(descent, "TREE_NODES", 2)
-    monkeypatch.setattr(descent, "NARROW", 0.0)
-    used: list[tuple[float, float, float]] = []
-
-    def next_floor(self, plain=descent.Descent._next_floor):
-        used.append((self.first.incumbent.candidates.level, plain(self), self.upper))
-        return used[-1][1]
-
-    monkeypatch.setattr(descent.Descent, "_next_floor", next_floor)
-    return used
+    go(monkeypatch, UNLISTED, SMALL_TREES)
+    return floors_used(monkeypatch)
 
 
 @pytest.mark.parametrize(("seed", "sees_late"), [*((k, False) for k in range(60)), *((k, True) for k in range(30))])
 def test_agrees_with_exhaustive_search(seed: int, sees_late: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where attacks see nothing until a plan is attacked exactly: the level falls below floors put above it."""
     if sees_late:
-        monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
-        monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
+        go(monkeypatch, BLIND)
     problem = small_team(seed)
     found, best = solve_maxmin(problem, gap=0), exhaustive_optimum(problem)
     slack = 1e-9 * best.upper + 16 * problem.objective.rounding
@@ -54,9 +42,7 @@ def test_agrees_with_exhaustive_search(seed: int, sees_late: bool, monkeypatch: 
 @pytest.fixture
 def shared_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every tree is shared from its first nodes on, in small pieces."""
-    monkeypatch.setattr(shared_search, "ALONE_SECONDS", 0.0)
-    monkeypatch.setattr(shared_search, "NODES_EACH", 0)
-    monkeypatch.setattr(shared_search, "SLICE", 0.06)
+    go(monkeypatch, SHARED_AT_ONCE)
 
 
 @pytest.mark.usefixtures("shared_at_once")
@@ -97,7 +83,7 @@ class Brief(Here):
 def test_floors_lie_between_the_best_plan_and_the_bound_and_come_down(
     floors: list[tuple[float, float, float]], workers: Here | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(descent, "NEARLY", 0.0)
+    go(monkeypatch, NEVER_NEARLY)
     problem = random_scenario(8, 6, alpha_s=1, alpha_c=14, seed=1).problem()
     uppers = []
     result = solve_maxmin(problem, gap=1e-7, workers=workers, progress=lambda *state: uppers.append(state[2]))

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from ratt_opt import (
-    Attack,
     InputError,
     LogDetObjective,
     Problem,
@@ -28,9 +27,10 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
+from tests.solvers.maxmin.engine import BLIND, UNLISTED, exact_attacks, link_attacks
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
+from tests.ways import go
 
 if TYPE_CHECKING:
     from ratt_opt import AttackResult
@@ -54,9 +54,7 @@ def test_equals_the_exhaustive_optimum(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(60))
 def test_quick_attacks_that_see_nothing_cost_time_only(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Plans look better than they are until they are attacked exactly; what was closed on their word is reopened."""
-    monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
-    monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
+    go(monkeypatch, UNLISTED, BLIND)
     rng = np.random.default_rng([6, seed])
     problem = random_problem(rng, int(rng.integers(2, 6)), kind=list(OBJECTIVES)[seed % 3], controls=4)
     expected = exhaustive_optimum(problem).lower
@@ -111,7 +109,7 @@ def test_an_interrupted_attack_keeps_the_bracket(kind: str, monkeypatch: pytest.
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.strongest_attack", interrupted)
+    go(monkeypatch, exact_attacks(interrupted))
     result = solve_maxmin(problem)
     assert result.stop is Stop.INTERRUPTED
     assert result.lower <= full.lower <= full.upper <= result.upper
@@ -129,7 +127,7 @@ def test_an_interrupt_that_an_inner_attack_turned_into_a_bracket_is_heard(
         asked.append(given)
         return replace(worst_case_attack(*given, **limits), stop=Stop.INTERRUPTED)
 
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.plans.adversary.strongest_attack", interrupted)
+    go(monkeypatch, exact_attacks(interrupted))
     outer = Budget()
     result = solve_maxmin(problem, budget=outer)
     assert result.stop is outer.stop() is Stop.INTERRUPTED
@@ -245,6 +243,6 @@ def test_what_is_known_of_the_link_attacks_is_not_asked_again(monkeypatch: pytes
     def asked(_: Problem) -> int:
         raise AssertionError
 
-    monkeypatch.setattr("ratt_opt.solvers.ratt.equivalent_sensing_attacks", asked)
+    go(monkeypatch, link_attacks(asked))
     assert solve_maxmin(problem, alpha_cs=plan.alpha_cs) == expected
     assert ratt(problem, alpha_cs=plan.alpha_cs) == plan

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from ratt_opt import Problem, random_scenario, ratt, solve_maxmin
-from ratt_opt.attackers import exact
-from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+from ratt_opt import Problem, random_scenario, ratt, solve_maxmin, worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.plans.adversary import QUICK_SHARE, LastingAttacks
 from ratt_opt.solvers.maxmin.plans.incumbent import IMPROVED_SHARE, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from tests.attackers.engine import exchanges_near, first_attack
 from tests.brackets import attains
 
 SECONDS = 1000.0
@@ -35,7 +34,7 @@ def test_exchanges_next_to_known_outcomes_have_a_share(search: Incumbent, monkey
     for seed in range(5):
         search.adversary.learn(ratt(random_scenario(20, 6, alpha_s=3, alpha_c=60, seed=seed).problem()).elements)
     assert len(search.pool) > 1
-    monkeypatch.setattr(GroupExchanges, "near", near)
+    exchanges_near(monkeypatch, near)
     search.adversary.learn(search.candidates.first)
     assert len(limits) == 1
     assert limits[0] <= QUICK_SHARE * SECONDS
@@ -71,10 +70,8 @@ def test_no_plan_is_attacked_once_the_time_is_up(search: Incumbent, monkeypatch:
 @pytest.mark.parametrize("criterion", ["trace", "logdet", "maxeig"])
 def test_what_is_known_at_once_takes_one_attack(criterion: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each planner's plan had one of its own: half a second where a thousand robots lose 300,000 links."""
-    attacked, attack = [], exact.bounded_rational_attack
-    monkeypatch.setattr(
-        exact, "bounded_rational_attack", lambda problem, plan: (attacked.append(plan), attack(problem, plan))[1]
-    )
+    attacked = []
+    first_attack(monkeypatch, lambda attack: lambda problem, plan: (attacked.append(plan), attack(problem, plan))[1])
     problem = random_scenario(40, 6, alpha_s=2, alpha_c=500, seed=0).problem(criterion)
     found = solve_maxmin(problem, time_limit=0)
     assert len(attacked) == 1
@@ -88,7 +85,7 @@ def test_attacks_that_last_are_left_out_where_they_take_long(
 ) -> None:
     """The 368 groups of one attack took all of ten seconds."""
     problem, plan = search.problem, search.candidates.first
-    attack = exact.worst_case_attack(problem, plan).attack
+    attack = worst_case_attack(problem, plan).attack
     lasting = LastingAttacks(problem, search.budget)
     monkeypatch.setattr(Budget, "part", lambda *_: Budget(time_limit=0.0))
     assert lasting.of(attack) is attack

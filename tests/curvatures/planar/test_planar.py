@@ -22,9 +22,11 @@ from ratt_opt.curvatures.planar.inequalities import (
 )
 from ratt_opt.curvatures.planar.level_program import LevelProgram, Sector, own_direction
 from ratt_opt.curvatures.planar.regions import MarginalSide
+from tests.curvatures.engine import SEARCHED
+from tests.interrupts import interrupted_at
 from tests.strategies import information_data, range_bearing
+from tests.ways import go
 
-LIMIT = "ratt_opt.curvatures.curvature.LARGEST_ENUMERATION"
 FREE = Budget()
 OWNERS = np.array([0, 0, 1, 1, 1, 2, 3])
 
@@ -270,19 +272,10 @@ def test_the_bracket_is_tight_on_section_six(seed):
 def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
     f, owners = section_six(3, 4, 5)
     exact = ro.total_curvature(f, owners)
-    monkeypatch.setattr(LIMIT, 1)
-    calls = [0]
-
-    class Interrupted(LevelProgram):
-        def bound(self, *arguments):
-            calls[0] += 1
-            if calls[0] > after:
-                raise KeyboardInterrupt
-            return super().bound(*arguments)
-
-    monkeypatch.setattr(context_search, "LevelProgram", Interrupted)
-    for after in (0, 3, 10, 40):  # noqa: B007  (read by the function above)
-        calls[0] = 0
+    go(monkeypatch, SEARCHED)
+    plain = LevelProgram.bound
+    for call in (1, 4, 11, 41):
+        monkeypatch.setattr(LevelProgram, "bound", interrupted_at(call, plain))
         found = ro.total_curvature(f, owners, gap=0.0, time_limit=None)
         assert found.stop is ro.Stop.INTERRUPTED
         assert found.lower - 1e-9 <= exact.upper <= found.upper + 1e-9
@@ -291,7 +284,7 @@ def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
 @pytest.mark.parametrize("unit", [1e-30, 1e-3, 1e30])
 def test_the_unit_of_length_does_not_matter(unit, monkeypatch):
     f, owners = section_six(0, 4, 5)
-    monkeypatch.setattr(LIMIT, 1)
+    go(monkeypatch, SEARCHED)
     plain = ro.total_curvature(f, owners, gap=0.1, time_limit=None, max_nodes=600)
     scaled = ro.MaxEigenvalueObjective(f.prior * unit**2, f.information / unit**2)
     found = ro.total_curvature(scaled, owners, gap=0.1, time_limit=None, max_nodes=600)

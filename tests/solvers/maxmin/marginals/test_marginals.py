@@ -17,21 +17,18 @@ from ratt_opt import (
     MaxMinResult,
     Problem,
     ProofError,
-    Stop,
     certify,
     limited_view_scenario,
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates.verifier.exact_matrices import definite
-from ratt_opt.solvers.maxmin import upper_ends
-from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.levels.elements import Elements
 from ratt_opt.solvers.maxmin.marginals.raised import raised_information
-from ratt_opt.solvers.maxmin.proof import MarginalLeaf
 from tests.oracles import brute_force_optimum
+from tests.solvers.maxmin.engine import MARGINALS_ALONE, by_marginals, marginals
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import sparse_problem
+from tests.ways import go
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,18 +39,12 @@ CASES = 60
 @pytest.fixture(autouse=True)
 def by_marginals_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """No other search runs, and this one however much robots see."""
-    monkeypatch.setattr(upper_ends.UpperEnds, "_run_concave", lambda *_: Stop.NODES)
-    monkeypatch.setattr(upper_ends, "UNSEEN", 0.0)
-    monkeypatch.setattr(CoverSearch, "of", lambda *_: None)
+    go(monkeypatch, MARGINALS_ALONE)
 
 
 def rounding(problem: Problem) -> float:
     """How wide a bracket may be where nothing is open."""
     return 20 * problem.evaluation_error + 64 * problem.objective.rounding
-
-
-def by_marginals(found: MaxMinResult) -> bool:
-    return found.proof is not None and any(isinstance(node, MarginalLeaf) for node in found.proof.tree)
 
 
 def check_bracket(problem: Problem, found: MaxMinResult, optimum: float) -> None:
@@ -85,23 +76,21 @@ def test_marginal_gains_alone_find_and_prove_the_best_plan(dimension: int, tmp_p
 
 @pytest.mark.parametrize("most", [1, 2, 5, 20])
 def test_a_limit_of_nodes_leaves_a_true_bracket(most: int, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.RUN", 3)
+    go(monkeypatch, marginals(run=3))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 9]), "logdet")
         check_bracket(problem, solve_maxmin(problem, max_nodes=most), brute_force_optimum(problem))
 
 
 def test_searches_whose_record_is_long_are_given_up(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.RUN", 3)
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.MOST_RECORDED", 8)
+    go(monkeypatch, marginals(run=3, most_recorded=8))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 10]), "logdet")
         check_bracket(problem, solve_maxmin(problem, max_nodes=100), brute_force_optimum(problem))
 
 
 def test_a_record_that_grows_is_complete(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.RUN", 3)
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.FIRST_RECORD", 4)
+    go(monkeypatch, marginals(run=3, first_record=4))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
         check_bracket(problem, solve_maxmin(problem), brute_force_optimum(problem))
@@ -109,7 +98,7 @@ def test_a_record_that_grows_is_complete(monkeypatch: pytest.MonkeyPatch):
 
 @pytest.mark.parametrize("tried", [0, 1])
 def test_few_attacks_at_a_node_cost_time_only(tried: int, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.MOST_TRIED", tried)
+    go(monkeypatch, marginals(most_tried=tried))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
         optimum, found = brute_force_optimum(problem), solve_maxmin(problem)
@@ -118,7 +107,7 @@ def test_few_attacks_at_a_node_cost_time_only(tried: int, monkeypatch: pytest.Mo
 
 
 def test_few_sets_of_seers_that_are_kept_cost_time_only(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.marginals.diving.SETS", 1)
+    go(monkeypatch, marginals(sets=1))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
         check_bracket(problem, solve_maxmin(problem), brute_force_optimum(problem))
@@ -146,12 +135,18 @@ def test_raised_information_is_no_less_than_what_it_stands_for_exactly():
         for raised, members in zip(raised_information(elements), elements.stands_for, strict=True):
             for target in range(2):
                 own = exact(raised[target])
-                assert definite(own) >= 0
-                assert all(definite(own - exact(information[e, target])) >= 0 for e in members)
+                assert is_positive(own)
+                assert all(is_positive(own - exact(information[e, target])) for e in members)
             assert (
                 np.allclose(raised, elements.whole.information_objective.information[members[0]], atol=1e-12)
                 or len(members) > 1
             )
+
+
+def is_positive(matrix: fmpq_mat) -> bool:
+    """Whether no eigenvalue is negative: the signs of the characteristic polynomial alternate."""
+    n = matrix.nrows()
+    return all((-1) ** (n - k) * c >= 0 for k, c in enumerate(matrix.charpoly().coeffs()))
 
 
 def exact(matrix: np.ndarray) -> fmpq_mat:
@@ -163,8 +158,7 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[float, dic
     """Certificates by marginal gains alone, and what the best plan is worth."""
     path, made = tmp_path_factory.mktemp("marginals") / "c.json", []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(upper_ends.UpperEnds, "_run_concave", lambda *_: Stop.NODES)
-        patch.setattr(CoverSearch, "of", lambda *_: None)
+        go(patch, MARGINALS_ALONE)
         for seed in range(8):
             links = 1 if seed % 2 else 3
             drawn = limited_view_scenario(4, 5, alpha_s=1 + seed % 2, alpha_c=links, seed=seed, view=57.0)

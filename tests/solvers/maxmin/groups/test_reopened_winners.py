@@ -8,11 +8,12 @@ import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, solve_maxmin
 from ratt_opt.solvers.maxmin.groups.winners import Winners
-from ratt_opt.solvers.maxmin.plans import outcome_pool
 from ratt_opt.solvers.maxmin.plans.candidates import Candidates
 from ratt_opt.solvers.maxmin.turns import Turns
+from tests.solvers.maxmin.engine import UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, information_data
+from tests.ways import go
 
 TOO_MUCH = 1.3
 """Times what it is worth that a plan seems to be worth until the search ends for the first time."""
@@ -47,7 +48,7 @@ def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(Candidates, "level", property(hoped_for))
     monkeypatch.setattr(Turns, "prove", disappointed)
     monkeypatch.setattr(Winners, "reopen", counted)
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
+    go(monkeypatch, UNLISTED)
     problem = two_triangles(np.random.default_rng([9, seed]), list(OBJECTIVES)[seed % 3])
     result = solve_maxmin(problem)
     expected = exhaustive_optimum(problem).lower

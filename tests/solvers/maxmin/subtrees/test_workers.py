@@ -17,20 +17,18 @@ from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt import InputError, Stop, random_scenario, solve_maxmin
-from ratt_opt.solvers.maxmin.subtrees import shared_search
-from ratt_opt.solvers.maxmin.subtrees.crew import LOSSES
 from tests.oracles import brute_force_optimum
+from tests.solvers.maxmin.engine import GRACE, LOSSES, SHARED_AT_ONCE
 from tests.solvers.maxmin.proofs import proved_upper
-from tests.solvers.maxmin.workers import Here, assert_agree, hard
+from tests.solvers.maxmin.subtrees.workers import Here, assert_agree, hard
 from tests.strategies import OBJECTIVES, random_problem
+from tests.ways import go
 
 
 @pytest.fixture
 def shared_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every search is shared from its first nodes on, in small pieces."""
-    monkeypatch.setattr(shared_search, "ALONE_SECONDS", 0.0)
-    monkeypatch.setattr(shared_search, "NODES_EACH", 0)
-    monkeypatch.setattr(shared_search, "SLICE", 0.06)
+    go(monkeypatch, SHARED_AT_ONCE)
 
 
 @pytest.mark.usefixtures("shared_at_once")
@@ -121,7 +119,7 @@ def test_a_limit_of_time_is_kept_whatever_the_workers_are_at():
 
     began = time.monotonic()
     found = solve_maxmin(problem, gap=0, time_limit=0.5, workers=Silent())
-    assert time.monotonic() - began < 0.5 * 1.05 + 0.5 + shared_search.GRACE
+    assert time.monotonic() - began < 0.5 * 1.05 + 0.5 + GRACE
     assert found.stop is Stop.TIME
     assert alone.lower <= found.upper * (1 + 1e-9)
     assert solve_maxmin(problem, time_limit=0, workers=2).stop is Stop.TIME

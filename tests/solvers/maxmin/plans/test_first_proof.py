@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -26,14 +24,11 @@ from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
-if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
-
 NODES = 40
 """Few: an attack on teams of this size takes thousands."""
 
 
-def started(problem: Problem, first: IntArray) -> Incumbent:
+def started(problem: Problem, first: np.ndarray) -> Incumbent:
     return Incumbent(problem, OutcomePool(problem), first, Budget(time_limit=3600.0))
 
 
@@ -83,7 +78,7 @@ def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(
     assert search.proved.worst_case.upper == problem.team_value(plans[best], search.proved.worst_case.attack)
 
 
-def contested(problem: Problem) -> tuple[Incumbent, IntArray, IntArray]:
+def contested(problem: Problem) -> tuple[Incumbent, np.ndarray, np.ndarray]:
     """A search, RATT's plan in it, and another one that seems better."""
     first = ratt(problem).elements
     search = started(problem, first)
@@ -108,7 +103,7 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     known = search.pool.plan_value(first)
     attacked = []
 
-    def attack(_: Adversary, plan: IntArray, _budget: Budget, _aim: float) -> AttackResult:
+    def attack(_: Adversary, plan: np.ndarray, _budget: Budget, _aim: float) -> AttackResult:
         is_first = np.array_equal(plan, first)
         attacked.append(is_first)
         share = 0.95 + 0.01 * len(attacked) if is_first else share_of_best
@@ -125,12 +120,12 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
 class _Attacks:
     """Exact attacks of scripted ends, as shares of what is known of a plan; notes which plans were attacked."""
 
-    def __init__(self, search: Incumbent, first: IntArray, ends: list[tuple[bool, float]]) -> None:
+    def __init__(self, search: Incumbent, first: np.ndarray, ends: list[tuple[bool, float]]) -> None:
         self.search, self.first, self.ends = search, first, iter(ends)
         self.attacked: list[bool] = []
         self.aims: list[float] = []
 
-    def __call__(self, plan: IntArray, _budget: Budget, aim: float) -> AttackResult:
+    def __call__(self, plan: np.ndarray, _budget: Budget, aim: float) -> AttackResult:
         is_first, lower = next(self.ends)
         assert is_first == np.array_equal(plan, self.first)
         self.attacked.append(is_first)
@@ -172,7 +167,7 @@ def test_of_a_short_search_on_a_network_the_first_attack_has_nearly_all(
     problem = network_scenario(family, 24, 4, alpha_s=0.2, alpha_c=0.15, seed=0).problem()
     parts = []
 
-    def attack(_: Adversary, _plan: IntArray, part: Budget, _aim: float) -> AttackResult:
+    def attack(_: Adversary, _plan: np.ndarray, part: Budget, _aim: float) -> AttackResult:
         assert part.time_limit is not None
         parts.append(part.time_limit)
         raise OutOfBudget(Stop.TIME)

@@ -7,9 +7,10 @@ import pytest
 
 from ratt_opt import Problem, certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
 from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
-from ratt_opt.solvers.maxmin.plans import outcome_pool
+from tests.solvers.maxmin.engine import UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, ragged, threatened
+from tests.ways import go
 
 BUDGETS = ((5, 0, 7), (5, 0, 8), (6, 0, 11), (6, 0, 12), (6, 1, 9), (5, 1, 5))
 """(N, sensing, links) that leave several groups of two and three."""
@@ -18,7 +19,7 @@ BUDGETS = ((5, 0, 7), (5, 0, 8), (6, 0, 11), (6, 0, 12), (6, 1, 9), (5, 1, 5))
 @pytest.mark.parametrize("seed", range(60))
 def test_narrowed_searches_agree_with_exhaustive_search(seed: int, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Outcomes are not listed beforehand, as for large teams."""
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
+    go(monkeypatch, UNLISTED)
     rng = np.random.default_rng([17, seed])
     robots, alpha_s, alpha_c = BUDGETS[seed % len(BUDGETS)]
     team = ragged(rng, robots, 4, list(OBJECTIVES)[seed % 3], weak=int(rng.integers(0, 2)))
@@ -44,7 +45,7 @@ def test_pairs_and_threes_of_twenty_robots_close_in_a_few_nodes(blinded: int, cu
 
 
 def test_a_node_without_a_plan_above_the_level_is_closed_without_a_program(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
+    go(monkeypatch, UNLISTED)
     closed = []
 
     def narrow(self, node, better, plain=SmallGroups.narrow):

@@ -8,9 +8,10 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt import solve_maxmin
-from ratt_opt.solvers.maxmin.subtrees import shared_search
 from tests.cluster import SLOW, distributed, scheduler, workers
-from tests.solvers.maxmin.workers import assert_agree, hard
+from tests.solvers.maxmin.engine import SHARED_AT_ONCE
+from tests.solvers.maxmin.subtrees.workers import assert_agree, hard
+from tests.ways import go
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,9 +21,7 @@ if TYPE_CHECKING:
 def test_a_cluster_finds_the_same_bracket_and_its_certificate_stands(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kills: bool
 ) -> None:
-    monkeypatch.setattr(shared_search, "ALONE_SECONDS", 0.0)
-    monkeypatch.setattr(shared_search, "NODES_EACH", 0)
-    monkeypatch.setattr(shared_search, "SLICE", 0.06)
+    go(monkeypatch, SHARED_AT_ONCE)
     problem, alone = hard()
     asked: list[object] = []
     with scheduler(tmp_path) as address, workers(2, address, tmp_path) as (first, _):

@@ -7,12 +7,13 @@ import pytest
 
 from ratt_opt import Attack, exhaustive_optimum, random_scenario, ratt, solve_maxmin
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from ratt_opt.solvers.maxmin.plans.adversary import Adversary
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from tests.solvers.maxmin.engine import EXCHANGED, UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, ragged, threatened
+from tests.ways import go
 
 BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 6), (6, 0, 11))
 """(N, sensing, links) that leave several groups."""
@@ -21,8 +22,7 @@ BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 6), (6, 0, 11))
 @pytest.mark.parametrize("seed", range(48))
 def test_searches_agree_with_exhaustive_search_wherever_they_stop(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """As large teams are searched: outcomes are not listed beforehand, and known ones are exchanged."""
-    monkeypatch.setattr(outcome_pool, "LISTED_ROBOTS", 0)
-    monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
+    go(monkeypatch, UNLISTED, EXCHANGED)
     rng = np.random.default_rng([23, seed])
     robots, alpha_s, alpha_c = BUDGETS[seed % len(BUDGETS)]
     problem = threatened(ragged(rng, robots, 4, list(OBJECTIVES)[seed % 3]), alpha_s, alpha_c)

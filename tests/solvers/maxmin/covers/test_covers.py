@@ -15,7 +15,6 @@ from ratt_opt import (
     MaxMinResult,
     Problem,
     ProofError,
-    Stop,
     certify,
     limited_view_scenario,
     solve_maxmin,
@@ -25,13 +24,15 @@ from ratt_opt import (
 from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.levels.elements import Elements
-from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
-from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
 from tests.oracles import brute_force_worst_case
+from tests.solvers.maxmin.engine import COVERS_ALONE, covers
 from tests.strategies import sparse_problem
+from tests.ways import go
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from tests.ways import Way
 
 CASES = 40
 
@@ -43,9 +44,7 @@ def all_plans(problem: Problem) -> list[tuple[int, ...]]:
 @pytest.fixture
 def by_covers_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """No other search runs, and covers are looked for however much robots see."""
-    monkeypatch.setattr(UpperEnds, "_run_concave", lambda *_: Stop.NODES)
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.upper_ends.UNSEEN", 0.0)
-    monkeypatch.setattr(MarginalSearch, "of", lambda *_: None)
+    go(monkeypatch, COVERS_ALONE)
 
 
 @pytest.mark.usefixtures("by_covers_alone")
@@ -68,9 +67,9 @@ def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tm
 
 
 @pytest.mark.usefixtures("by_covers_alone")
-@pytest.mark.parametrize(("name", "most"), [("cover_search.MOST_COVERS", 4), ("dive.MOST_RECORDED", 8)])
-def test_forgetting_covers_and_searches_makes_no_bracket_false(name: str, most: int, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(f"ratt_opt.solvers.maxmin.covers.{name}", most)
+@pytest.mark.parametrize("limits", [covers(most_covers=4), covers(most_recorded=8)], ids=["covers", "nodes"])
+def test_forgetting_covers_and_searches_makes_no_bracket_false(limits: Way, monkeypatch: pytest.MonkeyPatch):
+    go(monkeypatch, limits)
     for seed in range(CASES // 2):
         problem = sparse_problem(np.random.default_rng([seed, 2]), "trace")
         optimum = max(brute_force_worst_case(problem, np.array(plan)) for plan in all_plans(problem))

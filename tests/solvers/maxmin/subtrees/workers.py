@@ -7,7 +7,6 @@ from concurrent.futures import Executor, Future
 from functools import cache
 
 from ratt_opt import Stop, random_scenario, solve_maxmin
-from ratt_opt.solvers.maxmin.subtrees.worker import Work
 from tests.solvers.maxmin.proofs import proved_upper
 
 
@@ -20,7 +19,7 @@ class Here(Executor):
 
     def submit(self, fn, /, *args, **kwargs):
         self.calls += 1
-        self.trees |= {work.tree for work in args if isinstance(work, Work)}
+        self.trees |= {work.tree for work in args if hasattr(work, "tree")}
         future = Future()
         if self._loses(self.calls):
             future.set_exception(ConnectionError("the worker is gone"))

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import Attack, exhaustive_optimum, random_scenario
+from ratt_opt import exhaustive_optimum, random_scenario
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin.plans import adversary
 from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.plans.kicks import FIRST, Kicks
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+from tests.solvers.maxmin.engine import BLIND
+from tests.ways import go
 
 KICKS = 60
 
@@ -31,8 +32,7 @@ def kicked(problem, *, times: int = KICKS) -> Incumbent:
 def test_kicks_find_the_best_plan_of_a_small_team(blind: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where quick attacks see nothing, and only exact ones tell good plans from bad."""
     if blind:
-        monkeypatch.setattr(adversary, "SEARCHED_BY_SIZE", 0)
-        monkeypatch.setattr(adversary.Adversary, "_quick_attack", lambda *_: Attack())
+        go(monkeypatch, BLIND)
     better = 0
     for seed in range(4):
         problem = random_scenario(5, 5, alpha_s=1, alpha_c=5, seed=seed).problem("maxeig")

@@ -1,0 +1,129 @@
+"""The search for best plans as tests know it: the ways that large teams go, and proofs by what they rest on.
+
+What a search answers is asked of ``solve_maxmin``. This file alone names the engine's modules; so do, beside an inner
+part, the tests that compare it with the definition.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ratt_opt import Attack, Stop
+from ratt_opt.solvers import exhaustive, ratt
+from ratt_opt.solvers.by_values import plan_tree
+from ratt_opt.solvers.maxmin import descent, solve, upper_ends
+from ratt_opt.solvers.maxmin.covers import cover_search, dive
+from ratt_opt.solvers.maxmin.groups import pair_outcomes, small_groups
+from ratt_opt.solvers.maxmin.marginals import diving, marginal_search
+from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
+from ratt_opt.solvers.maxmin.proof import MarginalLeaf
+from ratt_opt.solvers.maxmin.subtrees import crew, shared_search
+
+if TYPE_CHECKING:
+    import pytest
+
+    from ratt_opt import MaxMinResult
+    from tests.ways import Way
+
+__all__ = [
+    "BLIND",
+    "COVERS_ALONE",
+    "EXCHANGED",
+    "GRACE",
+    "LAZY",
+    "LISTED",
+    "LOSSES",
+    "MARGINALS_ALONE",
+    "NEVER_NEARLY",
+    "NO_GROUPS",
+    "NO_PLANS_LISTED",
+    "SHARED_AT_ONCE",
+    "SMALL_TREES",
+    "TREES_SOON",
+    "UNLISTED",
+    "by_marginals",
+    "covers",
+    "exact_attacks",
+    "floors_used",
+    "link_attacks",
+    "marginals",
+    "open_nodes",
+]
+
+NO_PLANS_LISTED: Way = {(exhaustive, "LARGEST_SEARCH"): 0, (solve, "FEW_PLANS"): 0}
+"""Plans are searched, however few they are."""
+LAZY: Way = {(ratt, "PLAIN_WORK"): -1}
+"""Greedy choices are bounded by earlier marginal gains, however few they are."""
+UNLISTED: Way = {(outcome_pool, "LISTED_ROBOTS"): 0}
+"""Outcomes are not listed beforehand, as for large teams."""
+LISTED: Way = {(outcome_pool, "LISTED_ROBOTS"): 12}
+EXCHANGED: Way = {(adversary, "SEARCHED_BY_SIZE"): 0}
+"""Known outcomes are exchanged, as for large teams."""
+BLIND: Way = EXCHANGED | {(adversary.Adversary, "_quick_attack"): lambda *_: Attack()}
+"""Quick attacks see nothing: only exact ones tell good plans from bad."""
+NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0, (pair_outcomes, "MOST_VALUES"): 0}
+"""Nothing is known of small groups and pairs beforehand."""
+TREES_SOON: Way = {(descent, "FIRST_NODES"): 1, (descent, "NARROW"): 0.0}
+"""Trees with floors come soon, as where searches of large teams are long."""
+SMALL_TREES: Way = TREES_SOON | {(descent, "TREE_NODES"): 2}
+NEVER_NEARLY: Way = {(descent, "NEARLY"): 0.0}
+"""No floor counts as nearly reached."""
+SHARED_AT_ONCE: Way = {
+    (shared_search, "ALONE_SECONDS"): 0.0,
+    (shared_search, "NODES_EACH"): 0,
+    (shared_search, "SLICE"): 0.06,
+}
+"""Every search is shared from its first nodes on, in small pieces."""
+LOSSES, GRACE = crew.LOSSES, shared_search.GRACE
+"""Pieces of work that are lost before a search goes on alone; seconds that it waits for workers at its end."""
+
+_HOWEVER_MUCH_ROBOTS_SEE: Way = {
+    (upper_ends.UpperEnds, "_run_concave"): lambda *_: Stop.NODES,
+    (upper_ends, "UNSEEN"): 0.0,
+}
+COVERS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(marginal_search.MarginalSearch, "of"): lambda *_: None}
+MARGINALS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(cover_search.CoverSearch, "of"): lambda *_: None}
+"""No other search raises or lowers an upper end, however much robots see."""
+
+
+def covers(**limits: int) -> Way:
+    """Limits of the search by covers: ``most_covers`` kept, ``most_recorded`` nodes of a dive."""
+    places = {"most_covers": (cover_search, "MOST_COVERS"), "most_recorded": (dive, "MOST_RECORDED")}
+    return {places[name]: value for name, value in limits.items()}
+
+
+def marginals(**limits: int) -> Way:
+    """Limits of the search by marginal gains, by their names in small letters."""
+    return {(diving, name.upper()): value for name, value in limits.items()}
+
+
+def open_nodes(most: int) -> Way:
+    """Nodes of a search by values that are kept by their bounds."""
+    return {(plan_tree, "MOST_OPEN"): most}
+
+
+def by_marginals(found: MaxMinResult) -> bool:
+    """Whether a proof rests on marginal gains."""
+    return found.proof is not None and any(isinstance(node, MarginalLeaf) for node in found.proof.tree)
+
+
+def floors_used(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, float]]:
+    """Best plan, floor and bound of every tree from now on, as it began."""
+    used: list[tuple[float, float, float]] = []
+
+    def next_floor(self: descent.Descent, plain=descent.Descent._next_floor) -> float:
+        used.append((self.first.incumbent.candidates.level, plain(self), self.upper))
+        return used[-1][1]
+
+    monkeypatch.setattr(descent.Descent, "_next_floor", next_floor)
+    return used
+
+
+def link_attacks(asked: object) -> Way:
+    """Let a function of the test's own say how many blinded robots the links that may be cut are worth."""
+    return {(ratt, "equivalent_sensing_attacks"): asked}
+
+
+def exact_attacks(attack: object) -> Way:
+    """Let plans be attacked by a function of the test's own instead of the exact attack."""
+    return {(adversary, "strongest_attack"): attack}
