@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from ratt_opt import InputError
-from ratt_opt._files import output_directory, write_atomically, write_json
+from ratt_opt._files import output_directory, write_atomically, write_json, write_together
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
@@ -39,3 +40,34 @@ def test_unwritable_places_are_refused(tmp_path: Path) -> None:
         output_directory(tmp_path / "file")
     with pytest.raises(InputError, match="out must be a path"):
         write_json(tmp_path / "missing" / "x.json", {})
+
+
+def test_files_that_belong_together_are_replaced_together_or_marked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def text(word: str) -> Callable[[Path], object]:
+        return lambda file: file.write_text(word)
+
+    def full_disk(_: Path) -> object:
+        raise OSError(28, "No space left on device")
+
+    write_together(tmp_path, {"a": text("old"), "b": text("old")})
+    with pytest.raises(InputError, match="No space"):
+        write_together(tmp_path, {"a": text("new"), "b": full_disk})
+    assert {file.name: file.read_text() for file in tmp_path.iterdir()} == {"a": "old", "b": "old"}
+    real = Path.replace
+
+    def killed(self: Path, target: Path) -> Path:
+        if target.name == "b":
+            raise KeyboardInterrupt
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", killed)
+    with pytest.raises(KeyboardInterrupt):
+        write_together(tmp_path, {"a": text("new"), "b": text("new")})
+    assert (tmp_path / "a").read_text() == "new"
+    assert (tmp_path / "b").read_text() == "old"
+    assert "Run the same command again" in (tmp_path / "incomplete.txt").read_text()
+    monkeypatch.undo()
+    write_together(tmp_path, {"a": text("new"), "b": text("new")})
+    assert sorted(os.listdir(tmp_path)) == ["a", "b"]

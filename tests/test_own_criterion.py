@@ -21,7 +21,6 @@ from ratt_opt import (
     total_curvature,
     worst_case_attack,
 )
-from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.setfunctions.information import InformationObjective
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import information_data, random_elements
@@ -177,6 +176,7 @@ def test_a_subclass_with_another_formula_is_not_taken_for_its_parent(seed: int, 
     assert worst_case_attack(inherited, plan).upper == worst_case_attack(own, plan).upper
     with pytest.raises(InputError, match="certified"):
         problem_document(inherited)
-    assert certify_if_possible(inherited, result, tmp_path / "c.json").certificate is None
+    with pytest.raises(InputError, match=r"must define fenchel_point\(point, target\).*; got OtherTrace"):
+        certify(inherited, result, tmp_path / "c.json")
     with pytest.raises(InputError, match="conic_value"):
         relaxation_bound(Problem(inherited.objective, inherited.robot, inherited.graph, 0, 0), [Attack()])

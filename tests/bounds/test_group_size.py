@@ -8,15 +8,9 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.bounds import group_size
-from ratt_opt.bounds.group_size import achievable_group_size, strongest_robots
+from ratt_opt.bounds.group_size import achievable_group_size
 from ratt_opt.bounds.survivors import largest_survivor_group
 from ratt_opt.budget import Budget
-from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
-from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
-from ratt_opt.graph.threat import Threat
-from ratt_opt.report.page.page import report_page
-from ratt_opt.report.tables import report_tables
-from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import monotone_table, random_graph, random_objective
 
@@ -54,7 +48,8 @@ def check(seeds, *, submodular):
             if submodular
             else {"c": ro.total_curvature(problem.objective, problem.robot)}
         )
-        alpha_cs, plan = equivalent_sensing_attacks(problem), ro.ratt(problem).elements
+        planned = ro.ratt(problem)
+        alpha_cs, plan = planned.alpha_cs, planned.elements
         promised = ro.all_guarantees(problem, alpha_cs, **given)
         promised["this instance"] = ro.instance_bound(problem, plan, **given)
         kept = brute_force_worst_case(problem, plan)
@@ -89,30 +84,14 @@ def test_the_group_size_of_a_large_graph_is_achieved():
     assert exact - 3 <= achievable_group_size(problem) <= 13
 
 
-def separated(graph, cut, blinded):
-    """Seeing robots of the largest group that a cut leaves."""
-    left = nx.Graph(graph)
-    left.remove_edges_from(cut)
-    return max(len(group - blinded) for group in nx.connected_components(left))
-
-
 @pytest.mark.parametrize("seed", range(6))
-def test_annealed_groups_are_achieved_and_never_larger_than_by_cheapest_cuts(seed, monkeypatch):
-    """The cut itself is looked at: within the links, no protected one, groups of that many seeing robots."""
+def test_annealed_groups_are_never_larger_than_by_cheapest_cuts(seed, monkeypatch):
     objective = ro.random_scenario(24, 2, alpha_s=0, alpha_c=0, seed=seed).problem().objective
     graph = nx.random_geometric_graph(24, 0.32, seed=seed)
     links = sorted((min(e), max(e)) for e in graph.edges)
-    protected = frozenset(links[:: 7 + seed])
-    problem = ro.Problem(objective, np.repeat(np.arange(24), 12), graph, 5, len(links) // 6, protected_links=protected)
-    blinded = strongest_robots(problem)
-    cuts_only = Threat(problem.communication, 0, problem.alpha_c, protected_links=protected)
-    quick = heuristic_cut(cuts_only, ignoring=blinded)
-    cut = annealed_cut(cuts_only, quick, 1, Budget(), ignoring=blinded)
-    assert len(cut) <= problem.alpha_c
-    assert not cut & protected
-    assert separated(graph, cut, blinded) <= separated(graph, quick, blinded)
+    held = frozenset(links[:: 7 + seed])
+    problem = ro.Problem(objective, np.repeat(np.arange(24), 12), graph, 5, len(links) // 6, protected_links=held)
     found = achievable_group_size(problem)
-    assert found <= separated(graph, cut, blinded)
     monkeypatch.setattr(group_size, "MOST_ANNEALED", 0)
     assert found <= achievable_group_size(problem)
 
@@ -203,13 +182,13 @@ def test_the_survivor_bound_is_above_the_pattern_free_one(size):
         assert ro.survivor_bound(size, c=share) > ro.pattern_free_bound(c=share)
 
 
-def test_ratt_is_said_to_be_optimal_where_one_robot_sees_in_every_group():
+def test_ratt_is_said_to_be_optimal_where_one_robot_sees_in_every_group(tmp_path):
     report = ro.bound(ro.random_scenario(4, 4, alpha_s=2, alpha_c=4, seed=0), time_limit=20)
     assert report.guaranteed_share == 1.0
     assert report.guarantees["one robot a group"].hypotheses[0] == "normalised, non-decreasing"
     assert report.to_dict()["proofs"]["one robot a group"] == "group_size_bound; in Coq paper_optimal"
-    assert "RATT's plan is optimal" in str(list(report_tables(report))[-1].caption)
-    assert "RATT&#x27;s plan is optimal" in report_page(report)
+    report.save(tmp_path)
+    assert "RATT&#x27;s plan is optimal" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_coq_is_named_for_what_it_covers_only():

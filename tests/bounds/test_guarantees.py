@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.solvers.ratt import equivalent_sensing_attacks
 from tests.strategies import monotone_table, random_graph, random_objective
 
 
@@ -46,7 +45,7 @@ def test_ratt_keeps_every_guarantee_and_any_plan_its_own(submodular_only):
     for _ in range(250):
         problem = random_problem(rng, submodular_only=submodular_only)
         best = ro.exhaustive_optimum(problem).upper
-        alpha_cs = equivalent_sensing_attacks(problem)
+        alpha_cs = ro.ratt(problem).alpha_cs
         kind = ro.curvature if submodular_only else ro.total_curvature
         found = kind(problem.objective, problem.robot)
         given = {"k" if submodular_only else "c": found}

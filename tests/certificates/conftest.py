@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
-from ratt_opt.certificates import write
 from ratt_opt.report.schemas import output_schema
+from tests.certificates.engine import step
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from ratt_opt import Verified
@@ -29,13 +29,14 @@ def schema() -> jsonschema.Draft202012Validator:
 
 @pytest.fixture(autouse=True, scope="module")
 def _certificates_keep_to_their_schema(schema: jsonschema.Draft202012Validator) -> Iterator[None]:
-    real = write.verify_certificate
+    def looking(real: Callable[..., Verified]) -> Callable[..., Verified]:
+        def verified(path: Path, **named: Any) -> Verified:
+            if path.stat().st_size < LARGEST:
+                schema.validate(json.loads(path.read_text(encoding="utf-8")))
+            return real(path, **named)
 
-    def verified(path: Path, **named: Any) -> Verified:
-        if path.stat().st_size < LARGEST:
-            schema.validate(json.loads(path.read_text(encoding="utf-8")))
-        return real(path, **named)
+        return verified
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(write, "verify_certificate", verified)
+        step(patch, "verification", looking)
         yield

@@ -14,9 +14,9 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.certificates.agreement import differences
-from ratt_opt.certificates.verifier.work import limited
 from ratt_opt.cli import run
 from ratt_opt.errors import UndecidedError
+from tests.certificates.engine import limited
 
 SENSORS = [
     ro.Sensor(),

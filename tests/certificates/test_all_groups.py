@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from ratt_opt import Problem, TraceObjective, worst_case_attack
-from ratt_opt.certificates.lower import lower_proof, weaker_lower_proof
 from ratt_opt.certificates.threatened import Team
 from ratt_opt.certificates.verifier.lower_end.all_groups import cheap_groups
 from ratt_opt.certificates.verifier.lower_end.group_costs import Groups
 from ratt_opt.graph.separable_groups import separable_groups
-from tests.certificates.graph_proofs import accepted_leaves, drawn, network, proof, refuse
+from tests.certificates.engine import accepted_leaves, drawn, lower_proof, network, proof, refuse, weaker_lower_proof
 from tests.strategies import information_data
 
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import fmpq
 
 import ratt_opt
 from ratt_opt import (
@@ -26,15 +25,10 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates import write
-from ratt_opt.certificates.lower import lower_proof
-from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced
-from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.write import _prior_range
-from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
+from tests.certificates.engine import UndecidedError, accepted_leaves, lower_proof, refuse, step
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, information_data, random_problem
 
@@ -183,20 +177,15 @@ def test_leaves_that_average_over_the_robots_missing_prove_no_more_than_the_wors
     part = lower_proof(problem, elements, worst * (1 - 1e-12))
     assert part["kind"] == "forced_size"
     assert -3 in part["tree"]
-    prior_range = _prior_range(problem, problem_document(problem), elements.tolist())
-    checker = LowerCheck(Statement(problem_document(problem), elements.tolist(), prior_range))
-    assert checker.check(part, fmpq(*float(worst * (1 - 1e-11)).as_integer_ratio())) == len(
-        [node for node in part["tree"] if node < 0]
-    )
-    with pytest.raises(ProofError, match="worth less"):
-        checker.check(part, fmpq(*float(worst * (1 + 1e-9)).as_integer_ratio()))
+    leaves = sum(node < 0 for node in part["tree"])
+    assert accepted_leaves(problem, elements, part, worst * (1 - 1e-11)) == leaves
+    refuse(problem, elements, part, worst * (1 + 1e-9), "worth less")
     crude = {**part, "tree": [-3]}
     singles = problem.objective.prior_information + part["size"] * problem.objective.information[elements]
     values = np.sort(problem.objective.value(singles))[: part["size"]]
     level = values.mean()
-    assert checker.check(crude, fmpq(*float(level - 1e-9 * abs(level)).as_integer_ratio())) == 1
-    with pytest.raises(ProofError, match="worth less"):
-        checker.check(crude, fmpq(*float(level + 1e-9 * abs(level)).as_integer_ratio()))
+    assert accepted_leaves(problem, elements, crude, level - 1e-9 * abs(level)) == 1
+    refuse(problem, elements, crude, level + 1e-9 * abs(level), "worth less")
     assert level <= worst
 
 
@@ -247,7 +236,7 @@ def test_where_time_ends_the_upper_end_is_proved_alone(kind, tmp_path, monkeypat
             raise UndecidedError("not decided within 1 s")
         return verify_certificate(file, **options)
 
-    monkeypatch.setattr(write, "verify_certificate", endless)
+    step(monkeypatch, "verification", lambda _: endless)
     result = solve_maxmin(problem)
     verified = certify(problem, result, tmp_path / "c.json", time_limit=30).verified
     assert asked[1:] == ["enumerated"]

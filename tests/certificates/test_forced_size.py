@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from flint import fmpq
 
-from ratt_opt import ProofError, problem_document, random_scenario, ratt, worst_case_attack
+from ratt_opt import ProofError, random_scenario, ratt, worst_case_attack
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.certificates import forced_size, lower, size_tree
+from ratt_opt.certificates import forced_size, size_tree
 from ratt_opt.certificates.forced_size import forced_size_tree
 from ratt_opt.certificates.plan_sets import PlanSets
 from ratt_opt.certificates.size_tree import _SizeTree
-from ratt_opt.certificates.verifier.lower import LowerCheck
-from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.verifier.work import limited, watched
-from ratt_opt.certificates.write import _prior_range
-from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.survivor_sizes import forced_group_size
+from tests.certificates.engine import UndecidedError, accepted_leaves, limited, lower_proof, watched
 from tests.strategies import OBJECTIVES
 
 
@@ -36,11 +31,7 @@ def case(kind, seed, robots=14):
 
 def check(problem, elements, size, tree, level):
     """What the verifier says of the cover; a ProofError where it proves less."""
-    document = problem_document(problem)
-    prior_range = _prior_range(problem, document, elements.tolist())
-    about = LowerCheck(Statement(document, elements.tolist(), prior_range))
-    part = {"kind": "forced_size", "size": size, "tree": tree}
-    return about.check(part, fmpq(*float(level).as_integer_ratio()))
+    return accepted_leaves(problem, elements, {"kind": "forced_size", "size": size, "tree": tree}, level)
 
 
 @pytest.mark.parametrize("kind", OBJECTIVES)
@@ -90,6 +81,6 @@ def test_larger_teams_have_compiled_covers_and_small_ones_plain_ones(monkeypatch
     problem, elements, team, size, weakest = case("logdet", 0)
     level = weakest * (1 - 1e-12)
     expected = forced_size_tree(team, size, level, 100_000)
-    assert lower.lower_proof(problem, elements, level)["tree"] == expected
+    assert lower_proof(problem, elements, level)["tree"] == expected
     monkeypatch.setattr(size_tree, "LARGEST_PLAIN", 14)
-    assert lower.lower_proof(problem, elements, level)["tree"] != expected
+    assert lower_proof(problem, elements, level)["tree"] != expected

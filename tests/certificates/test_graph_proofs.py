@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ratt_opt import worst_case_attack
-from tests.certificates.graph_proofs import (
+from tests.certificates.engine import (
     CRITERIA,
-    PROVERS,
+    GRAPH_PROOFS,
     accepted_leaves,
     network,
     proof,
@@ -65,18 +65,18 @@ def check_small(kind, seeds, least):
         assert unproved
 
 
-@pytest.mark.parametrize("kind", PROVERS)
+@pytest.mark.parametrize("kind", GRAPH_PROOFS)
 def test_small_teams_by_brute_force(kind):
     check_small(kind, *SMALL[kind])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", PROVERS)
+@pytest.mark.parametrize("kind", GRAPH_PROOFS)
 def test_more_small_teams_by_brute_force(kind):
     check_small(kind, *MORE_SMALL[kind])
 
 
-@pytest.mark.parametrize("kind", PROVERS)
+@pytest.mark.parametrize("kind", GRAPH_PROOFS)
 def test_no_mutated_proof_hides_a_false_claim(kind, tmp_path):
     seeds, share = MUTATED[kind]
     proofs = small_proofs(kind, range(seeds))
@@ -84,7 +84,7 @@ def test_no_mutated_proof_hides_a_false_claim(kind, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", PROVERS)
+@pytest.mark.parametrize("kind", GRAPH_PROOFS)
 def test_many_mutated_proofs(kind, tmp_path):
     seeds, share, least = MORE_MUTATED[kind]
     proofs = small_proofs(kind, range(100, 100 + seeds))

@@ -15,12 +15,20 @@ from ratt_opt import (
     exhaustive_optimum,
     worst_case_attack,
 )
-from ratt_opt.certificates import write
-from ratt_opt.certificates.lower import ENUMERATED, weaker_lower_proof
 from ratt_opt.certificates.verifier.lower_end.group_costs import Group
 from ratt_opt.certificates.verifier.lower_end.partitions import Partitions
 from tests.certificates.cases import certified
-from tests.certificates.graph_proofs import accepted_leaves, drawn, network, proof, refuse, small_proofs
+from tests.certificates.engine import (
+    ENUMERATED,
+    accepted_leaves,
+    drawn,
+    network,
+    proof,
+    refuse,
+    small_proofs,
+    step,
+    weaker_lower_proof,
+)
 from tests.strategies import information_data
 
 
@@ -48,7 +56,7 @@ def test_a_weaker_lower_end_is_proved_where_the_first_is_not():
 
 
 def test_a_certificate_says_how_much_less_it_proves(tmp_path, monkeypatch):
-    monkeypatch.setattr(write, "lower_proof", lambda *_: ENUMERATED)
+    step(monkeypatch, "lower end", lambda _: lambda *_: ENUMERATED)
     problem = drawn(0)[0]
     best = exhaustive_optimum(problem).lower
     written, document = certified(problem, tmp_path / "c.json")

@@ -5,15 +5,12 @@ from __future__ import annotations
 import copy
 from itertools import combinations
 
-import numpy as np
 import pytest
 
 from ratt_opt import worst_case_attack
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.forced_by_trees import forced_size_proof
-from ratt_opt.certificates.plan_sets import PlanSets
 from ratt_opt.graph.largest_group.spreading import forced_size_trees
-from tests.certificates.graph_proofs import PROVERS, accepted_leaves, drawn, network, proof, refuse
+from tests.certificates.engine import accepted_leaves, drawn, network, proof, refuse
 
 
 def check_sizes(seeds, least):
@@ -28,7 +25,7 @@ def check_sizes(seeds, least):
         assert weakest <= worst * (1 + 1e-9) + 1e-12
         if weakest <= 1e-3:
             continue
-        part = forced_size_proof(PlanSets(problem, np.array(plan), weakest * (1 - 1e-9)), PROVERS["group_prices"][1])
+        part = proof("forced_size_trees", problem, plan, weakest * (1 - 1e-9))
         assert accepted_leaves(problem, plan, part, weakest * (1 - 2e-9)) > 0
         for broken, text in broken_trees(part):
             refuse(problem, plan, broken, weakest * (1 - 2e-9), text)

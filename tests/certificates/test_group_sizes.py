@@ -12,12 +12,11 @@ import pytest
 from ratt_opt import Problem, TraceObjective, worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
-from ratt_opt.certificates.lower import lower_proof, weaker_lower_proof
 from ratt_opt.certificates.threatened import Team
 from ratt_opt.certificates.verifier.exact_matrices import is_positive
 from ratt_opt.certificates.verifier.lower_end.largest_groups import largest_groups
 from ratt_opt.certificates.verifier.lower_end.link_scores import UNIT, LinkScores
-from tests.certificates.graph_proofs import accepted_leaves, network, proof, refuse
+from tests.certificates.engine import accepted_leaves, lower_proof, network, proof, refuse, weaker_lower_proof
 from tests.strategies import information_data
 
 

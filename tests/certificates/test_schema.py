@@ -22,13 +22,7 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates.forced_by_trees import forced_size_proof
-from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
-from ratt_opt.certificates.group_covers.proof import group_cover_proof
-from ratt_opt.certificates.group_prices import group_price_proof
-from ratt_opt.certificates.group_sizes.proof import group_size_proof
-from ratt_opt.certificates.lower import ENUMERATED
-from ratt_opt.certificates.plan_sets import PlanSets
+from tests.certificates.engine import ENUMERATED, proof
 from tests.strategies import information_data
 
 if TYPE_CHECKING:
@@ -62,14 +56,12 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     made["with its source"] = made["trace, path"] | {"made_from": "0123456789abcdef" * 4}
     problem = Problem(OBJECTIVES["trace"], np.repeat(np.arange(3), 2), nx.path_graph(3), 1, 1, protected_robots={0})
     plan, lower = np.array(made["trace, path"]["plan"]), made["trace, path"]["claim"]["lower"]
-    sets = PlanSets(problem, plan, lower * (1 - 1e-13))
-    made["group_prices"] = made["trace, path"] | {"lower": group_price_proof(sets, 1000)}
-    made["group_covers"] = made["trace, path"] | {"lower": group_cover_proof(sets, 1000)}
-    made["all_groups"] = made["trace, path"] | {"lower": all_groups_proof(sets, 1000)}
+    for kind in ("group_prices", "group_covers", "all_groups"):
+        made[kind] = made["trace, path"] | {"lower": proof(kind, problem, plan, lower * (1 - 1e-13), 1000)}
     low = made["trace, path"]["claim"] | {"lower": 0.0}
-    sized = forced_size_proof(PlanSets(problem, plan, 0.0), 1000)
+    sized = proof("forced_size_trees", problem, plan, 0.0, 1000)
     made["trees"] = made["trace, path"] | {"claim": low, "lower": sized}
-    scored = group_size_proof(PlanSets(problem, plan, 0.0), 1000)
+    scored = proof("group_sizes", problem, plan, 0.0, 1000)
     scored["bounds"] = [{"vector": 0, "diagonal": [0, 0, 0]}]
     made["group_sizes"] = made["trace, path"] | {"claim": low, "lower": scored}
     return made

@@ -22,9 +22,9 @@ from ratt_opt import (
     save_scenario,
     worst_case_attack,
 )
-from ratt_opt.certificates import write
 from ratt_opt.cli import run
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
+from tests.certificates.engine import step
 from tests.cli.refusal import refused
 
 if TYPE_CHECKING:
@@ -172,14 +172,16 @@ def test_a_bound_whose_proof_has_a_fault_fails(
     scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A solver that claims too much: its proof is refused, nothing is printed as a result, the report says so."""
-    real = write.upper_record
 
-    def without_last_leaf(*arguments: Any) -> Any:
-        record = real(*arguments)
-        record["tree"].pop()
-        return record
+    def without_last_leaf(real: Any) -> Any:
+        def faulty(*arguments: Any) -> Any:
+            record = real(*arguments)
+            record["tree"].pop()
+            return record
 
-    monkeypatch.setattr(write, "upper_record", without_last_leaf)
+        return faulty
+
+    step(monkeypatch, "upper end", without_last_leaf)
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 1
     shown = capsys.readouterr()
     assert shown.out == ""

@@ -13,15 +13,10 @@ from typing import Any
 import pytest
 
 from ratt_opt.cli.interrupts import Interrupts
+from tests.interrupts import INTERRUPTED_IMPORTS
 
-DURING_IMPORT = """
-import signal, sys
-class Finder:
-    def find_spec(self, name, path=None, target=None):
-        if name == {name!r}:
-            sys.meta_path.remove(self)
-            signal.raise_signal(signal.SIGINT)
-sys.meta_path.insert(0, Finder())
+DURING_IMPORT = f"""{INTERRUPTED_IMPORTS}
+sys.meta_path.insert(0, Interrupts({{name!r}}))
 from ratt_opt.cli import main
 main()
 """

@@ -15,12 +15,11 @@ import pytest
 from ratt_audit import ledger
 from ratt_audit.ledger import all_entries
 from ratt_opt import Problem, TableFunction, bound
-from ratt_opt.certificates.lower import ENUMERATED
 from ratt_opt.cli import run
-from ratt_opt.cli.exit_codes import FAULT, UPPER_ONLY
 from ratt_opt.cli.program import ERRORS, app
-from ratt_opt.main_job import bound as main_job
 from ratt_opt.report.schemas import OUTPUTS, output_schema
+from tests.interrupts import interrupted_at
+from tests.main_job.engine import step
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -98,7 +97,7 @@ def test_the_pages_name_every_schema_and_exit_code() -> None:
     with_json = {str(command.callback.__name__) for command in app.registered_commands if _takes_json(command.callback)}
     assert with_json >= {"bound", "track", "verify"}
     assert all(re.search(rf"^\|[^|]*`{name}`[^|]*\| `ratt-opt schema", page, re.MULTILINE) for name in with_json)
-    codes = {0, UPPER_ONLY, FAULT, *ERRORS.values()}
+    codes = {0, 3, 70, *ERRORS.values()}
     assert {int(code) for code in re.findall(r"^\| (\d+) \| ", commands, re.MULTILINE)} == codes
 
 
@@ -128,16 +127,7 @@ def test_reports_of_other_inputs(
     own = bound(Problem(TableFunction([0, 1, 1, 2]), [0, 1], None, 1, 0))
     assert own.n_targets is None
     _check(own.to_dict(), "report")
-    calls: list[int] = []
-    real = main_job.solve_maxmin
-
-    def interrupted(*given: Any, **named: Any) -> Any:
-        calls.append(0)
-        if len(calls) == 1:
-            raise KeyboardInterrupt
-        return real(*given, **named)
-
-    monkeypatch.setattr(main_job, "solve_maxmin", interrupted)
+    step(monkeypatch, "optimum", lambda real: interrupted_at(1, real))
     found = _printed(capsys, "bound", str(scenario_file), "--out", str(tmp_path / "c"), code=130)
     assert found["interrupted"]
     _check(found, "report")
@@ -171,7 +161,7 @@ def test_a_mission(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFi
 def test_a_half_proved_certificate(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
     path = tmp_path / "o" / "certificate.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"lower": ENUMERATED}))
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"lower": {"kind": "enumerated"}}))
     found = _printed(capsys, "verify", str(path), code=3)
     assert not found["lower_proved"]
     _check(found, "verification")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.certificates import write
 from ratt_opt.errors import UndecidedError
+from tests.certificates.engine import step
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
 
@@ -92,7 +92,7 @@ def test_an_interrupt_ends_every_step_and_keeps_the_bracket():
 
 
 def test_an_interrupt_while_the_certificate_is_written_keeps_the_report(monkeypatch, tmp_path):
-    monkeypatch.setattr("ratt_opt.certificates.write.upper_record", lambda *_: signal.raise_signal(signal.SIGINT))
+    step(monkeypatch, "upper end", lambda _: lambda *_: signal.raise_signal(signal.SIGINT))
     file = tmp_path / "certificate.json"
     report = ro.bound(ro.random_scenario(4, 4, alpha_s=1, alpha_c=2, seed=0), certificate=file)
     assert report.interrupted
@@ -105,7 +105,7 @@ def test_a_proof_with_a_fault_raises_and_keeps_the_report(tmp_path, monkeypatch)
     def faulty(*_):
         raise ro.ProofError("claim: false")
 
-    monkeypatch.setattr(write, "_write_verified", faulty)
+    step(monkeypatch, "writing", lambda _: faulty)
     with pytest.raises(ro.ProofError, match="claim: false") as caught:
         ro.bound(SMALL, certificate=tmp_path / "c.json")
     report = caught.value.report
@@ -118,7 +118,7 @@ def test_a_proof_that_is_not_decided_is_a_reason(tmp_path, monkeypatch):
     def undecided(*_):
         raise UndecidedError("not decided within 600 s")
 
-    monkeypatch.setattr(write, "_write_verified", undecided)
+    step(monkeypatch, "writing", lambda _: undecided)
     report = ro.bound(SMALL, certificate=tmp_path / "c.json")
     assert report.certificate.why_not == "could not be made: not decided within 600 s"
 

@@ -13,7 +13,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.report.tables import report_tables
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers import ratt as solver
+from tests.main_job.engine import step
 from tests.strategies import OBJECTIVES
 
 SCENARIO = ro.random_scenario(4, 3, alpha_s=1, alpha_c=3, seed=3)
@@ -123,11 +123,10 @@ def test_numbers_are_python_floats(report):
 def test_alpha_cs_is_computed_once(monkeypatch):
     """Off complete graphs it can take seconds."""
     calls = []
-    real = solver.bound_soon
-    monkeypatch.setattr(solver, "bound_soon", lambda *a, **b: calls.append(0) or real(*a, **b))
+    step(monkeypatch, "link attacks", lambda real: lambda *a, **b: calls.append(0) or real(*a, **b))
     report = ro.bound(SCENARIO.replace(links=((0, 1), (1, 2), (2, 3))))
     assert len(calls) == 1
-    assert report.alpha_cs == solver.equivalent_sensing_attacks(report.problem)
+    assert report.alpha_cs == ro.ratt(report.problem).alpha_cs
 
 
 def test_off_complete_graphs_n_max_is_printed_as_a_bound():

@@ -21,6 +21,7 @@ from numba.core.registry import cpu_target
 import ratt_opt
 from ratt_opt.running import kept_code
 from ratt_opt.running.compiling import INTERRUPTS, _raised_again, numba
+from tests.interrupts import INTERRUPTED_IMPORTS
 
 LONG = 60.0
 """Seconds after which an interrupt counts as lost."""
@@ -176,17 +177,8 @@ def test_one_where_the_collector_frees_what_was_compiled_comes_after_it(where):
     assert (done.stdout, done.stderr) == ("answered\n", "")
 
 
-IMPORTED_AGAIN = """
-import signal, sys
-from importlib.abc import MetaPathFinder
-
-class Interrupts(MetaPathFinder):
-    def find_spec(self, name, path, target=None):
-        if name == sys.argv[1]:
-            sys.meta_path.remove(self)
-            signal.raise_signal(signal.SIGINT)
-
-sys.meta_path.insert(0, Interrupts())
+IMPORTED_AGAIN = f"""{INTERRUPTED_IMPORTS}
+sys.meta_path.insert(0, Interrupts(sys.argv[1]))
 try:
     from ratt_opt.running.compiling import numba
 except KeyboardInterrupt:

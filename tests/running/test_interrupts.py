@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from ratt_opt.running import interrupts
+from tests.interrupts import INTERRUPTED_IMPORTS
 
 
 def test_a_package_whose_import_was_interrupted_is_imported_whole_next_time(tmp_path, monkeypatch):
@@ -24,18 +25,10 @@ def test_a_package_whose_import_was_interrupted_is_imported_whole_next_time(tmp_
     assert interrupts.imported_whole("half_imported").owner() == 1
 
 
-SOLVER = """
-import signal, sys, time
-from importlib.abc import MetaPathFinder
-
-class Interrupts(MetaPathFinder):
-    def find_spec(self, name, path, target=None):
-        if name == "highspy._core":
-            sys.meta_path.remove(self)
-            signal.raise_signal(signal.SIGINT)
-
+SOLVER = f"""{INTERRUPTED_IMPORTS}
+import time
 from ratt_opt.highs import LinearProgram
-sys.meta_path.insert(0, Interrupts())
+sys.meta_path.insert(0, Interrupts("highspy._core"))
 try:
     LinearProgram([1.0])
     time.sleep(60)
@@ -51,18 +44,10 @@ def test_one_while_the_solver_of_programs_is_imported_comes_after_it():
     assert done.stdout == "answered True\nTrue\n", done.stderr
 
 
-INTERRUPTED_IMPORT = """
-import signal, sys, time
-from importlib.abc import MetaPathFinder
-
-class Interrupts(MetaPathFinder):
-    def find_spec(self, name, path, target=None):
-        if name == sys.argv[1]:
-            sys.meta_path.remove(self)
-            signal.raise_signal(signal.SIGINT)
-
+INTERRUPTED_IMPORT = f"""{INTERRUPTED_IMPORTS}
+import time
 import ratt_opt as ro
-sys.meta_path.insert(0, Interrupts())
+sys.meta_path.insert(0, Interrupts(sys.argv[1]))
 try:
     ro.certify, ro.verify_certificate
     time.sleep(60)

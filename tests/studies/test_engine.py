@@ -167,7 +167,7 @@ def test_interrupt_says_how_to_resume(tmp_path: Path) -> None:
 
 WORKING = """
 import os, sys, time
-from ratt_opt.running.processes import local_processes
+from analysis.studies.executors import local_processes
 if __name__ == "__main__":
     with local_processes(1) as executor:
         executor.submit(os.getpid)

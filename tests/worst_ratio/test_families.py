@@ -15,10 +15,10 @@ from ratt_opt import (
     TableFunction,
     exhaustive_optimum,
     ratt,
+    survivor_bound,
     worst_case_attack,
     worst_case_ratio,
 )
-from ratt_opt.bounds.survivors import survivor_share
 from ratt_opt.worst_ratio.closed_form import known_ratio, proved_ratio, sensing_ratio, three_left_ratio
 from ratt_opt.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
 from ratt_opt.worst_ratio.witness import attaining_instance, replay
@@ -51,7 +51,7 @@ def test_the_survivor_bound_is_the_ratio_only_where_bait_can_replace_enough_gree
     """N = 5, one robot blinded, c = 1/4: with four robots left one swap for bait is not enough."""
     found = worst_case_ratio(5, 1, 0, curvature=QUARTER, family="nondecreasing", use_theorem=False)
     assert found.exact_lower == found.exact_upper == Fraction(99, 148)
-    assert found.exact_upper > survivor_share(4, 1 - QUARTER, submodular=False)
+    assert found.exact_upper > survivor_bound(4, c=0.25)
 
 
 @pytest.mark.parametrize(("swapped", "c"), [(-1, QUARTER), (3, QUARTER), (1, Fraction(1))])
@@ -130,5 +130,6 @@ def test_more_blinded_bait_than_robots_left_changes_nothing() -> None:
 def test_a_conjecture_fails_at_a_team_it_was_not_made_from() -> None:
     """With links the largest group attacks worth making leave counts, not the smallest: N = 6, alpha_c = 9."""
     found = worst_case_ratio(6, 0, 9, curvature=QUARTER, family="nondecreasing")
-    largest, smallest = (survivor_share(g, 1 - QUARTER, submodular=False) for g in (4, 3))
-    assert found.exact_lower == found.exact_upper == largest == Fraction(13, 20) < smallest
+    assert found.exact_lower == found.exact_upper == Fraction(13, 20)
+    assert float(survivor_bound(4, c=0.25)) == pytest.approx(13 / 20)
+    assert survivor_bound(3, c=0.25) > 13 / 20

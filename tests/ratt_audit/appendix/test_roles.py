@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_audit.appendix.roles import Side, Team, optimum, worst_for
-from ratt_opt import Problem, TableFunction
-from ratt_opt.solvers.ratt import bait_and_greedy
+from ratt_opt import Problem, TableFunction, ratt
 from tests.strategies import monotone_table
 
 N_ROBOTS = 3
@@ -33,8 +32,8 @@ def test_ratt_s_choices_satisfy_every_premise(seed: int) -> None:
     rng = np.random.default_rng(seed)
     owners = np.repeat(np.arange(N_ROBOTS), CONTROLS)
     function = TableFunction(monotone_table(rng, len(owners)))
-    problem = Problem(function, owners, None, 0, 0)
-    plan = bait_and_greedy(problem, int(rng.integers(0, N_ROBOTS + 1)))
+    problem = Problem(function, owners, None, int(rng.integers(0, N_ROBOTS + 1)), 0)
+    plan = ratt(problem)
     order = greedy_order(problem, plan.elements, plan.bait)
     other = [int(rng.choice(choice)) for choice in problem.choices]
     bait = {f"b{k}": i for k, i in enumerate(plan.bait)}

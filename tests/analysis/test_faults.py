@@ -17,7 +17,6 @@ from analysis.faults.kinds import KINDS
 from analysis.faults.processes import PROCESSES
 from analysis.faults.results import check_results, earlier_results
 from analysis.faults.truth import truth
-from ratt_opt._files import MIXED
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -116,7 +115,7 @@ def test_the_campaign_sees_files_of_two_runs(campaign: faults.Campaign, tmp_path
     (folder / "plan.csv").write_bytes(b"another run's")
     with pytest.raises(AssertionError, match="files of two runs without a mark"):
         check_results(campaign, folder)
-    (folder / MIXED).touch()
+    (folder / "incomplete.txt").touch()
     check_results(campaign, folder)
 
 

@@ -25,7 +25,7 @@ from ratt_opt.missions.replay.cameras import CAMERA_PLANNERS, camera_planner
 from ratt_opt.missions.replay.fit_sensor import mrclam_residuals
 from tests.strategies import information_data
 
-REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "mrclam"
+REAL = Path(__file__).resolve().parents[4] / "shared" / "data" / "mrclam"
 real = pytest.mark.skipif(not REAL.is_dir(), reason="the dataset is not here")
 
 

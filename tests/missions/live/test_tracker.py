@@ -208,7 +208,7 @@ def test_bad_states_and_arguments() -> None:
 def test_the_example_over_a_pipe_keeps_its_deadlines() -> None:
     """All of them on an idle machine; a few steps may be late where tests run beside each other."""
     command = [sys.executable, "-m", "analysis.live_loop", "--steps", "15"]
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True, cwd=root)
     found = re.match(r"15 steps at 10 Hz: answers late (\d+), longest \d+ ms; plans missed (\d+)", done.stdout)
     assert found is not None

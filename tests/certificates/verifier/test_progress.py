@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt import random_scenario
 from ratt_opt.certificates.verifier import work
-from ratt_opt.cli.proofs import verify
+from ratt_opt.cli import run
 from ratt_opt.running.progress import Step
 from tests.certificates.cases import certified
 
@@ -29,7 +29,7 @@ def test_every_part_of_the_work_counts_its_cases(monkeypatch: pytest.MonkeyPatch
     assert parts == [upper, "covering all attacks cases", lower]
     assert said[-1] == f"lower proof, {nodes['lower'] - 1:,} of {nodes['lower']:,} cases"
     said.clear()
-    assert verify(written.path) == 0
+    assert run(["verify", str(written.path)]) == 0
     assert said[0] == f"upper proof, 0 of {nodes['upper']:,} cases"
     assert said[-1] == f"lower proof, {nodes['lower'] - 1:,} of {nodes['lower']:,} cases"
 

@@ -8,11 +8,8 @@ from itertools import combinations
 import pytest
 
 from ratt_opt import FileFormatError, ProofError, verify_certificate
-from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.lower_end import partitions
-from ratt_opt.certificates.verifier.reading import exact
-from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.errors import UndecidedError
+from tests.certificates.engine import UndecidedError, check, stated_in
 
 
 def document(n, links, alpha_c, lower):
@@ -71,9 +68,8 @@ def test_flows_without_sets(robots, tmp_path):
 
 def test_many_lone_robots_are_no_recursion():
     written = document(990, [], 0, prices("all_groups", [0] * 990))
-    about = Statement(written["problem"], written["plan"], written["prior_eigenvalue"])
     with pytest.raises(ProofError, match="cover the team"):
-        LowerCheck(about).check(written["lower"], exact("claim lower", 0.4))
+        check(stated_in(written), written["lower"], 0.4)
 
 
 def test_the_limit_counts_while_groups_are_listed_and_ordered(tmp_path):

@@ -1,4 +1,8 @@
-"""The kinds of proof of a worst case on a graph, the problems they are tried on, and what all of them must do."""
+"""Builders and checker of proofs as tests know them, the problems they are tried on, and what all must do.
+
+What a proof shows is asked here, or of ``certify`` and ``verify_certificate``. This file alone names the builders'
+modules; so do, beside an inner part, the tests that compare it with the definition.
+"""
 
 from __future__ import annotations
 
@@ -8,53 +12,103 @@ import pytest
 from flint import fmpq
 
 from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, problem_document, ratt
+from ratt_opt.certificates import write
+from ratt_opt.certificates.forced_by_trees import forced_size_proof
 from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
 from ratt_opt.certificates.group_covers.proof import group_cover_proof
 from ratt_opt.certificates.group_prices import group_price_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
+from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.verifier.lower import LowerCheck
 from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.write import _prior_range
+from ratt_opt.certificates.verifier.work import limited, tick, watched
+from ratt_opt.errors import UndecidedError
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
 
 CRITERIA = list(OBJECTIVES)
+__all__ = [
+    "CRITERIA",
+    "ENUMERATED",
+    "GRAPH_PROOFS",
+    "UndecidedError",
+    "accepted_leaves",
+    "check",
+    "drawn",
+    "limited",
+    "lower_proof",
+    "network",
+    "proof",
+    "refuse",
+    "small_proofs",
+    "stated_in",
+    "statement",
+    "step",
+    "tick",
+    "watched",
+    "weaker_lower_proof",
+]
+
 PROVERS = {
     "group_prices": (group_price_proof, 20_000),
     "group_sizes": (group_size_proof, 50_000),
     "group_covers": (group_cover_proof, 50_000),
     "all_groups": (all_groups_proof, 50_000),
+    "forced_size_trees": (forced_size_proof, 20_000),
 }
 
 
-def proof(kind, problem, plan, threshold):
+GRAPH_PROOFS = [kind for kind in PROVERS if kind != "forced_size_trees"]
+
+STEPS = {
+    "lower end": "lower_proof",
+    "upper end": "upper_record",
+    "verification": "verify_certificate",
+    "writing": "_write_verified",
+}
+"""What certifying is made of."""
+
+
+def step(patch, name, instead):
+    """Let ``instead(real)`` do a step of certifying."""
+    patch.setattr(write, STEPS[name], instead(getattr(write, STEPS[name])))
+
+
+def proof(kind, problem, plan, threshold, nodes=None):
     """The proof of a threshold, or ``None``."""
-    prove, nodes = PROVERS[kind]
+    prove, most = PROVERS[kind]
     try:
-        return prove(PlanSets(problem, np.asarray(plan), threshold), nodes)
+        return prove(PlanSets(problem, np.asarray(plan), threshold), nodes or most)
     except NotClosedError:
         return None
 
 
-def checker(problem, plan):
+def statement(problem, plan):
+    """What a certificate states of a problem and a plan, as the verifier reads it."""
     record, plan = problem_document(problem), np.asarray(plan).tolist()
-    return LowerCheck(Statement(record, plan, _prior_range(problem, record, plan)))
+    return Statement(record, plan, write._prior_range(problem, record, plan))
 
 
-def exact(value):
-    return fmpq(*float(value).as_integer_ratio())
+def stated_in(document):
+    """The same of a document."""
+    return Statement(document["problem"], document["plan"], document["prior_eigenvalue"])
 
 
 def accepted_leaves(problem, plan, part, value):
     """Leaves that the verifier looks at, where it accepts a proof of a value."""
-    return checker(problem, plan).check(part, exact(value))
+    return check(statement(problem, plan), part, value)
+
+
+def check(about, part, value):
+    """The same of a statement."""
+    return LowerCheck(about).check(part, fmpq(*float(value).as_integer_ratio()))
 
 
 def refuse(problem, plan, part, value, text=None):
     """The verifier refuses a proof of a value; ``text`` : a pattern of what it says."""
     with pytest.raises((ProofError, FileFormatError), match=text):
-        checker(problem, plan).check(part, exact(value))
+        accepted_leaves(problem, plan, part, value)
 
 
 def drawn(seed):
