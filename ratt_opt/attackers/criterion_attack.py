@@ -6,7 +6,6 @@ from functools import cached_property
 from math import isinf
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN
 from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups, unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
@@ -15,7 +14,6 @@ from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.attackers.tree_bound import bound_by_trees
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.graph.threshold import LARGEST_COMPILED
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.price_search import PriceSearch
@@ -25,10 +23,10 @@ if TYPE_CHECKING:
 
 __all__ = ["CriterionAttack"]
 
-THRESHOLDS_FASTER = 15
-"""Up to so many robots, thresholds are decided faster than partitions are searched, on any graph."""
-FEW_GROUPS, MANY_GROUPS = 10_000, 300_000
-"""Groups that an attack may leave for partitions to be searched: where thresholds are the alternative, and else."""
+SMALL = 12
+"""Most robots for which all sets are looked at before anything else: some milliseconds."""
+MANY_GROUPS = 300_000
+"""Groups that an attack may leave for partitions to be searched."""
 
 DENSE = 0.5
 """Share of all links from which partitions have but a share of the seconds, after possible sizes and before prices: a
@@ -73,7 +71,7 @@ class CriterionAttack(TeamAttack):
 
     def is_small(self) -> bool:
         """At most 12 robots."""
-        return self.task.problem.n_robots <= LARGEST_PLAIN
+        return self.task.problem.n_robots <= SMALL
 
     def is_planar_and_complete(self) -> bool:
         """Planar targets, complete graph, no protected links."""
@@ -84,12 +82,12 @@ class CriterionAttack(TeamAttack):
         return self._team is not None and self._threat.links_alike and not self._team.is_planar
 
     def may_list_groups(self) -> bool:
-        """Packed team of more than 15 robots."""
-        return self._team is not None and self.task.problem.n_robots > THRESHOLDS_FASTER
+        """Packed team."""
+        return self._team is not None
 
     def is_tabulated(self) -> bool:
-        """At most 20 robots, groups not listed."""
-        return self.task.problem.n_robots <= LARGEST_COMPILED and self._groups is None
+        """At most 24 robots, planar targets; else at most 20."""
+        return self._has_table
 
     def is_complete_but_for_protection(self) -> bool:
         """Packed team, complete graph, protected links."""
@@ -185,8 +183,7 @@ class CriterionAttack(TeamAttack):
         """The groups an attack may leave, where they are few enough, and soon listed."""
         from ratt_opt.graph.separable_groups import separable_groups  # compiles
 
-        few = FEW_GROUPS if self.task.problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
-        self._groups = separable_groups(self._threat, few, self.task.budget.part())
+        self._groups = separable_groups(self._threat, MANY_GROUPS, self.task.budget.part())
 
     def without_protection(self) -> None:
         """Attackers that may cut protected links too."""
@@ -257,7 +254,7 @@ class CriterionAttack(TeamAttack):
 
     @property
     def _is_dense(self) -> bool:
-        return self._has_many_links and not self._is_brief and self.task.problem.n_robots > LARGEST_COMPILED
+        return self._has_many_links and not self._is_brief
 
     @property
     def _has_many_groups(self) -> bool:

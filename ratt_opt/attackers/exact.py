@@ -6,6 +6,7 @@ import math
 from numbers import Real
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.all_sets import sets_can_be_looked_at
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.criterion_attack import CriterionAttack
@@ -22,7 +23,7 @@ from ratt_opt.attackers.task import (
     StageRecord,
     outward,
 )
-from ratt_opt.attackers.team_attack import TeamAttack, has_table, last_stage
+from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
@@ -63,14 +64,15 @@ def worst_case_attack(
     their conditions and shares of the budget; ``stages`` of the result says which ran. What a node is depends on the
     stage: a threshold, a branch, a set of robots.
 
-    - Up to 12 robots the values of all sets decide, and the result relies on nothing. If the budget ends before, the
-      lower end relies on a non-decreasing objective.
+    - Up to 24 robots (20 for functions of your own, and where targets are not in the plane) all sets of robots are
+      looked at. That closes any network within seconds. For a function of your own it relies on nothing, once all
+      sets are valued.
     - Larger teams rely on a non-decreasing objective. The three criteria are; functions of your own are not checked.
-    - Give a limit for more than 20 robots: on networks of 50 some attacks take hours to close. If another search asks
+    - Give a limit for more than 24 robots: on networks of 50 some attacks take hours to close. If another search asks
       without a limit, dual prices stop after half a million nodes.
     - Without a limit ``HEURISTIC`` says that no stage is left that could close the bracket. That happens to functions
       and criteria of your own, and on complete graphs with very many vectors of group sizes.
-    - Compiling takes about a minute, once on a machine.
+    - Searches of larger teams are compiled when they are first used: about a minute, once on a machine.
 
     A keyboard interrupt or a spent budget returns the bracket reached. If the user interrupts before any attack is
     known, the result is the team without an attack and, as lower end, the value of no measurement.
@@ -180,7 +182,7 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     is_criterion = isinstance(task.problem.objective, InformationObjective)
     begun = task.memory.search
     if isinstance(begun, AttackTree):
-        goes_on = is_criterion or not has_table(task)
+        goes_on = is_criterion or not sets_can_be_looked_at(task)
     else:
         goes_on = task.budget.seconds_left <= RENEWED * task.memory.seconds
     if begun is not None and goes_on:

@@ -63,9 +63,9 @@ CRITERION: tuple[Stage[Criterion], ...] = (
     Stage("every attack", Criterion.every_attack, Criterion.has_few_attacks),
     Stage("size vectors", Criterion.size_vectors, Criterion.is_planar_and_complete),
     Stage("size vectors", Criterion.size_vectors, Criterion.is_spatial_and_complete, SPATIAL_SHARE),
+    Stage("thresholds", Criterion.thresholds, Criterion.is_tabulated),
     Stage("greedy steps", Criterion.greedy, share=GREEDY_SHARE),
     Stage("listing of groups", Criterion.list_groups, Criterion.may_list_groups, LISTING_SHARE),
-    Stage("thresholds", Criterion.thresholds, Criterion.is_tabulated),
     Stage("without protection", Criterion.without_protection, Criterion.is_complete_but_for_protection),
     # where all groups are listed, on graphs that are not dense
     Stage("forced size", Criterion.forced_size, Criterion.goes_by_groups),

@@ -5,24 +5,18 @@ from __future__ import annotations
 from math import isinf
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.all_sets import LARGEST_VALUED, AllSets, sets_can_be_looked_at
 from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import any_bound, exchange_attack
 from ratt_opt.attackers.attack_tree import AttackTree
-from ratt_opt.attackers.by_partition.threshold_search import threshold_search
 from ratt_opt.attackers.few_attacks import try_every_attack
 from ratt_opt.budget import Stop
 from ratt_opt.graph.few_cuts import attacks_are_few
-from ratt_opt.graph.threshold import LARGEST_COMPILED
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackTask, Resumable
 
-__all__ = ["TeamAttack", "has_table", "last_stage"]
-
-
-def has_table(task: AttackTask) -> bool:
-    """Whether all sets of robots can be valued."""
-    return task.problem.n_robots <= LARGEST_COMPILED and 2**task.problem.n_robots <= task.budget.evaluations_left
+__all__ = ["TeamAttack", "last_stage"]
 
 
 def last_stage(task: AttackTask, search: Resumable) -> Stop:
@@ -40,13 +34,13 @@ class TeamAttack:
     def __init__(self, task: AttackTask, *, is_inner: bool) -> None:
         self.task, self.is_inner, self._threat = task, is_inner, task.problem.threat
         self._is_limited = not isinf(min(task.budget.seconds_left, task.budget.evaluations_left))
-        self._has_table = has_table(task)
+        self._has_table = sets_can_be_looked_at(task)
 
     # -- what the schedule asks ----------------------------------------------------------------------------------
 
     def is_valued_at_once(self) -> bool:
         """More than 20 robots, or a limit."""
-        return self.task.problem.n_robots > LARGEST_COMPILED or self._is_limited
+        return self.task.problem.n_robots > LARGEST_VALUED or self._is_limited
 
     def has_few_attacks(self) -> bool:
         """More robots, at most 20,000 attacks, links not all alike."""  # else sizes of groups are fewer still
@@ -54,7 +48,7 @@ class TeamAttack:
 
     def has_few_attacks_and_no_table(self) -> bool:
         """More than 20 robots, at most 20,000 attacks."""
-        return self.task.problem.n_robots > LARGEST_COMPILED and self.has_few_attacks()
+        return self.task.problem.n_robots > LARGEST_VALUED and self.has_few_attacks()
 
     def anneals_values(self) -> bool:
         """A limit, too many sets for a table, no other search asks."""
@@ -102,5 +96,6 @@ class TeamAttack:
         return last_stage(self.task, AttackTree(self.task))
 
     def thresholds(self) -> Stop:
-        """Values of all sets, thresholds one after the other."""
-        return threshold_search(self.task)
+        """All sets of robots, thresholds one after the other."""
+        begun = self.task.memory.search
+        return last_stage(self.task, begun if isinstance(begun, AllSets) else AllSets(self.task))

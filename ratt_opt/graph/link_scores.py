@@ -23,7 +23,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import minimize
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -205,6 +204,8 @@ class RelaxedScores:
 
     def descend(self, size: float, start: FloatArray, steps: int = STEPS) -> tuple[float, FloatArray]:
         """A better bound for groups of ``size`` and its multipliers (N,), by quasi-Newton steps."""
+        from scipy.optimize import minimize  # a third of a second
+
         found = minimize(self.bound, start, args=(size,), jac=True, method="L-BFGS-B", options={"maxiter": steps})
         return float(found.fun) + self.rounding(found.x), found.x
 

@@ -1,4 +1,4 @@
-"""The exact attacker of small teams: which values can an attack push the team down to?
+"""A plain exact attacker: which values can an attack push a team of few robots down to?
 
 An attack leaves a partition of the robots into connected groups and a blinded set. For a threshold
 ``tau`` let ``need(G)`` be the fewest robots of group ``G`` to blind so that the others are worth at most
@@ -25,10 +25,8 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["LARGEST_COMPILED", "GroupSplit", "ThresholdTest", "fewest_blinded", "largest_survivors"]
+__all__ = ["GroupSplit", "ThresholdTest", "fewest_blinded", "largest_survivors"]
 
-LARGEST_COMPILED = 20
-"""Most robots for which the compiled form of this test tabulates all sets (2**20 sets, up to 1.7e9 pairs per test)."""
 UNREACHABLE = np.int16(10_000)
 """Links that no budget holds."""
 

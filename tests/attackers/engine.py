@@ -10,7 +10,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import ratt_opt as ro
-from ratt_opt.attackers import attack_tree, criterion_attack, criticality, exact, schedule, survey, team_attack
+from ratt_opt.attackers import (
+    all_sets,
+    attack_tree,
+    criterion_attack,
+    criticality,
+    exact,
+    schedule,
+    survey,
+    team_attack,
+)
 from ratt_opt.attackers.annealed_values import annealed_attacks
 from ratt_opt.attackers.any_function import exchange_attack
 from ratt_opt.attackers.by_covers.cover_search import CoverSearch
@@ -86,6 +95,7 @@ def _annealed_then_priced(task: AttackTask) -> Stop:
 
 
 SEARCHES = {
+    "all sets": all_sets.AllSets,
     "size vectors": lambda task: SizeVectorSearch(task, _packed(task)),
     "partitions": lambda task: SplitSearch(task, _packed(task), separable_groups(task.problem.threat, 100_000)),
     "exact covers": lambda task: CoverSearch(task, _packed(task), separable_groups(task.problem.threat, 100_000)),
@@ -164,9 +174,13 @@ SHARP_SOON = {
     (settled_partitions, "AXIS_NODES"): 3,
     (settled_partitions, "SHARPER_AFTER"): (0, 5),
 }
-NO_TABLES = {(module, "LARGEST_COMPILED"): 0 for module in (team_attack, criterion_attack)}
-"""Sets of robots are too many for a table of their values."""
-LARGE = NO_TABLES | {(criterion_attack, name): 0 for name in ("LARGEST_PLAIN", "THRESHOLDS_FASTER")}
+NO_TABLES = {
+    (all_sets, "LARGEST_VALUED"): 0,
+    (all_sets, "LARGEST_LOOKED_AT"): 0,
+    (team_attack, "LARGEST_VALUED"): 0,
+}
+"""Sets of robots are too many to be looked at."""
+LARGE = NO_TABLES | {(criterion_attack, "SMALL"): 0}
 """Small teams are attacked as large ones are."""
 COMMAND = {
     "attack_survey": survey,

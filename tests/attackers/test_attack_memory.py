@@ -9,7 +9,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
-from tests.attackers.engine import WAYS, AttackMemory, Search
+from tests.attackers.engine import LARGE, WAYS, AttackMemory, Search
 from tests.brackets import assert_closed
 from tests.oracles import brute_force_worst_case
 from tests.strategies import Opaque, random_elements, random_problem, team_problem
@@ -37,7 +37,7 @@ def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) ->
 
 @pytest.mark.parametrize(("way", "nodes"), [("partitions", 5_000), ("exact covers", 5), ("dual prices", 20_000)])
 def test_an_attack_in_pieces_proves_what_one_proves(way: str, nodes: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    go(monkeypatch, WAYS[way])
+    go(monkeypatch, LARGE, WAYS[way])
     problem = ro.network_scenario("hubs", 24, 4, alpha_s=2, alpha_c=8, seed=1).problem()
     plan = ro.ratt(problem).elements
     whole, memory = ro.worst_case_attack(problem, plan), AttackMemory()

@@ -42,8 +42,8 @@ os.makedirs, tempfile.TemporaryFile = makedirs, temporary
 sys.argv[1:] = ["schema"]
 from ratt_opt.cli import run
 assert run(sys.argv[1:]) == 0
-from ratt_opt.graph import compiled_threshold
-print(compiled_threshold.__name__, os.environ["NUMBA_CACHE_DIR"], file=sys.stderr)
+from ratt_opt.graph import separable_groups
+print(separable_groups.__name__, os.environ["NUMBA_CACHE_DIR"], file=sys.stderr)
 """
 
 
@@ -122,7 +122,7 @@ def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
     )
     assert done.returncode == 0, done.stderr
     name, folder = done.stderr.split()[-2:]
-    assert name == "ratt_opt.graph.compiled_threshold"
+    assert name == "ratt_opt.graph.separable_groups"
     assert "ratt-opt-compiled-" in folder
     assert not os.path.exists(folder)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.all_sets import LARGEST_VALUED
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
-from ratt_opt.graph.threshold import LARGEST_COMPILED
 from ratt_opt.missions.players.named import player_called
 from ratt_opt.problem import Attack
 
@@ -32,7 +32,7 @@ seconds would make missions depend on the machine."""
 
 
 def _worst(problem: Problem, plan: IntArray) -> AttackResult:
-    at_once = problem.threat.links_alike or problem.n_robots <= LARGEST_COMPILED
+    at_once = problem.threat.links_alike or problem.n_robots <= LARGEST_VALUED
     return worst_case_attack(problem, plan, max_nodes=None if at_once else NODES)
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.attackers.any_function import metered_problem
-from ratt_opt.attackers.by_partition.threshold_search import LARGEST_PLAIN
 from ratt_opt.attackers.task import CLOSED_WIDTH
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.curvatures.domains import domain_of
@@ -44,9 +43,9 @@ begin with and first bounds need, for the rest of RATT's plan, and for climbing 
 then those that their share ended go on. Not tuned."""
 MOST_OUTCOMES = 200_000
 """Outcomes that are gone through: some seconds where plans are few."""
-ROUNDS, NODES = 50, 200
+ROUNDS, NODES, SOON_VALUED = 50, 200, 12
 """Times that plans are climbed to, where no limit ends it before, and nodes of plans where nothing is limited, of teams
-whose sets are soon tabulated (80 robots took 46 s for these nodes, and proved nothing)."""
+of so many robots (80 took 46 s for these nodes, and proved nothing)."""
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
@@ -143,7 +142,7 @@ class _Search:
         """Divide the plans that are left; where nothing is limited, for a fixed number of nodes."""
         budget, tree = self._budget, PlanTree(self._given, self._attacks, self._climbing.worth, self.upper)
         has_limit = min(budget.seconds_left, budget.evaluations_left, budget.max_nodes or np.inf) < np.inf
-        last = np.inf if has_limit else NODES if self._given.n_robots <= LARGEST_PLAIN else 0
+        last = np.inf if has_limit else NODES if self._given.n_robots <= SOON_VALUED else 0
         while not (self._is_closed(gap) or tree.is_finished or budget.stop() or budget.nodes >= last):
             tree.divide(budget)
             self._bound(tree.upper)

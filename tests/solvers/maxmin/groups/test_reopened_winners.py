@@ -27,7 +27,7 @@ def two_triangles(rng: np.random.Generator, kind: str) -> Problem:
     return Problem(objective, np.repeat(np.arange(6), 3), graph, alpha_s, alpha_c)
 
 
-@pytest.mark.parametrize("seed", [0, 9, 12, 14, 17, 29, 39, 56])
+@pytest.mark.parametrize("seed", [0, 17, 29, 32, 39, 41, 48, 56])
 def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     hopeful, reopened = True, 0
     level, prove, reopen = Candidates.level.fget, Turns.prove, Winners.reopen

@@ -1,0 +1,119 @@
+"""Compile the loops of ``ratt_opt/native/src`` into one library when the package is installed.
+
+A C compiler of the system is used where one works; elsewhere the wheel ``ziglang`` is asked for, which brings one. The
+library needs no header of Python's, so one wheel serves every version of it. ``python hatch_build.py`` compiles in
+place, after a source of an editable installation has changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parent
+NATIVE = ROOT / "ratt_opt" / "native"
+SOURCES = sorted((NATIVE / "src").glob("*.c"))
+SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+LIBRARY = f"_loops{SUFFIX}"
+ZIG = "ziglang>=0.13"
+OPTIONS = ("-std=c11", "-O3", "-fvisibility=hidden", "-shared")
+SAME_BITS = ("-ffp-contract=off",)
+"""No fused multiplication and addition: the same results on every processor of a kind."""
+
+
+def sources_hash() -> str:
+    """What ``native/library.py`` compares, so that a library of other sources is not loaded."""
+    files = sorted((NATIVE / "src").iterdir())
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
+
+
+def system_compiler() -> list[str] | None:
+    """The command of a C compiler that can build a library which computes, or ``None``."""
+    asked = shlex.split(os.environ.get("CC", ""))
+    for command in (asked, ["cc"], ["gcc"], ["clang"]):
+        if command and shutil.which(command[0]) and _works(command):
+            return command
+    return None
+
+
+def _works(command: list[str]) -> bool:
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "probe.c"
+        source.write_text("#include <math.h>\n#include <stdlib.h>\ndouble probe(double x) { return log(x); }\n")
+        ran = subprocess.run(_command(command, [source], Path(folder) / LIBRARY), capture_output=True, check=False)
+        return ran.returncode == 0
+
+
+def _command(compiler: list[str], sources: list[Path], target: Path) -> list[str]:
+    position_independent = [] if sys.platform == "win32" else ["-fPIC"]
+    mathematics = [] if sys.platform == "win32" else ["-lm"]
+    options = [*OPTIONS, *SAME_BITS, *position_independent, f'-DSOURCES="{sources_hash()}"']
+    return [*compiler, *options, "-o", str(target), *map(str, sources), *mathematics]
+
+
+def _zig() -> list[str]:
+    import ziglang  # type: ignore[import-not-found]
+
+    command = [str(Path(ziglang.__file__).parent / ("zig.exe" if sys.platform == "win32" else "zig")), "cc"]
+    if sys.platform == "linux":
+        machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
+        libc = "musl" if platform.libc_ver()[0] != "glibc" else "gnu.2.17"
+        command += ["-target", f"{machine}-linux-{libc}", "-fno-sanitize=undefined"]
+        command += ["-mcpu=x86_64"] if machine == "x86_64" else []
+    return command
+
+
+def compile_library(target: Path) -> None:
+    """Compile all sources into one library."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    compiler = system_compiler()
+    with tempfile.TemporaryDirectory() as cache:
+        caches = {"ZIG_LOCAL_CACHE_DIR": cache, "ZIG_GLOBAL_CACHE_DIR": cache}
+        command = _command(compiler or _zig(), SOURCES, target)
+        ran = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | caches)
+    if ran.returncode:
+        raise SystemExit(f"the loops do not compile: {shlex.join(command)}\n{ran.stderr}")
+
+
+try:
+    from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+except ImportError:  # run as a command, without the build back end
+    BuildHookInterface = None
+
+if BuildHookInterface is not None:
+
+    class NativeBuildHook(BuildHookInterface[Any]):
+        """Adds the library to wheels, and compiles it in place for editable installations."""
+
+        PLUGIN_NAME = "custom"
+
+        def dependencies(self) -> list[str]:
+            """What the build needs beside the back end."""
+            return [] if self.target_name != "wheel" or system_compiler() else [ZIG]
+
+        def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+            """Compile before the files are collected."""
+            if self.target_name != "wheel":
+                return
+            from packaging.tags import sys_tags
+
+            target = NATIVE / LIBRARY
+            if version != "editable":
+                self._folder = tempfile.TemporaryDirectory()
+                target = Path(self._folder.name) / LIBRARY
+                build_data["force_include"][str(target)] = f"ratt_opt/native/{LIBRARY}"
+            compile_library(target)
+            build_data["pure_python"] = False
+            build_data["tag"] = f"py3-none-{next(sys_tags()).platform}"
+
+
+if __name__ == "__main__":
+    compile_library(NATIVE / LIBRARY)

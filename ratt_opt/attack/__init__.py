@@ -1,0 +1,1 @@
+"""The attack engine: which values an attack can push a team down to, decided threshold by threshold."""

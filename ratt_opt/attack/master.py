@@ -1,0 +1,68 @@
+"""The master: links that groups which cover the team cost at least, by duals of a linear program.
+
+    minimise    sum cut(C) x_C
+    subject to  each robot in exactly one chosen group   [duals u_i]
+                sum blinded(C) x_C <= alpha_s            [dual -m]
+
+HiGHS suggests ``u`` and ``m``. Rounded to integers they are a bound by themselves: of groups that cover the team each
+costs at least ``u(C) - m blinded(C)`` plus the least reduced cost of all columns.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attack.columns import UNIT, Columns, Duals
+from ratt_opt.highs import LinearProgram, rows_of
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.budget import Budget
+
+__all__ = ["best_duals"]
+
+
+def best_duals(columns: Columns, n_blinded: int, most_cut: int, budget: Budget) -> Duals:
+    """Duals under which no column has a negative reduced cost; the best, or some that claim more than ``most_cut``.
+
+    Raises
+    ------
+    OutOfBudget : the time is up, or the user interrupted.
+    """
+    n, largest = columns.robots, 4.0 * (most_cut + columns.robots**2)
+    lower = np.append(np.full(n, -largest), 0.0)
+    program = LinearProgram(np.append(np.ones(n), -float(n_blinded)), lower, largest, maximise=True)
+    best, known = Duals(np.zeros(n, np.int64), 0), set[int]()
+    while best.claim(n_blinded) <= most_cut * UNIT:
+        budget.check()
+        duals = _rounded(program.solve().x, n)
+        if duals is None:
+            break  # HiGHS has nothing to say; what is known stays true
+        least, cheapest = columns.cheapest(duals)
+        if least < 0:  # every group has a robot, so that this makes up for it
+            duals = Duals(duals.robots + least, duals.blinding)
+        if duals.claim(n_blinded) > best.claim(n_blinded):
+            best = duals
+        fresh = [int(k) for k in cheapest if int(k) not in known]
+        if not fresh:
+            break
+        known.update(fresh)
+        program.add_rows(rows_of(*_rows(columns, np.array(fresh))))
+    return best
+
+
+def _rounded(claimed: FloatArray, n: int) -> Duals | None:
+    if len(claimed) != n + 1 or not np.isfinite(claimed).all():
+        return None
+    return Duals(np.floor(claimed[:n] * UNIT).astype(np.int64), max(int(np.ceil(claimed[n] * UNIT)), 0))
+
+
+def _rows(columns: Columns, chosen: IntArray) -> tuple[list[tuple[list[int], list[float]]], float, FloatArray]:
+    entries = []
+    for mask, blinded in zip(columns.groups[chosen].tolist(), columns.blinded[chosen].tolist(), strict=True):
+        members = [i for i in range(columns.robots) if mask >> i & 1]
+        entries.append(([*members, columns.robots], [*[1.0] * len(members), -float(blinded)]))
+    return entries, -inf, columns.cuts[chosen].astype(np.float64)

@@ -1,0 +1,132 @@
+"""Which sets of robots are worth less than a threshold, and the largest of these inside every set."""
+
+from __future__ import annotations
+
+from ctypes import POINTER, byref, c_double, c_int, c_int64, c_void_p
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.attack.team import MOST_ROBOTS, Team, TeamRecord
+from ratt_opt.errors import InputError
+from ratt_opt.native.library import address, checked, function
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.budget import Budget
+
+__all__ = ["SetsBelow"]
+
+BLOCKS, VALUES = 16, 1 << 18
+"""Blocks of 2**12 sets of a team, and values of a table, that are looked at between two looks at the clock."""
+BLOCK = 12
+"""Robots whose sets make a block."""
+
+
+class SetsBelow:
+    """For each set of robots, as a bit mask, the size of the largest set inside it that is worth less than a threshold.
+
+    ``source`` : a :class:`Team`, whose sets are worth no less than those inside them, or (2**N,) the values of all sets
+    ``protected`` : robots that cannot be blinded, and so are in every set inside
+    ``groups`` : bit masks, where only sets matter that blinding at most ``n_blinded`` robots leaves of one of them
+    ``sizes`` : (2**N,) these sizes, plus one; 0 where there is no such set, or it does not matter
+    """
+
+    def __init__(
+        self,
+        source: Team | FloatArray,
+        protected: Iterable[int] = (),
+        groups: NDArray[np.uint32] | None = None,
+        n_blinded: int = MOST_ROBOTS,
+    ) -> None:
+        self.source, self._protected = source, frozenset(protected)
+        if isinstance(source, Team):
+            self.robots = source.robots
+        else:
+            self.robots = len(source).bit_length() - 1
+            checked("values", source, np.float64, (2**self.robots,))
+        if not self.robots <= MOST_ROBOTS:
+            raise InputError("values", f"must be of at most {MOST_ROBOTS} robots", self.robots)
+        self.sizes = np.empty(2**self.robots, np.uint8)
+        self._outside, self._inside = _fewest_blinded(self.robots, groups)
+        self._n_blinded = n_blinded
+
+    def mark(self, threshold: float, budget: Budget) -> int | None:
+        """Set ``sizes``; the set of least value among those that are not below, ``None`` where all are.
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or the user interrupted; ``sizes`` is then of no threshold.
+        """
+        following = self._mark_sets(float(threshold), budget)
+        let_spread = function("spread", None, c_void_p, c_int64, c_int)
+        for robot in range(self.robots):
+            budget.check()
+            if robot not in self._protected:
+                let_spread(address(self.sizes), len(self.sizes), robot)
+        return following
+
+    def _mark_sets(self, threshold: float, budget: Budget) -> int | None:
+        value, following = c_double(inf), c_int64(-1)
+        kept = address(self.sizes), byref(value), byref(following)
+        if isinstance(self.source, Team):
+            call = function(
+                "mark_below",
+                c_int,
+                POINTER(TeamRecord),
+                c_double,
+                *[c_int64] * 2,
+                *[c_void_p] * 2,
+                c_int,
+                *[c_void_p] * 3,
+            )
+            matters = address(self._outside), address(self._inside), self._n_blinded
+            blocks = len(self._outside)
+            for first in range(0, blocks, BLOCKS):
+                budget.check()
+                last = min(first + BLOCKS, blocks)
+                if call(self.source.reference, threshold, first, last, *matters, *kept):
+                    raise MemoryError
+            return None if following.value < 0 else following.value
+        table = function("mark_values_below", None, c_void_p, c_double, c_int64, c_int64, *[c_void_p] * 3)
+        for first in range(0, len(self.sizes), VALUES):
+            budget.check()
+            last = min(first + VALUES, len(self.sizes))
+            table(address(self.source), threshold, first, last, *kept)
+        return None if following.value < 0 else following.value
+
+    def largest_inside(self, group: int) -> int:
+        """The largest set below the threshold inside a group that has one, by mask, protected robots included."""
+        inside, size = group, int(self.sizes[group]) - 1
+        while inside.bit_count() > size:
+            free = (i for i in range(self.robots) if inside >> i & 1 and i not in self._protected)
+            inside = next(inside ^ 1 << i for i in free if self.sizes[inside ^ 1 << i] == size + 1)
+        return inside
+
+
+def _fewest_blinded(robots: int, groups: NDArray[np.uint32] | None) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """``outside`` and ``inside`` of ``mark_below``: the robots of a block and those outside it, each by itself."""
+    bits = min(robots, BLOCK)
+    outside, inside = np.zeros(1 << (robots - bits), np.uint8), np.zeros((BLOCK + 1, 1 << BLOCK), np.uint8)
+    if groups is not None:
+        outside = _distances(robots - bits, groups >> bits)
+        inside[0, : 1 << bits] = _distances(bits, groups & ((1 << bits) - 1))
+        for b in range(bits):
+            pairs = inside[b, : 1 << (bits - b)].reshape(-1, 2)
+            inside[b + 1, : len(pairs)] = pairs.min(axis=1)
+    return outside, inside
+
+
+def _distances(robots: int, parts: NDArray[Any]) -> NDArray[np.uint8]:
+    """(2**robots,) robots that each set lacks of the nearest of ``parts`` around it; 100 or more without one."""
+    lacking = np.full(1 << robots, 100, np.uint8)
+    lacking[parts] = 0
+    for robot in range(robots):
+        pairs = lacking.reshape(-1, 2, 1 << robot)
+        np.minimum(pairs[:, 0], pairs[:, 1] + np.uint8(1), out=pairs[:, 0])
+    return lacking

@@ -1,0 +1,93 @@
+"""A plan as the compiled loops read it."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, Structure, c_double, c_int32, c_void_p
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ratt_opt.errors import InputError
+from ratt_opt.native.library import address, checked, function
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
+from ratt_opt.setfunctions.information import InformationObjective, triangles
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.setfunctions.base import SetFunction
+
+__all__ = ["MOST_ROBOTS", "Team", "TeamRecord"]
+
+MOST_ROBOTS = 32
+"""A set of robots is a mask of 32 bits."""
+LARGEST_DIMENSION = 16
+"""Of states, in the loops."""
+
+
+class TeamRecord(Structure):
+    """``Team`` of ``native/src/team.h``."""
+
+    _fields_: ClassVar = [
+        ("robots", c_int32),
+        ("targets", c_int32),
+        ("dimension", c_int32),
+        ("criterion", c_int32),
+        ("weights", c_void_p),
+        ("prior", c_void_p),
+        ("information", c_void_p),
+        ("before", c_void_p),
+        ("before_all", c_double),
+    ]
+
+
+class Team:
+    """What the robots of one plan tell about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
+
+    ``criterion`` : the objective's ``compiled_code``; ``weights`` : (M,); ``prior`` : (M, T) prior information
+    ``information`` : (N, M, T) of each robot's element
+
+    Raises
+    ------
+    InputError : a shape or a type is another, there are more than 32 robots, or d > 16.
+    """
+
+    def __init__(
+        self, criterion: int, dimension: int, weights: FloatArray, prior: FloatArray, information: FloatArray
+    ) -> None:
+        robots, targets, entries = len(information), len(prior), dimension * (dimension + 1) // 2
+        if not 0 <= robots <= MOST_ROBOTS:
+            raise InputError("information", f"must be of at most {MOST_ROBOTS} robots", robots)
+        if not 1 <= dimension <= LARGEST_DIMENSION:
+            raise InputError("dimension", f"must be in [1, {LARGEST_DIMENSION}]", dimension)
+        arrays = (
+            checked("weights", weights, np.float64, (targets,)),
+            checked("prior", prior, np.float64, (targets, entries)),
+            checked("information", information, np.float64, (robots, targets, entries)),
+            np.zeros(targets),
+        )
+        self.robots, self._arrays = robots, arrays  # the record has their addresses only
+        self.record = TeamRecord(robots, targets, dimension, criterion, *map(address, arrays), 0.0)
+        function("criteria_before", None, POINTER(TeamRecord), c_void_p)(self.record, address(arrays[-1]))
+
+    @classmethod
+    def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
+        """The plan's, or ``None`` where the loops do not have the objective."""
+        if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
+            return None
+        is_spectral = objective.compiled_code == MaxEigenvalueObjective.compiled_code and objective.dimension != 2
+        if is_spectral or objective.dimension > LARGEST_DIMENSION or len(plan) > MOST_ROBOTS:
+            return None
+        prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
+        weights = np.array(objective.weights)
+        return cls(objective.compiled_code, objective.dimension, weights, prior, information)
+
+    @property
+    def reference(self) -> object:
+        """The record, as a function of the library takes it."""
+        return ctypes.byref(self.record)
+
+    @property
+    def work(self) -> float:
+        """Of one value, in about multiplications: whether all sets can be looked at."""
+        return float(self.record.targets * self.record.dimension**3)

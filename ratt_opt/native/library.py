@@ -1,0 +1,67 @@
+"""The library of compiled loops, and the checks between Python and C."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import sys
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import DTypeLike, NDArray
+
+__all__ = ["address", "checked", "function"]
+
+FOLDER = Path(__file__).parent
+LIBRARY = FOLDER / ("_loops" + {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so"))
+REMEDY = "install the package with pip, or, in a checkout, run python hatch_build.py"
+
+
+@cache
+def _library() -> ctypes.CDLL:
+    """Raises ``ImportError`` : it was never compiled, or from other sources."""
+    if not LIBRARY.exists():
+        raise ImportError(f"the loops of ratt_opt are not compiled: {REMEDY}")
+    library = ctypes.CDLL(str(LIBRARY))
+    library.sources.restype = ctypes.c_char_p
+    files = sorted((FOLDER / "src").glob("*")) if (FOLDER / "src").is_dir() else []
+    there = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
+    if files and library.sources().decode() != there:
+        raise ImportError(f"the loops of ratt_opt were compiled from other sources: {REMEDY}")
+    return library
+
+
+@cache
+def function(name: str, result: Any, *arguments: Any) -> Any:
+    """A function of the library with its types; the interpreter is not held while it runs."""
+    found = getattr(_library(), name)
+    found.restype, found.argtypes = result, arguments
+    return found
+
+
+def checked(argument: str, array: Any, kind: DTypeLike, shape: Sequence[int], *, written: bool = False) -> NDArray[Any]:
+    """The array if C may read it: its type, its shape, contiguous, and writable where it is ``written``.
+
+    Raises ``InputError`` : it may not.
+    """
+    kind = np.dtype(kind)
+    if not isinstance(array, np.ndarray) or array.dtype != kind:
+        raise InputError(argument, f"must be an array of {kind}", getattr(array, "dtype", type(array).__name__))
+    if array.shape != tuple(shape):
+        raise InputError(argument, f"must have shape {tuple(shape)}", array.shape)
+    if not array.flags.c_contiguous or (written and not array.flags.writeable):
+        raise InputError(argument, f"must be contiguous{' and writable' if written else ''}", "another layout")
+    return array
+
+
+def address(array: Any) -> int:
+    """Where a checked array is in memory; it must be kept alive while C uses it."""
+    return int(array.ctypes.data)

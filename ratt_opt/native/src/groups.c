@@ -1,0 +1,99 @@
+/* Columns of the master: the groups that an attack may leave, what each costs, and those that duals would buy. */
+#include "records.h"
+#include "sets.h"
+
+/* The robot next to `inside`, in neither set, with the most links to both; -1 where there is none. */
+static int most_linked(int robots, const uint32_t *neighbours, uint32_t inside, uint32_t outside) {
+    int pick = -1, most = -1;
+    for (int i = 0; i < robots; i++) {
+        int links = size_of(neighbours[i] & inside);
+        if ((inside | outside) >> i & 1 || links == 0) continue;
+        links += size_of(neighbours[i] & outside);
+        if (links > most) pick = i, most = links;
+    }
+    return pick;
+}
+
+/* List connected sets that at most `most` links leave, none of them protected; each grows from its lowest robot, and a
+   robot next to it is taken in or left out, which costs its links. Goes on from `position`: robots begun with, depth of
+   the stack (2 robots + 2). Ends after `steps` or `room` sets; returns how many were written. */
+EXPORTED int64_t list_groups(int robots, const uint32_t *neighbours, const uint32_t *protected_links, int most,
+                             Branch *stack, int64_t *position, int64_t steps, int64_t room, uint32_t *groups, uint8_t *cuts) {
+    int64_t found = 0;
+    while (steps-- > 0 && found < room) {
+        if (position[1] == 0) {
+            if (position[0] == robots) break;
+            int first = (int)position[0]++;
+            uint32_t below = ((uint32_t)1 << first) - 1;
+            stack[0] = (Branch){(uint32_t)1 << first, below, size_of(neighbours[first] & below)};
+            position[1] = (protected_links[first] & below) == 0;
+            continue;
+        }
+        Branch node = stack[--position[1]];
+        if (node.cut > most) continue;
+        int pick = most_linked(robots, neighbours, node.inside, node.outside);
+        if (pick < 0) {
+            groups[found] = node.inside;
+            cuts[found++] = (uint8_t)node.cut;
+            continue;
+        }
+        uint32_t bit = (uint32_t)1 << pick;
+        if (!(protected_links[pick] & node.inside))
+            stack[position[1]++] = (Branch){node.inside, node.outside | bit, node.cut + size_of(neighbours[pick] & node.inside)};
+        if (!(protected_links[pick] & node.outside))
+            stack[position[1]++] = (Branch){node.inside | bit, node.outside, node.cut + size_of(neighbours[pick] & node.outside)};
+    }
+    return found;
+}
+
+/* Keep the groups in which blinding at most `most` robots leaves a set below the threshold, and how many it takes.
+   `sizes`: of the largest such set inside each set, plus one, or 0. Returns how many are kept. */
+EXPORTED int64_t keep_reachable(const uint8_t *sizes, int64_t count, const uint32_t *groups, const uint8_t *cuts, int most,
+                                uint32_t *kept, uint8_t *kept_cuts, uint8_t *blinded) {
+    int64_t n = 0;
+    for (int64_t k = 0; k < count; k++) {
+        int blind = size_of(groups[k]) + 1 - sizes[groups[k]];
+        if (sizes[groups[k]] == 0 || blind > most) continue;
+        kept[n] = groups[k], kept_cuts[n] = cuts[k], blinded[n++] = (uint8_t)blind;
+    }
+    return n;
+}
+
+enum { HALF = 12 };
+
+static inline int64_t reduced_cost(const Duals *duals, uint32_t group, uint8_t cut, uint8_t blinded) {
+    return cut * duals->unit + blinded * duals->blinding - duals->low[group & ((1 << HALF) - 1)] - duals->high[group >> HALF];
+}
+
+/* The column of least reduced cost with each robot, (robots) where it is negative, else -1; returns the least of all. */
+EXPORTED int64_t price(int robots, int64_t count, const uint32_t *groups, const uint8_t *cuts, const uint8_t *blinded,
+                       const Duals *duals, int64_t *cheapest) {
+    int64_t best[32], least = INT64_MAX, worst = -1;
+    for (int i = 0; i < robots; i++) best[i] = -1, cheapest[i] = -1;
+    for (int64_t k = 0; k < count; k++) {
+        int64_t cost = reduced_cost(duals, groups[k], cuts[k], blinded[k]);
+        if (cost < least) least = cost;
+        if (cost >= worst) continue;
+        uint32_t rest = groups[k];
+        while (rest) {
+            int i = next_robot(&rest);
+            if (cost < best[i]) best[i] = cost, cheapest[i] = k;
+        }
+        worst = best[0];
+        for (int i = 1; i < robots; i++) worst = best[i] > worst ? best[i] : worst;
+    }
+    return least;
+}
+
+/* The columns of a reduced cost of at most `gap`, as many as there is `room` for; returns how many there are. */
+EXPORTED int64_t within_gap(int64_t count, const uint32_t *groups, const uint8_t *cuts, const uint8_t *blinded,
+                            const Duals *duals, int64_t gap, int64_t room, int64_t *columns, int64_t *costs) {
+    int64_t n = 0;
+    for (int64_t k = 0; k < count; k++) {
+        int64_t cost = reduced_cost(duals, groups[k], cuts[k], blinded[k]);
+        if (cost > gap) continue;
+        if (n < room) columns[n] = k, costs[n] = cost;
+        n++;
+    }
+    return n;
+}

@@ -1,0 +1,29 @@
+/* A plan: what its robots tell about the targets, and the value of a set of them. */
+#ifndef RATT_TEAM_H
+#define RATT_TEAM_H
+
+#include <stdint.h>
+
+enum { TRACE = 0, LOG_DET = 1, LARGEST = 2 }; /* compiled_code of the criteria */
+enum { LARGEST_DIMENSION = 16 };
+
+/* Symmetric matrices are packed by rows of the lower triangle: entries = d (d + 1) / 2. */
+typedef struct {
+    int32_t robots, targets, dimension, criterion;
+    const double *weights;     /* (targets) */
+    const double *prior;       /* (targets, entries) prior information */
+    const double *information; /* (robots, targets, entries) */
+    const double *before;      /* (targets) each target's criterion without measurements, from `criteria_before` */
+    double before_all;         /* the weighted criterion without measurements where it is the largest eigenvalue */
+} Team;
+
+int entries_of(const Team *team);
+
+/* Value of the posterior information `sums` (targets, entries). */
+double value_of(const Team *team, const double *sums);
+
+/* Values of `width` matrices at once: sums (targets, entries, width), to each of which `offset` (targets, entries) is
+   added; `spare` (width). */
+void values_of(const Team *team, int width, const double *sums, const double *offset, double *values, double *spare);
+
+#endif
