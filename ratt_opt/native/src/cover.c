@@ -48,14 +48,15 @@ EXPORTED int next_cover(const uint32_t *groups, const uint8_t *cuts, const uint8
         if (level->end + (level->end - level->start) > room) return NO_ROOM;
         Level *next = level + 1;
         *next = (Level){gap, level->end, level->end, 0, left, -1, blind, cut, -1, 0};
-        for (int64_t k = level->start; k < level->end; k++) {
+        int64_t k = level->start;
+        for (; k < level->end; k++) {
             int32_t other = fitting[k];
             if (costs[other] > gap) break;
             if (groups[other] & ~left || blinded[other] > blind || cuts[other] > cut) continue;
             fitting[next->end++] = other;
             reached |= groups[other];
         }
-        steps -= level->end - level->start;
+        steps -= k - level->start;
         if (reached == left) ++*depth;
     }
     return NONE;
