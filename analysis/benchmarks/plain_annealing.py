@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_prices.groups.compiled import gather_seeing
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:

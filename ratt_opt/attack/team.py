@@ -10,18 +10,17 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked, function
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["MOST_ROBOTS", "Team", "TeamRecord"]
+__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Team", "TeamRecord"]
 
 MOST_ROBOTS = 32
-"""A set of robots is a mask of 32 bits."""
-LARGEST_DIMENSION = 16
+"""Whose sets the loops have as masks of 32 bits; a team may have more."""
+LARGEST_DIMENSION = 64
 """Of states, in the loops."""
 
 
@@ -49,15 +48,13 @@ class Team:
 
     Raises
     ------
-    InputError : a shape or a type is another, there are more than 32 robots, or d > 16.
+    InputError : a shape or a type is another, or d > 64.
     """
 
     def __init__(
         self, criterion: int, dimension: int, weights: FloatArray, prior: FloatArray, information: FloatArray
     ) -> None:
         robots, targets, entries = len(information), len(prior), dimension * (dimension + 1) // 2
-        if not 0 <= robots <= MOST_ROBOTS:
-            raise InputError("information", f"must be of at most {MOST_ROBOTS} robots", robots)
         if not 1 <= dimension <= LARGEST_DIMENSION:
             raise InputError("dimension", f"must be in [1, {LARGEST_DIMENSION}]", dimension)
         arrays = (
@@ -75,12 +72,17 @@ class Team:
         """The plan's, or ``None`` where the loops do not have the objective."""
         if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
             return None
-        is_spectral = objective.compiled_code == MaxEigenvalueObjective.compiled_code and objective.dimension != 2
-        if is_spectral or objective.dimension > LARGEST_DIMENSION or len(plan) > MOST_ROBOTS:
+        if objective.dimension > LARGEST_DIMENSION:
             return None
         prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
         weights = np.array(objective.weights)
         return cls(objective.compiled_code, objective.dimension, weights, prior, information)
+
+    @property
+    def whole_value(self) -> float:
+        """Of all robots together."""
+        sums = np.ascontiguousarray(self._arrays[1] + self._arrays[2].sum(axis=0))
+        return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
 
     @property
     def reference(self) -> object:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.annealing import annealed_attacks
+from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.groups import groups_of
+from ratt_opt.attack.links import Links
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.threshold import decide
@@ -25,6 +26,9 @@ LARGEST_VALUED = 20
 """Most robots whose sets are all valued where the compiled loops do not have the objective: 2**20 values."""
 LARGEST_LOOKED_AT, MOST_WORK = 24, 2.0**32
 """Most robots whose sets the loops look at (2**24 bytes), and multiplications that valuing all of them may take."""
+STARTS, MOVES = 4, 400
+"""Annealed attacks before the first threshold, and moves for each pair of robots; on most networks of 24 robots in the
+corpus one of them is the worst attack, and elsewhere the first threshold finds it."""
 BLOCK = 2**10
 """Sets valued at once: what is lost where the budget ends. A block of a fast function takes some milliseconds."""
 FALL, SLACK = 1e-12, 1e-9
@@ -93,10 +97,13 @@ class AllSets:
             self._tabulate()
             self._forget_what_relied_on_order()
         source = self._team if self._team is not None else self._table
-        everyone = range(self.task.values.n)
-        whole = self.task.values(everyone) if self._team is not None else float(self._table[-1])
-        for parts, blinded in annealed_attacks(source, whole, self._threat, self._graph, self.task.budget):
-            self._offer(tuple(parts), blinded)
+        starts = Starts(source, Links.of(self._threat), self._threat, moves=MOVES * self._graph.robots)
+        try:
+            for _ in range(STARTS):
+                starts.next(self.task.budget)
+        finally:
+            if starts.best is not None:
+                self.task.offer(starts.best.attack(self._threat))
         groups, _ = self._graph.all(self.task.budget)
         self._below = SetsBelow(source, self._threat.protected_robots, groups, self._threat.n_blinded)
         return self._below

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.team import Links
+from ratt_opt.attack.links import Links
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray

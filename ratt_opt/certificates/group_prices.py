@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attack.links import Links
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_bounds import BLINDED, ELSE, OPEN, OUTSIDE, SEEING, GroupBounds

@@ -11,7 +11,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attack import exact_cover, groups, sets_below
-from ratt_opt.attack.annealing import annealed_attacks
+from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, Duals
 from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.groups import BRANCH, GroupList
@@ -19,12 +19,13 @@ from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
+from ratt_opt.attackers.by_size.low_lists import LowSetsRecord
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
-from tests.strategies import random_elements, random_problem
+from tests.strategies import random_problem
 
 
 def members(mask):
@@ -82,10 +83,6 @@ def test_sets_of_a_team_against_their_values(seed, kind, dimension):
     weights = rng.uniform(0.1, 9, targets) if seed % 2 else None
     f = CRITERIA[kind](prior, roots @ np.swapaxes(roots, -1, -2), weights)
     team = Team.of(f, np.arange(n_robots))
-    if team is None:
-        assert kind == "maxeig"
-        assert dimension != 2
-        return
     values = np.concatenate(list(f.table_blocks()))
     guarded = [i for i in range(n_robots) if rng.random() < 0.2]
     tree, table = SetsBelow(team, guarded), SetsBelow(values, guarded)
@@ -197,28 +194,6 @@ def test_duals_and_covers_against_all_covers(seed):
     assert bool(found) == any(cost <= most_cut for cost in costs)
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_annealed_attacks_are_within_the_budgets_and_worth_what_they_say(seed):
-    rng = np.random.default_rng(seed)
-    problem = random_problem(rng, int(rng.integers(1, 11)), kind=["trace", "logdet", "maxeig"][seed % 3])
-    plan = random_elements(rng, problem)
-    threat, team = problem.threat, Team.of(problem.objective, plan)
-    chosen = np.zeros((2**problem.n_robots, problem.objective.n), np.bool_)
-    chosen[:, plan] = np.arange(2**problem.n_robots)[:, None] >> np.arange(problem.n_robots) & 1
-    values = problem.objective.evaluate(chosen)
-    graph = groups.groups_of(threat)
-    whole = problem.team_value(plan, ro.Attack())
-    best = np.inf
-    for source in (values, team) if team is not None else (values,):
-        for parts, blinded in annealed_attacks(source, whole, threat, graph, Budget()):
-            attack = ro.Attack(frozenset(members(blinded)), threat.graph.links_between([members(g) for g in parts]))
-            value = problem.team_value(plan, problem.check_attack(attack))
-            best = min(best, value)
-    worst = ro.worst_case_attack(problem, plan)
-    assert best >= worst.lower
-    assert problem.check_attack(worst.attack)
-
-
 def test_a_search_that_its_budget_ends_goes_on():
     rng = np.random.default_rng(7)
     columns = random_columns(rng, 12, 4000)
@@ -250,8 +225,6 @@ def test_the_budget_is_asked_on_the_way(monkeypatch):
         graph.all(Spent())
     with pytest.raises(OutOfBudget):
         SetsBelow(team).mark(1.0, Spent())
-    with pytest.raises(OutOfBudget):
-        list(annealed_attacks(team, 1.0, threat, graph, Spent()))
 
 
 def test_what_c_may_not_read_is_refused():
@@ -263,13 +236,14 @@ def test_what_c_may_not_read_is_refused():
         (good[0], good[1], np.ones((4, 2, 6))[:, :, ::2]),
         (good[0], np.ones((2, 4)), good[2]),
         (good[0], good[1].tolist(), good[2]),
-        (good[0], good[1], np.ones((33, 2, 3))),
     ]
     for arrays in bad:
         with pytest.raises(ro.InputError):
             Team(0, 2, *arrays)
     with pytest.raises(ro.InputError):
-        Team(0, 17, np.ones(2), np.ones((2, 153)), np.ones((4, 2, 153)))
+        Team(0, 65, np.ones(2), np.ones((2, 2145)), np.ones((4, 2, 2145)))
+    with pytest.raises(ro.InputError):
+        SetsBelow(Team(0, 2, good[0], good[1], np.ones((33, 2, 3))))
     for values in (np.ones(3), np.ones(4, np.float32), np.ones(8)[::2], np.empty(0)):
         with pytest.raises(ro.InputError):
             SetsBelow(values)
@@ -277,9 +251,10 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(3, np.int64)
+    sizes = np.zeros(5, np.int64)
     layout(sizes.ctypes.data)
-    assert sizes.tolist() == [ctypes.sizeof(TeamRecord), BRANCH.itemsize, exact_cover.LEVEL.itemsize]
+    records = [ctypes.sizeof(record) for record in (LowSetsRecord, AnnealRecord)]
+    assert sizes.tolist() == [ctypes.sizeof(TeamRecord), BRANCH.itemsize, exact_cover.LEVEL.itemsize, *records]
 
 
 def test_the_example_of_the_page_of_the_engine():

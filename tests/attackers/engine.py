@@ -9,7 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 import ratt_opt as ro
+from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.links import Links
+from ratt_opt.attack.team import Team
 from ratt_opt.attackers import (
     all_sets,
     attack_tree,
@@ -26,8 +31,7 @@ from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition import settled_partitions
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_prices.starts import Starts
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
@@ -239,5 +243,5 @@ def watch(monkeypatch: pytest.MonkeyPatch, name: str, called: Callable) -> None:
 
 def annealed_value(problem: Problem, plan: object, seed: int) -> float:
     """What one annealed attack leaves, from a start that the engine does not make."""
-    team = PricedTeam.of(problem.objective, plan)
+    team = Team.of(problem.objective, np.asarray(plan))
     return Starts(team, Links.of(problem.threat), problem.threat, seed=seed).next(Budget()).value

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.links import Links
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
@@ -29,16 +31,14 @@ class AnnealedAttacks:
     def of(cls, problem: Problem, budget: Budget) -> AnnealedAttacks | None:
         """``None`` where the objective has no compiled code."""
         plan = np.array([choice[0] for choice in problem.choices])
-        return None if PricedTeam.of(problem.objective, plan) is None else cls(problem, budget)
+        return None if Team.of(problem.objective, plan) is None else cls(problem, budget)
 
     def attack(self, problem: Problem, plan: IntArray, moves: int, known: Attack | None = None) -> Attack | None:
         """An attack on a plan after so many moves a robot, from a known one or anew; ``None`` where none was found.
 
         ``problem`` : may have another objective and other elements, but this threat
         """
-        from ratt_opt.attackers.by_prices.starts import Starts  # compiles
-
-        team = PricedTeam.of(problem.objective, plan)
+        team = Team.of(problem.objective, plan)
         assert team is not None
         starts = Starts(team, self._links, self._threat, seed=self._count, moves=moves)
         self._count += 1

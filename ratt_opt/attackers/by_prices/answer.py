@@ -7,8 +7,8 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ratt_opt.attack.annealing import Partition
     from ratt_opt.attackers.by_prices.prices import PriceVector
-    from ratt_opt.attackers.by_prices.starts import Partition
 
 __all__ = ["Answer", "Threshold"]
 

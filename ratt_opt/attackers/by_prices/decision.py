@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.annealing import Partition
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
@@ -24,14 +25,14 @@ from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
 from ratt_opt.attackers.by_prices.listing import list_groups, partitions_into
 from ratt_opt.attackers.by_prices.paying_groups import PayingSearch
 from ratt_opt.attackers.by_prices.prices import GroupPrices, KnownGroup, PriceVector
-from ratt_opt.attackers.by_prices.starts import Partition
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ratt_opt.attack.links import Links
     from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
     from ratt_opt.attackers.by_prices.listing import ListedGroups
-    from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+    from ratt_opt.attackers.by_prices.team import PricedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 

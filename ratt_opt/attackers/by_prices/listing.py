@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+    from ratt_opt.attack.links import Links
+    from ratt_opt.attackers.by_prices.team import PricedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 

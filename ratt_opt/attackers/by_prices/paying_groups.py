@@ -24,10 +24,11 @@ from ratt_opt.attackers.by_prices.prices import KnownGroup
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
+    from ratt_opt.attack.links import Links
     from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
     from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
     from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
-    from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+    from ratt_opt.attackers.by_prices.team import PricedTeam
     from ratt_opt.budget import Budget
 
 __all__ = ["PayingGroups", "PayingSearch"]

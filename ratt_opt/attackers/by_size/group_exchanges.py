@@ -6,12 +6,13 @@ and improved again, and the better of the two is kept.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from ctypes import POINTER, byref, c_double, c_int, c_int64, c_void_p
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.running.compiling import numba
-from ratt_opt.setfunctions.criteria.compiled import team_criterion
+from ratt_opt.attack.team import TeamRecord
+from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -93,85 +94,18 @@ class GroupExchanges:
         return tuple(frozenset(np.flatnonzero(self._home == g).tolist()) for g in range(1, len(self.sizes) + 1))
 
     def _improve(self, home: IntArray, budget: Budget) -> None:
-        team, (n_robots, n_targets) = self._team, self._team.information.shape[:2]
-        criterion = team.code, team.weights, team.baseline, team.prior, team.information
-        steps, finished, value = max(4 * AT_ONCE // (n_robots**2 * n_targets), 1), False, np.inf
+        n_robots, n_targets = self._team.information.shape[:2]
+        call = function(
+            "exchange_groups", c_int, POINTER(TeamRecord), c_int, *[c_void_p] * 2, c_double, c_int64, c_void_p
+        )
+        native, must = self._team.native(), np.ascontiguousarray(self._must, dtype=np.bool_)
+        home, value = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf)
+        steps, finished = max(4 * AT_ONCE // (n_robots**2 * n_targets), 1), 0
         while not finished:
-            value, finished = _exchange(criterion, home, len(self.sizes), self._must, steps)
+            places = address(home), address(must)
+            finished = call(native.reference, len(self.sizes), *places, SHARE, steps, byref(value))
+            if finished < 0:
+                raise MemoryError
             finished = finished or budget.is_over
-        if value < self.value:
-            self.value, self._home = value, home
-
-
-@numba.njit(cache=True)
-def _exchange(criterion: Any, home: Any, n_groups: int, must: Any, steps: int) -> Any:
-    """Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens.
-
-    Returns its value, and whether that was before ``steps`` exchanges.
-    """
-    code, weights, baseline, prior, information = criterion
-    n_robots, n_targets = information.shape[0], information.shape[1]
-    sums, values = np.zeros((n_groups + 1, *prior.shape)), np.full(n_groups + 1, -np.inf)
-    for g in range(n_groups + 1):
-        sums[g] = prior
-    for i in range(n_robots):
-        sums[home[i]] += information[i]
-    for g in range(1, n_groups + 1):
-        values[g] = baseline - team_criterion(code, weights, sums[g])
-    for _ in range(steps):
-        top = int(np.argmax(values))
-        leaves, enters = _best_pair(criterion, (home, must), (sums, values), top)
-        if leaves < 0:
-            return float(values[top]), True
-        other = home[enters]
-        for j in range(n_targets):
-            for t in range(prior.shape[1]):
-                change = information[enters, j, t] - information[leaves, j, t]
-                sums[top, j, t] += change
-                sums[other, j, t] -= change
-        home[leaves], home[enters] = other, top
-        for g in (top, other):
-            if g > 0:
-                values[g] = baseline - team_criterion(code, weights, sums[g])
-    return float(values.max()), False
-
-
-@numba.njit(cache=True)
-def _best_pair(criterion: Any, robots: Any, groups: Any, top: int) -> Any:
-    """The exchange that leaves the least best group, both groups below what the best one was; (-1, -1) if none does.
-
-    Among exchanges that leave another group the best one, the two groups' sum decides.
-    """
-    (home, must), (sums, values) = robots, groups
-    second = -np.inf
-    for g in range(1, len(values)):
-        if g != top:
-            second = max(second, values[g])
-    goal = values[top] - 1e-12 * abs(values[top])
-    leaves, enters, lowest = -1, -1, np.inf
-    for i in range(len(home)):
-        if home[i] != top:
-            continue
-        for e in range(len(home)):
-            if home[e] == top or (home[e] == 0 and must[i]):
-                continue
-            mine = _exchanged_value(criterion, sums[top], i, e)
-            if mine >= goal:
-                continue
-            other = _exchanged_value(criterion, sums[home[e]], e, i) if home[e] > 0 else -np.inf
-            if other < goal:
-                score = max(mine, other, second) + SHARE * (mine + max(mine, other))
-                if score < lowest:
-                    leaves, enters, lowest = i, e, score
-    return leaves, enters
-
-
-@numba.njit(cache=True)
-def _exchanged_value(criterion: Any, sums: Any, leaves: int, enters: int) -> float:
-    """Value of a group once one robot is replaced."""
-    code, weights, baseline, _, information = criterion
-    one = np.empty_like(sums)
-    for j in range(len(sums)):
-        for t in range(one.shape[1]):
-            one[j, t] = sums[j, t] - information[leaves, j, t] + information[enters, j, t]
-    return float(baseline - team_criterion(code, weights, one))
+        if value.value < self.value:
+            self.value, self._home = value.value, home

@@ -4,20 +4,19 @@ A depth-first search over the robots in the order given. With ``q`` robots still
 the average, over the robots ``i`` chosen, of what ``q`` copies of ``i`` would give; the value is concave in the
 information, so it is at least the average ``(1/q) sum_i value(q copies of i)``. With the next robot fixed the others
 contribute at least the smallest of the rest.
-
-Imported only where a large team is attacked: compiling takes seconds, once per machine (cached).
 """
 
 from __future__ import annotations
 
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt.attack.team import TeamRecord
 from ratt_opt.budget import OutOfBudget, Stop
-from ratt_opt.running.compiling import numba
-from ratt_opt.setfunctions.criteria.compiled import team_criterion
+from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -91,26 +90,71 @@ def list_low_sets(
     ------
     OutOfBudget : the time is up, or too few nodes are left for the next look at the clock.
     """
-    information = np.ascontiguousarray(team.information[order[::-1]])
-    n_robots = len(information)
-    sums = np.zeros((size + 1, *team.prior.shape))
-    sums[0] = team.prior
-    counters = np.zeros(2, dtype=np.int64)
-    state = np.zeros(size + 1, dtype=np.int64), sums, np.zeros((2, size + 1, n_robots + 1)), counters
-    data = (team.code, team.weights, team.baseline), information, np.ascontiguousarray(wanted.costs[::-1])
-    limits = wanted.threshold, wanted.room, QUICK if quick else WORK
-    masks, values = np.zeros(4096, dtype=np.uint64), np.zeros(4096)
+    listing = _Listing(team, order, size, wanted)
     for _ in range(1 if quick else LONGEST):
         spend_look(budget)
-        if _collect(data, limits, state, (masks, values)):
-            ranked = np.argsort(values[: counters[1]], kind="stable")
-            return LowList(size, masks[ranked], values[ranked])
-        if counters[1] > MOST_SETS:
+        if listing.go_on(QUICK if quick else WORK):
+            return listing.found()
+        if listing.count > MOST_SETS:
             return None
-        if counters[1] + n_robots >= len(masks):
-            masks = np.concatenate([masks, np.zeros_like(masks)])
-            values = np.concatenate([values, np.zeros_like(values)])
     return None
+
+
+class LowSetsRecord(Structure):
+    """``LowSets`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_double) for name in ("threshold", "room")),
+        *((name, c_int64) for name in ("size", "capacity")),
+        *((name, c_void_p) for name in ("costs", "position", "counters", "sums", "worths", "smallest", "spent")),
+        *((name, c_void_p) for name in ("sets", "values")),
+    ]
+
+
+class _Listing:
+    """A search that goes on where it ended; its first robot is the last of ``order``."""
+
+    def __init__(self, team: PackedTeam, order: IntArray, size: int, wanted: Filter) -> None:
+        self._team = team.native(order[::-1])
+        n_robots, self._size = len(order), size
+        costs = np.ascontiguousarray(wanted.costs[::-1], dtype=np.float64)
+        sums = np.zeros((size + 1, *team.prior.shape))
+        sums[0] = team.prior
+        self._counters = np.zeros(2, np.int64)
+        self._state = (
+            checked("costs", costs, np.float64, (n_robots,)),
+            np.zeros(size + 1, np.int64),
+            self._counters,
+            sums,
+            np.zeros((size + 1, n_robots + 1)),
+            np.zeros((size + 1, n_robots + 1)),
+            np.zeros(size + 1),
+        )
+        self._spare = np.zeros(size + 1), np.zeros(team.prior.shape)
+        self._masks, self._values = np.zeros(4096, np.uint64), np.zeros(4096)
+        self._limits = float(wanted.threshold), float(wanted.room)
+
+    @property
+    def count(self) -> int:
+        """Sets found."""
+        return int(self._counters[1])
+
+    def go_on(self, work: int) -> bool:
+        """Whether every set is decided."""
+        if self.count + self._team.robots >= len(self._masks):
+            self._masks = np.concatenate([self._masks, np.zeros_like(self._masks)])
+            self._values = np.concatenate([self._values, np.zeros_like(self._values)])
+        places = *map(address, self._state), address(self._masks), address(self._values)
+        record = LowSetsRecord(*self._limits, self._size, len(self._masks), *places)
+        call = function(
+            "list_low_sets", c_int, POINTER(TeamRecord), POINTER(LowSetsRecord), c_int64, c_void_p, c_void_p
+        )
+        return bool(call(self._team.reference, byref(record), work, *map(address, self._spare)))
+
+    def found(self) -> LowList:
+        """The sets, lowest first."""
+        ranked = np.argsort(self._values[: self.count], kind="stable")
+        return LowList(self._size, self._masks[ranked], self._values[ranked])
 
 
 def spend_look(budget: Budget) -> None:
@@ -123,107 +167,3 @@ def spend_look(budget: Budget) -> None:
     if budget.nodes_left(NODES_OF_A_LOOK) < NODES_OF_A_LOOK:
         raise OutOfBudget(Stop.NODES)
     budget.spend(NODES_OF_A_LOOK)
-
-
-@numba.njit(cache=True)
-def _worths(criterion: Any, sums: Any, information: Any, places: Any, worths: Any) -> None:
-    """``worths[i]`` is the value of ``sums`` and ``left`` copies of robot ``i``, for ``i >= first``."""
-    (code, weights, baseline), (first, left) = criterion, places
-    one = np.empty_like(sums)
-    for i in range(first, len(information)):
-        for j in range(len(one)):
-            for t in range(one.shape[1]):
-                one[j, t] = sums[j, t] + left * information[i, j, t]
-        worths[i] = baseline - team_criterion(code, weights, one)
-
-
-@numba.njit(cache=True)
-def _smallest_after(worths: Any, first: int, count: int, smallest: Any) -> None:
-    """``smallest[p]`` is the sum of the ``count`` smallest worths after position ``p``; infinite where too few."""
-    n_robots = len(smallest) - 1
-    kept = np.empty(count + 1)
-    number, total = 0, 0.0
-    smallest[n_robots] = 0.0
-    for p in range(n_robots - 1, first - 1, -1):
-        smallest[p] = total if number == count else np.inf
-        if count == 0:
-            smallest[p] = 0.0
-            continue
-        if number == count and worths[p] >= kept[number - 1]:
-            continue
-        k = number if number < count else count - 1
-        if number == count:
-            total -= kept[k]
-        else:
-            number += 1
-        while k > 0 and kept[k - 1] > worths[p]:
-            kept[k] = kept[k - 1]
-            k -= 1
-        kept[k] = worths[p]
-        total += worths[p]
-
-
-@numba.njit(cache=True)
-def _record(data: Any, limits: Any, position: Any, found: Any, number: int) -> int:
-    """Record the sets whose other robots stand before ``position``; return ``number`` plus how many there are."""
-    (worths, costs), (threshold, room), (masks, values) = data, limits, found
-    mask, n_robots = np.uint64(0), len(costs)
-    for robot in position[:-1]:
-        mask |= np.uint64(1) << np.uint64(n_robots - robot)
-    for i in range(position[-1], n_robots):
-        if worths[i] < threshold and costs[i] < room:
-            masks[number] = mask | (np.uint64(1) << np.uint64(n_robots - 1 - i))
-            values[number] = worths[i]
-            number += 1
-    return number
-
-
-@numba.njit(cache=True)
-def _collect(data: Any, limits: Any, state: Any, found: Any) -> bool:
-    """Go on until every set is decided (true), the work is done or the arrays are full.
-
-    data : criterion (code, weights (M,), baseline); information (F, M, T); costs (F,)
-    limits : threshold, room, work
-    state : position (size + 1,) next robot at each depth; sums (size + 1, M, T); worths and sums of the smallest (2,
-        size + 1, F + 1); counters (2,): depth, sets found
-    """
-    criterion, information, costs = data
-    threshold, room, work = limits
-    position, sums, worth_arrays, counters = state
-    n_robots, n_targets = information.shape[0], information.shape[1]
-    size = len(position) - 1
-    spent = np.zeros(size + 1)
-    depth, done, fresh = counters[0], 0, True
-    for d in range(depth):
-        spent[d + 1] = spent[d] + costs[position[d] - 1]
-    while depth >= 0:
-        left, worths, smallest = size - depth, worth_arrays[0, depth], worth_arrays[1, depth]
-        p = position[depth]
-        if fresh:
-            if done >= work or counters[1] + n_robots >= len(found[0]):
-                counters[0] = depth
-                return False
-            done += (n_robots - p) * n_targets
-            _worths(criterion, sums[depth], information, (p, left), worths)
-            _smallest_after(worths, p, left - 1, smallest)
-            fresh = False
-        if left == 1:
-            limits_left = threshold, room - spent[depth]
-            counters[1] = _record((worths, costs), limits_left, position[: depth + 1], found, counters[1])
-            depth -= 1
-            continue
-        while p <= n_robots - left and (worths[p] + smallest[p] >= left * threshold or spent[depth] + costs[p] >= room):
-            p += 1
-        if p > n_robots - left:
-            depth -= 1
-            continue
-        position[depth] = p + 1
-        spent[depth + 1] = spent[depth] + costs[p]
-        for j in range(n_targets):
-            for t in range(information.shape[2]):
-                sums[depth + 1, j, t] = sums[depth, j, t] + information[p, j, t]
-        depth += 1
-        position[depth] = p + 1
-        fresh = True
-    counters[0] = depth
-    return True

@@ -7,13 +7,14 @@ takes in plain NumPy.
 
 from __future__ import annotations
 
+from ctypes import POINTER, c_int, c_int64, c_void_p
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.attack.team import TeamRecord
 from ratt_opt.budget import Budget
-from ratt_opt.running.compiling import numba
-from ratt_opt.setfunctions.criteria.compiled import team_criterion
+from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -98,48 +99,10 @@ def _settle(team: PackedTeam, kept: FloatArray, where: Any, budget: Budget) -> N
     """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
     inside, outside = int((where == INSIDE).sum()), int((where == OUTSIDE).sum())
     steps = max(AT_ONCE // max(inside * outside * len(team.weights), 1), 1)
-    while not _exchange(team.code, team.weights, kept, (team.information, where), steps):
+    call, native = function("exchange_robots", c_int, POINTER(TeamRecord), *[c_void_p] * 2, c_int64), team.native()
+    sums = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape)
+    while not (finished := call(native.reference, address(sums), address(where), steps)):
         if budget.is_over:
             return
-
-
-@numba.njit(cache=True)
-def _exchange(code: int, weights: Any, kept: Any, robots: Any, steps: int) -> bool:
-    """Exchange one robot inside for one outside, the best pair each time, while that lowers the value.
-
-    ``kept`` : (M, T) information without the robots inside; ``robots`` : information, and where each is (N,), which
-    is changed in place. Returns whether nothing was left before ``steps`` exchanges.
-    """
-    information, where = robots
-    n_robots = len(where)
-    sums = kept.copy()
-    for i in range(n_robots):
-        if where[i] == INSIDE:
-            sums += information[i]
-    value = team_criterion(code, weights, sums)  # of what is left to the team: the attacker wants it large
-    changed = np.empty_like(sums)
-    for _ in range(steps):
-        best, leaves, enters = value + 1e-12 * abs(value), -1, -1
-        for i in range(n_robots):
-            for e in range(n_robots):
-                if where[i] != INSIDE or where[e] != OUTSIDE:
-                    continue
-                _replace(sums, information[i], information[e], changed)
-                other = team_criterion(code, weights, changed)
-                if other > best:
-                    best, leaves, enters = other, i, e
-        if leaves < 0:
-            return True
-        where[leaves], where[enters] = OUTSIDE, INSIDE
-        _replace(sums, information[leaves], information[enters], changed)
-        sums[:] = changed
-        value = best
-    return False
-
-
-@numba.njit(cache=True)
-def _replace(sums: Any, leaves: Any, enters: Any, changed: Any) -> None:
-    """``changed = sums - leaves + enters``, all (M, T)."""
-    for j in range(sums.shape[0]):
-        for t in range(sums.shape[1]):
-            changed[j, t] = sums[j, t] - leaves[j, t] + enters[j, t]
+    if finished < 0:
+        raise MemoryError

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.team import LARGEST_DIMENSION, Team
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ class PackedTeam:
         """The packed form, or ``None`` where the objective has no compiled loops."""
         if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
             return None
+        if objective.dimension > LARGEST_DIMENSION:
+            return None
         prior, information = objective.prior_information, objective.information[plan]
         before, after = (objective.combine(objective.criterion(sums)) for sums in (prior, prior + information))
         return cls(objective, np.array(objective.weights), triangles(prior), triangles(information), before - after)
@@ -49,6 +52,11 @@ class PackedTeam:
         """The packed form where targets are in the plane, else ``None``, as without compiled loops."""
         team = cls.of(objective, plan)
         return team if team is not None and team.is_planar else None
+
+    def native(self, robots: IntArray | None = None) -> Team:
+        """Some of the robots, in this order, or all of them, as the loops in C read them."""
+        information = self.information if robots is None else np.ascontiguousarray(self.information[robots])
+        return Team(self.code, self.objective.dimension, self.weights, self.prior, information)
 
     @property
     def is_planar(self) -> bool:

@@ -15,7 +15,7 @@ from ratt_opt.graph.separable_groups import count_ones
 from ratt_opt.running.compiling import numba
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.by_prices.team import Links
+    from ratt_opt.attack.links import Links
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["Network", "Sets", "Tariff", "closing_set", "lost", "need", "penalties", "reached"]

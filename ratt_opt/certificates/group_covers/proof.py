@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.covers import price_record, refute_covers, set_records

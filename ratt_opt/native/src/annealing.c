@@ -1,9 +1,9 @@
 /* Attacks by annealing partitions and blinded robots together. */
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "records.h"
 #include "sets.h"
 #include "team.h"
 
@@ -11,183 +11,226 @@
    opens a group of its own. Flat: a tenth more or less of each was not measured to matter. */
 static const double TRANSFER = 0.6, BLINDING = 0.96, OWN_GROUP = 0.05;
 
-enum { CHUNK = 8, MOST_ROBOTS = 32 };
-
-/* Values of sets: from a table of all, or from sums over sets of CHUNK robots at a time. */
-typedef struct {
-    const double *table;
-    const Team *team;
-    double *chunks, *sums; /* (robots / CHUNK, 1 << CHUNK, width); (width) */
-    int width;
-} Values;
-
-static int prepare(Values *values) {
-    const Team *team = values->team;
-    if (values->table) return 0;
-    int width = team->targets * entries_of(team), count = (team->robots + CHUNK - 1) / CHUNK;
-    values->width = width;
-    values->chunks = calloc(((size_t)count << CHUNK) * width + width, sizeof(double));
-    if (!values->chunks) return 1;
-    values->sums = values->chunks + ((size_t)count << CHUNK) * width;
-    for (int chunk = 0; chunk < count; chunk++)
-        for (int set = 0; set < 1 << CHUNK; set++) {
-            double *sum = values->chunks + (((size_t)chunk << CHUNK) + set) * width;
-            int robot = chunk * CHUNK + (set ? lowest((uint64_t)set) : 0);
-            if (set == 0) {
-                if (chunk == 0) memcpy(sum, team->prior, (size_t)width * sizeof(double));
-            } else if (robot < team->robots) {
-                const double *rest = values->chunks + (((size_t)chunk << CHUNK) + (set & (set - 1))) * width;
-                for (int t = 0; t < width; t++) sum[t] = rest[t] + team->information[(size_t)robot * width + t];
-            }
-        }
-    return 0;
-}
-
-static double value_of_set(const Values *values, uint32_t set) {
-    if (values->table) return values->table[set];
-    const double *first = values->chunks + (size_t)(set & ((1 << CHUNK) - 1)) * values->width;
-    memcpy(values->sums, first, (size_t)values->width * sizeof(double));
-    for (int chunk = 1; set >> (chunk * CHUNK) && chunk * CHUNK < MOST_ROBOTS; chunk++) {
-        size_t row = ((size_t)chunk << CHUNK) + (set >> (chunk * CHUNK) & ((1 << CHUNK) - 1));
-        const double *more = values->chunks + row * values->width;
-        for (int t = 0; t < values->width; t++) values->sums[t] += more[t];
-    }
-    return value_of(values->team, values->sums);
-}
-
-typedef struct {
-    uint64_t state;
-} Random;
-
-/* Uniform in [0, 1); xorshift64*, Vigna 2016. */
-static double uniform(Random *random) {
-    uint64_t x = random->state;
-    x ^= x >> 12, x ^= x << 25, x ^= x >> 27;
-    random->state = x;
-    return (double)((x * 0x2545F4914F6CDD1DULL) >> 11) * 0x1p-53;
-}
-
-static int below(Random *random, int count) { return (int)(uniform(random) * count); }
-
-static int pick_robot(Random *random, uint32_t set) {
-    for (int skip = below(random, size_of(set)); skip > 0; skip--) set &= set - 1;
-    return lowest(set);
-}
-
-typedef struct {
-    int robots, budget;               /* links that may be cut */
-    const uint32_t *neighbours, *protected_links;
-    uint32_t protected_robots;
-} Threat;
-
-typedef struct {
-    uint8_t *label;                   /* (robots) group of each */
-    uint32_t group[MOST_ROBOTS], blinded;
-    double value[MOST_ROBOTS];        /* of each group; minus infinity where it is empty */
-    int cut;
-} State;
-
-/* A move: robots i and, if exchanged, j; the groups `home` and `to` afterwards, links cut, robots blinded. */
-typedef struct {
-    int kind, i, j, home, to, cut;
-    uint32_t of_home, of_to, blinded;
-} Move;
+enum { UNCUTTABLE = 1000000 }; /* links that a protected link counts for */
 
 enum { IMPOSSIBLE, MOVED, BLINDED, EXCHANGED };
 
-static Move propose(const Threat *threat, const State *state, Random *random) {
-    double chance = uniform(random);
-    int i = below(random, threat->robots), j = below(random, threat->robots);
-    Move move = {IMPOSSIBLE, i, j, state->label[i], state->label[j], state->cut, 0, 0, state->blinded};
-    uint32_t one = (uint32_t)1 << i, other = (uint32_t)1 << j, near = threat->neighbours[i];
-    uint32_t home = state->group[move.home];
-    if (chance < TRANSFER || !state->blinded) {
-        if (!near || uniform(random) < OWN_GROUP) {
-            move.to = 0;
-            while (move.to < threat->robots && state->group[move.to]) move.to++;
-            if (home == one || move.to == threat->robots) return move;
-        } else {
-            move.to = state->label[pick_robot(random, near)];
-        }
-        if (move.to == move.home) return move;
-        move.of_home = home & ~one, move.of_to = state->group[move.to] | one;
-        move.cut += size_of(near & move.of_home) - size_of(near & state->group[move.to]);
-        if (!(threat->protected_links[i] & move.of_home)) move.kind = MOVED;
-    } else if (chance < BLINDING) {
-        if ((state->blinded | threat->protected_robots) & other) return move;
-        move.i = pick_robot(random, state->blinded);
-        move.blinded = (state->blinded & ~((uint32_t)1 << move.i)) | other;
-        move.to = state->label[move.i], move.home = state->label[j];
-        move.of_to = state->group[move.to], move.of_home = state->group[move.home];
-        move.kind = BLINDED;
-    } else if (move.home != move.to) {
-        uint32_t there = state->group[move.to], far = threat->neighbours[j];
-        move.of_home = (home & ~one) | other, move.of_to = (there & ~other) | one;
-        move.cut += size_of(near & home) - size_of(near & there) + size_of(far & there) - size_of(far & home);
-        if (near & other) move.cut += 2; /* stays cut, and was counted as joined from both ends */
-        if (!(threat->protected_links[i] & home) && !(threat->protected_links[j] & there)) move.kind = EXCHANGED;
+/* Robot i's view is gained by the group `to`, which it joins or where it was blinded, and lost by `home`; j is the robot
+   that is exchanged for it, or blinded instead. */
+typedef struct {
+    int kind;
+    int64_t i, j, home, to;
+} Move;
+
+/* Groups by label: what is sensed in each, as sums (robots, width) or, with a table of values, as sets (robots). */
+typedef struct {
+    const Anneal *a;
+    int width;
+    double *sums, *value, *gained, *lost;
+    uint64_t *sets;
+    int64_t *size, cut;
+    uint64_t random;
+} State;
+
+/* Uniform in [0, 1); xorshift64*, Vigna 2016. */
+static double uniform(State *s) {
+    uint64_t x = s->random;
+    x ^= x >> 12, x ^= x << 25, x ^= x >> 27;
+    s->random = x;
+    return (double)((x * 0x2545F4914F6CDD1DULL) >> 11) * 0x1p-53;
+}
+
+static int64_t below(State *s, int64_t count) { return (int64_t)(uniform(s) * (double)count); }
+
+static void sense(State *s, int64_t robot, double sign, double *sums) {
+    const double *own = s->a->team->information + (size_t)robot * s->width;
+    for (int t = 0; t < s->width; t++) sums[t] += sign * own[t];
+}
+
+static void fill(State *s) {
+    const Anneal *a = s->a;
+    for (int64_t g = 0; g < a->robots && !a->table; g++)
+        memcpy(s->sums + g * s->width, a->team->prior, (size_t)s->width * sizeof(double));
+    s->cut = 0;
+    for (int64_t i = 0; i < a->robots; i++) {
+        int64_t g = a->group[i];
+        s->size[g]++;
+        if (!a->blind[i] && a->table) s->sets[g] |= (uint64_t)1 << i;
+        if (!a->blind[i] && !a->table) sense(s, i, 1.0, s->sums + g * s->width);
+        for (int64_t l = a->start[i]; l < a->start[i + 1]; l++)
+            if (a->robot[l] > i && a->group[a->robot[l]] != g) s->cut += a->fixed[l] ? UNCUTTABLE : 1;
     }
-    if (move.cut > threat->budget) move.kind = IMPOSSIBLE;
+    for (int64_t g = 0; g < a->robots; g++) {
+        s->value[g] = 0.0;
+        if (s->size[g]) s->value[g] = a->table ? a->table[s->sets[g]] : value_of(a->team, s->sums + g * s->width);
+        else if (a->table) s->value[g] = -INFINITY;
+    }
+}
+
+static Move propose(State *s, int64_t n_blinded) {
+    const Anneal *a = s->a;
+    double chance = uniform(s);
+    int64_t i = below(s, a->robots), j = below(s, a->robots);
+    Move move = {IMPOSSIBLE, i, j, a->group[i], a->group[j]};
+    if (chance < TRANSFER || n_blinded == 0) {
+        int64_t degree = a->start[i + 1] - a->start[i];
+        if (degree == 0 || uniform(s) < OWN_GROUP) {
+            if (s->size[move.home] == 1) return move;
+            for (move.to = 0; s->size[move.to];) move.to++;
+        } else {
+            move.to = a->group[a->robot[a->start[i] + below(s, degree)]];
+        }
+        move.kind = move.to != move.home ? MOVED : IMPOSSIBLE;
+    } else if (chance < BLINDING) {
+        while (!a->blind[move.i]) move.i = below(s, a->robots);
+        move.home = a->group[j], move.to = a->group[move.i];
+        move.kind = a->blind[j] || a->seeing[j] ? IMPOSSIBLE : BLINDED;
+    } else if (move.home != move.to) {
+        move.kind = EXCHANGED;
+    }
     return move;
 }
 
-static double largest(const State *state, int robots) {
-    double most = state->value[0];
-    for (int g = 1; g < robots; g++) most = fmax(most, state->value[g]);
+/* Links cut when a robot changes groups, less those that then are not. */
+static int64_t more_links(const Anneal *a, int64_t robot, int64_t home, int64_t to) {
+    int64_t more = 0;
+    for (int64_t l = a->start[robot]; l < a->start[robot + 1]; l++) {
+        int64_t other = a->group[a->robot[l]], weight = a->fixed[l] ? UNCUTTABLE : 1;
+        more += other == home ? weight : other == to ? -weight : 0;
+    }
+    return more;
+}
+
+static int64_t links_after(const State *s, const Move *m) {
+    const Anneal *a = s->a;
+    int64_t after = s->cut;
+    if (m->kind != BLINDED) after += more_links(a, m->i, m->home, m->to);
+    if (m->kind == EXCHANGED) {
+        after += more_links(a, m->j, m->to, m->home);
+        for (int64_t l = a->start[m->i]; l < a->start[m->i + 1]; l++)
+            if (a->robot[l] == m->j) after += a->fixed[l] ? 2 * UNCUTTABLE : 2; /* stays cut, and was counted as joined twice */
+    }
+    return after;
+}
+
+/* Robots that a group senses with and without after a move: +1 gains i, -1 loses it; 0 nothing. */
+static void changes(const Anneal *a, const Move *m, int gains, int *of_i, int *of_j) {
+    int sign = gains ? 1 : -1;
+    *of_i = (m->kind == BLINDED ? gains : !a->blind[m->i]) ? sign : 0;
+    *of_j = 0;
+    if (m->kind == BLINDED && (m->home == m->to || !gains)) *of_j = -1;
+    if (m->kind == EXCHANGED && !a->blind[m->j]) *of_j = -sign;
+}
+
+/* Value of the group that gains or loses by a move, of both where they are one; what is sensed goes to `sums` and *set. */
+static double value_after(State *s, const Move *m, int gains, double *sums, uint64_t *set) {
+    const Anneal *a = s->a;
+    int64_t g = gains ? m->to : m->home;
+    int of_i, of_j;
+    changes(a, m, gains, &of_i, &of_j);
+    int empties = m->kind == MOVED && !gains && s->size[m->home] == 1;
+    if (a->table) {
+        uint64_t one = (uint64_t)1 << m->i, other = (uint64_t)1 << m->j;
+        *set = s->sets[g];
+        if (of_i) *set = of_i > 0 ? *set | one : *set & ~one;
+        if (of_j) *set = of_j > 0 ? *set | other : *set & ~other;
+        return empties ? -INFINITY : a->table[*set];
+    }
+    memcpy(sums, s->sums + g * s->width, (size_t)s->width * sizeof(double));
+    if (of_i) sense(s, m->i, of_i, sums);
+    if (of_j) sense(s, m->j, of_j, sums);
+    return empties ? 0.0 : value_of(a->team, sums);
+}
+
+/* Whether no robot that senses is concerned. */
+static int senses_alike(const Anneal *a, const Move *m) {
+    return m->kind != BLINDED && a->blind[m->i] && (m->kind == MOVED || a->blind[m->j]);
+}
+
+/* Labels, blinded robots and links; not what is sensed. */
+static void apply(State *s, const Move *m, int64_t cut) {
+    const Anneal *a = s->a;
+    s->cut = cut;
+    if (m->kind == BLINDED) {
+        a->blind[m->i] = 0, a->blind[m->j] = 1;
+        return;
+    }
+    a->group[m->i] = m->to;
+    if (m->kind == EXCHANGED) a->group[m->j] = m->home;
+    else s->size[m->home]--, s->size[m->to]++;
+}
+
+static double largest(const State *s) {
+    double most = s->value[0];
+    for (int64_t g = 1; g < s->a->robots; g++) most = s->value[g] > most ? s->value[g] : most;
     return most;
 }
 
-static double group_value(const Values *values, uint32_t group, uint32_t blinded) {
-    return group ? value_of_set(values, group & ~blinded) : -INFINITY;
-}
-
-/* Make a move if its value is at most `bound`; whether it was made. The group that gains is valued first. */
-static int accept(const Values *values, State *state, const Move *move, double bound, int robots) {
-    double to = group_value(values, move->of_to, move->blinded);
-    if (to > bound) return 0;
-    double home = move->home == move->to ? to : group_value(values, move->of_home, move->blinded);
-    if (home > bound) return 0;
-    double before_home = state->value[move->home], before_to = state->value[move->to];
-    state->value[move->home] = home, state->value[move->to] = to;
-    if (largest(state, robots) > bound) {
-        state->value[move->to] = before_to, state->value[move->home] = before_home;
-        return 0;
+/* Make a move if no group is then worth more than `bound`; the group that gains is valued first. */
+static void try_move(State *s, const Move *m, int64_t cut, double bound, double *energy) {
+    uint64_t gained = 0, lost = 0;
+    double more = value_after(s, m, 1, s->gained, &gained);
+    if (more > bound) return;
+    double less = m->home != m->to ? value_after(s, m, 0, s->lost, &lost) : more;
+    if (less > bound) return;
+    double home = s->value[m->home], to = s->value[m->to];
+    s->value[m->home] = less, s->value[m->to] = more;
+    double after = largest(s);
+    if (after > bound) {
+        s->value[m->home] = home, s->value[m->to] = to;
+        return;
     }
-    state->group[move->home] = move->of_home, state->group[move->to] = move->of_to;
-    state->blinded = move->blinded, state->cut = move->cut;
-    if (move->kind != BLINDED) state->label[move->i] = (uint8_t)move->to;
-    if (move->kind == EXCHANGED) state->label[move->j] = (uint8_t)move->home;
-    return 1;
+    *energy = after;
+    apply(s, m, cut);
+    if (s->a->table) {
+        if (m->home != m->to) s->sets[m->home] = lost;
+        s->sets[m->to] = gained;
+        return;
+    }
+    if (m->home != m->to) memcpy(s->sums + m->home * s->width, s->lost, (size_t)s->width * sizeof(double));
+    memcpy(s->sums + m->to * s->width, s->gained, (size_t)s->width * sizeof(double));
 }
 
-/* Anneal an attack within the budgets, in place: `label` (robots) groups, `blinded`. From temperature `hot` to `cold` in
-   `steps`. Where a state leaves the team less than *least, which is the value of its largest group (groups may be
-   disconnected: the attack leaves no more), it is kept: *least, best_label, *best_blinded. Values are those of `table`,
-   where one is given, or of `team`. 1 where memory is short, else 0. */
-EXPORTED int anneal(const double *table, const Team *team, int robots, const uint32_t *neighbours, const uint32_t *protected_links,
-                    uint32_t protected_robots, int budget, uint8_t *label, uint32_t *blinded, int64_t steps, double hot, double cold,
-                    uint64_t *seed, double *least, uint8_t *best_label, uint32_t *best_blinded) {
-    Values values = {table, team, NULL, NULL, 0};
-    if (prepare(&values)) return 1;
-    Threat threat = {robots, budget, neighbours, protected_links, protected_robots};
-    State state = {.label = label, .blinded = *blinded};
-    Random random = {*seed};
-    for (int i = 0; i < robots; i++) state.group[label[i]] |= (uint32_t)1 << i;
-    for (int i = 0; i < robots; i++) state.cut += size_of(neighbours[i] & ~state.group[label[i]]);
-    state.cut /= 2;
-    for (int g = 0; g < MOST_ROBOTS; g++) state.value[g] = group_value(&values, state.group[g], state.blinded);
-    double energy = largest(&state, robots), temperature = hot, cooling = pow(cold / hot, 1.0 / (double)(steps > 1 ? steps - 1 : 1));
-    for (int64_t step = 0; step <= steps; step++, temperature *= cooling) {
-        if (energy < *least) {
-            *least = energy, *best_blinded = state.blinded;
-            memcpy(best_label, label, (size_t)robots);
+static void keep_better(const State *s, double energy) {
+    const Anneal *a = s->a;
+    if (energy >= *a->least) return;
+    *a->least = energy;
+    memcpy(a->best_group, a->group, (size_t)a->robots * sizeof(int64_t));
+    memcpy(a->best_blind, a->blind, (size_t)a->robots);
+}
+
+/* Anneal a state that is within the budgets, in place, from step `first` to `last` of `steps`. A state that leaves less than
+   *least, the value of its largest group (groups may be disconnected: the attack leaves no more), is kept. 1 where memory
+   is short, else 0. */
+EXPORTED int anneal(const Anneal *a) {
+    int64_t n = a->robots, width = a->table ? 0 : (int64_t)a->team->targets * entries_of(a->team);
+    double *memory = calloc((size_t)(n * width + n + 2 * width), sizeof(double));
+    int64_t *counts = calloc((size_t)(2 * n), sizeof(int64_t));
+    if (!memory || !counts) {
+        free(memory), free(counts);
+        return 1;
+    }
+    double *value = memory + n * width;
+    State s = {a, (int)width, memory, value, value + n, value + n + width, (uint64_t *)counts, counts + n, 0, *a->random};
+    fill(&s);
+    int64_t n_blinded = 0;
+    for (int64_t i = 0; i < n; i++) n_blinded += a->blind[i];
+    double energy = largest(&s);
+    keep_better(&s, energy);
+    for (int64_t step = a->first; step < a->last; step++) {
+        Move move = propose(&s, n_blinded);
+        if (move.kind == IMPOSSIBLE) continue;
+        int64_t cut = links_after(&s, &move);
+        if (cut > a->budget) continue;
+        if (senses_alike(a, &move)) {
+            apply(&s, &move, cut);
+            continue;
         }
-        if (step == steps) break;
-        Move move = propose(&threat, &state, &random);
-        double bound = energy - temperature * log(1.0 - uniform(&random));
-        if (move.kind != IMPOSSIBLE && accept(&values, &state, &move, bound, robots)) energy = largest(&state, robots);
+        double temperature = a->hot * pow(a->cold / a->hot, (double)step / (double)a->steps);
+        try_move(&s, &move, cut, energy - temperature * log(1.0 - uniform(&s)), &energy);
+        keep_better(&s, energy);
     }
-    *blinded = state.blinded, *seed = random.state;
-    free(values.chunks);
+    *a->random = s.random;
+    free(memory), free(counts);
     return 0;
 }

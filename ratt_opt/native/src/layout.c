@@ -7,4 +7,6 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[0] = sizeof(Team);
     sizes[1] = sizeof(Branch);
     sizes[2] = sizeof(Level);
+    sizes[3] = sizeof(LowSets);
+    sizes[4] = sizeof(Anneal);
 }

@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "team.h"
+
 /* A node of the list of groups: robots inside, robots outside, links between them. */
 typedef struct {
     uint32_t inside, outside;
@@ -25,5 +27,32 @@ typedef struct {
     const int64_t *low, *high;
     int64_t unit, blinding;
 } Duals;
+
+/* A list of the sets of `size` robots that are worth less than `threshold` and whose costs are less than `room`. */
+typedef struct {
+    double threshold, room;
+    int64_t size, capacity;            /* of `sets` and `values` */
+    const double *costs;               /* (robots) */
+    int64_t *position, *counters;      /* (size + 1) next robot at each depth; depth, sets found */
+    double *sums;                      /* (size + 1, targets, entries) */
+    double *worths, *smallest, *spent; /* (size + 1, robots + 1) twice; (size + 1) costs of the robots chosen */
+    uint64_t *sets;                    /* bit 0 is the last robot */
+    double *values;
+} LowSets;
+
+/* An annealed attack; arcs of robot i are start[i]..start[i + 1] - 1. */
+typedef struct {
+    const double *table;               /* values of all sets, or NULL */
+    const Team *team;                  /* where there is no table */
+    int64_t robots, budget;            /* links that may be cut */
+    const int64_t *start, *robot;      /* (robots + 1); (arcs) the other end */
+    const uint8_t *fixed, *seeing;     /* (arcs), (robots) what cannot be cut, or blinded */
+    int64_t *group, *best_group;       /* (robots) */
+    uint8_t *blind, *best_blind;       /* (robots) */
+    int64_t first, last, steps;
+    double hot, cold;                  /* temperatures at the first and after the last step */
+    double *least;
+    uint64_t *random;                  /* not 0 */
+} Anneal;
 
 #endif

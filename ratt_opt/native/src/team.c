@@ -6,7 +6,7 @@
 
 #include "sets.h"
 
-enum { PRODUCTS = 8 }; /* ratios of determinants below one logarithm: each is below 1e31, see information.py, WIDEST */
+enum { SWEEPS = 10, PRODUCTS = 8 }; /* ratios of determinants below one logarithm: each is below 1e31, see information.py, WIDEST */
 
 int entries_of(const Team *team) { return team->dimension * (team->dimension + 1) / 2; }
 
@@ -41,6 +41,43 @@ static double log_determinant(int d, const double *factor) {
     return total;
 }
 
+/* Jacobi's rotation of a symmetric matrix: its entry (p, q) becomes 0. */
+static void rotate(int d, double matrix[][LARGEST_DIMENSION], int p, int q) {
+    if (matrix[p][q] == 0.0) return;
+    double angle = 0.5 * atan2(2.0 * matrix[p][q], matrix[q][q] - matrix[p][p]), cosine = cos(angle), sine = sin(angle);
+    for (int k = 0; k < d; k++) {
+        double x = matrix[k][p], y = matrix[k][q];
+        matrix[k][p] = cosine * x - sine * y, matrix[k][q] = sine * x + cosine * y;
+    }
+    for (int k = 0; k < d; k++) {
+        double x = matrix[p][k], y = matrix[q][k];
+        matrix[p][k] = cosine * x - sine * y, matrix[q][k] = sine * x + cosine * y;
+    }
+}
+
+/* The largest eigenvalue of the inverse, L^-T L^-1. After SWEEPS of rotations what is left beside the diagonal is
+   rounding. */
+static double largest_of_inverse(int d, const double *factor) {
+    double inverse[LARGEST_DIMENSION][LARGEST_DIMENSION] = {{0}}, matrix[LARGEST_DIMENSION][LARGEST_DIMENSION] = {{0}};
+    for (int j = 0; j < d; j++)
+        for (int i = j; i < d; i++) {
+            const double *row = factor + i * (i + 1) / 2;
+            double rest = i == j ? 1.0 : 0.0;
+            for (int k = j; k < i; k++) rest -= row[k] * inverse[k][j];
+            inverse[i][j] = rest / row[i];
+        }
+    for (int i = 0; i < d; i++)
+        for (int j = 0; j < d; j++) {
+            for (int k = i > j ? i : j; k < d; k++) matrix[i][j] += inverse[k][i] * inverse[k][j];
+        }
+    for (int sweep = 0; sweep < SWEEPS; sweep++)
+        for (int p = 0; p < d - 1; p++)
+            for (int q = p + 1; q < d; q++) rotate(d, matrix, p, q);
+    double largest = matrix[0][0];
+    for (int i = 1; i < d; i++) largest = fmax(largest, matrix[i][i]);
+    return largest;
+}
+
 static double planar_criterion(int criterion, const double *matrix) {
     double a = matrix[0], b = matrix[1], c = matrix[2], determinant = a * c - b * b;
     if (criterion == LOG_DET) return determinant;
@@ -53,7 +90,9 @@ static double any_criterion(const Team *team, const double *matrix) {
     if (team->dimension == 2) return planar_criterion(team->criterion, matrix);
     double factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
     factorise(team->dimension, matrix, factor);
-    return team->criterion == TRACE ? trace_of_inverse(team->dimension, factor) : log_determinant(team->dimension, factor);
+    if (team->criterion == TRACE) return trace_of_inverse(team->dimension, factor);
+    if (team->criterion == LOG_DET) return log_determinant(team->dimension, factor);
+    return largest_of_inverse(team->dimension, factor);
 }
 
 /* Fill `before` and `before_all` of a team whose other fields are set. */
@@ -134,11 +173,15 @@ void values_of(const Team *team, int width, const double *sums, const double *of
         for (int j = 0; j < team->targets; j++) {
             double matrix[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
             for (int t = 0; t < entries; t++) matrix[t] = sums[((ptrdiff_t)j * entries + t) * width + k] + offset[j * entries + t];
-            double gained = team->weights[j] * (any_criterion(team, matrix) - team->before[j]);
-            values[k] += team->criterion == TRACE ? -gained : gained;
+            double now = any_criterion(team, matrix), weight = team->weights[j];
+            if (team->criterion == LARGEST) values[k] = fmax(values[k], weight * now);
+            else values[k] += team->criterion == TRACE ? weight * (team->before[j] - now) : weight * (now - team->before[j]);
         }
+        if (team->criterion == LARGEST) values[k] = team->before_all - values[k];
     }
 }
+
+EXPORTED double set_value(const Team *team, const double *sums) { return value_of(team, sums); }
 
 #ifndef SOURCES
 #define SOURCES "unknown"

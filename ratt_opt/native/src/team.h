@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 enum { TRACE = 0, LOG_DET = 1, LARGEST = 2 }; /* compiled_code of the criteria */
-enum { LARGEST_DIMENSION = 16 };
+enum { LARGEST_DIMENSION = 64 };
 
 /* Symmetric matrices are packed by rows of the lower triangle: entries = d (d + 1) / 2. */
 typedef struct {

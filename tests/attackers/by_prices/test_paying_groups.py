@@ -6,13 +6,14 @@ import networkx as nx
 import numpy as np
 import pytest
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_prices.groups.columns import Prices, Question
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 from ratt_opt.attackers.by_prices.paying_groups import PayingSearch, Way
 from ratt_opt.attackers.by_prices.prices import GroupPrices, PriceVector
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget
 from tests.attackers.by_prices.definition import fitted_forms, least_cost, reduced_cost

@@ -7,9 +7,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_prices.groups import blinding
 from ratt_opt.attackers.by_prices.groups.blinding import ABSENT, WEAK, may_be_weak, weak_subset
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from tests.strategies import team_problem
 
 

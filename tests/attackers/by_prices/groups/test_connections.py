@@ -8,10 +8,10 @@ import networkx as nx
 import numpy as np
 import pytest
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_prices.groups.connections import connected_bound
 from ratt_opt.attackers.by_prices.groups.flow import always, augment, open_flow
 from ratt_opt.attackers.by_prices.groups.size_forms import BLINDED, ELSE, OPEN, OUTSIDE, SEEING
-from ratt_opt.attackers.by_prices.team import Links
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 

@@ -8,12 +8,13 @@ import networkx as nx
 import numpy as np
 import pytest
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_prices.groups import cover
 from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED, NOBODY, SEEING, cheap_group
 from ratt_opt.attackers.by_prices.groups.columns import FINISHED, Prices, Question, Stack, enumerate_groups
 from ratt_opt.attackers.by_prices.groups.cover import next_cover
 from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget
 from tests.attackers.by_prices.definition import fitted_forms, paying_groups, reduced_cost

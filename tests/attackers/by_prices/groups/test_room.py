@@ -8,12 +8,13 @@ import networkx as nx
 import numpy as np
 import pytest
 
+from ratt_opt.attack.links import Links
 from ratt_opt.attackers.by_prices.groups.compiled import add, copy
 from ratt_opt.attackers.by_prices.groups.member_bounds import weigh
 from ratt_opt.attackers.by_prices.groups.member_sets import MemberStack
 from ratt_opt.attackers.by_prices.groups.room import bound_room
 from ratt_opt.attackers.by_prices.groups.size_forms import ELSE, INSIDE, OPEN, OUTSIDE, SEEING
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attackers.by_prices.team import PricedTeam
 from tests.strategies import team_problem
 
 N_ROBOTS = 8

@@ -6,22 +6,28 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_prices import starts as module
-from ratt_opt.attackers.by_prices.starts import Starts
-from ratt_opt.attackers.by_prices.team import Links, PricedTeam
+from ratt_opt.attack import annealing as module
+from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.links import Links
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import team_problem
 
 
-def starts_of(problem, plan, **options):
-    return Starts(PricedTeam.of(problem.objective, plan), Links.of(problem.threat), problem.threat, **options)
+def starts_of(problem, plan, *, has_table=False, **options):
+    source = Team.of(problem.objective, plan)
+    if has_table:
+        chosen = np.zeros((2**problem.n_robots, problem.objective.n), np.bool_)
+        chosen[:, plan] = np.arange(2**problem.n_robots)[:, None] >> np.arange(problem.n_robots) & 1
+        source = problem.objective.evaluate(chosen)
+    return Starts(source, Links.of(problem.threat), problem.threat, **options)
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_attacks_are_allowed_and_their_values_are_those_of_the_groups(seed):
     problem, plan = team_problem(seed, 4 + seed % 7)
-    starts = starts_of(problem, plan, seed=seed, moves=100)
+    starts = starts_of(problem, plan, seed=seed, moves=100, has_table=seed % 2 == 1)
     for _ in range(6):
         found = starts.next(Budget())
         attack = problem.check_attack(found.attack(problem.threat))
@@ -35,7 +41,7 @@ def test_attacks_are_allowed_and_their_values_are_those_of_the_groups(seed):
 @pytest.mark.parametrize("seed", range(40))
 def test_a_few_starts_find_the_worst_attacks_of_small_teams(seed):
     problem, plan = team_problem(seed, 3 + seed % 4)
-    starts = starts_of(problem, plan, moves=500)
+    starts = starts_of(problem, plan, moves=500, has_table=seed % 2 == 1)
     for _ in range(12):
         starts.next(Budget())
     assert starts.best.value == pytest.approx(brute_force_worst_case(problem, plan), rel=1e-9, abs=1e-9)
@@ -54,13 +60,13 @@ def test_hubs_where_soft_link_budgets_and_norms_end_at_milder_attacks(seed, n_bl
 def test_starts_become_longer(monkeypatch):
     problem, plan = team_problem(1, 6)
     starts, made = starts_of(problem, plan, moves=10), []
-    plain = module.anneal
+    plain = Starts._go_on
 
-    def counted(*given):
-        made.append(given[3].steps)
-        return plain(*given)
+    def counted(starts, arrays, part, *others):
+        made.append(part[-1])
+        return plain(starts, arrays, part, *others)
 
-    monkeypatch.setattr(module, "anneal", counted)
+    monkeypatch.setattr(Starts, "_go_on", counted)
     for _ in range(3 * module.LONGER + 1):
         starts.next(Budget())
     assert sorted(made) == made

@@ -1,0 +1,200 @@
+/* Sets of one size that are worth less than a threshold, and groups of given sizes whose best one is weak. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "records.h"
+#include "sets.h"
+#include "team.h"
+
+/* out = sums + times * information of robot i */
+static void added(const Team *team, const double *sums, double times, int64_t i, double *out) {
+    int width = team->targets * entries_of(team);
+    const double *own = team->information + (size_t)i * width;
+    for (int t = 0; t < width; t++) out[t] = sums[t] + times * own[t];
+}
+
+/* smallest[p]: the sum of the `count` smallest worths after position p, infinite where there are fewer. `kept` (count + 1). */
+static void smallest_after(int robots, int64_t first, const double *worths, int64_t count, double *kept, double *smallest) {
+    int64_t number = 0;
+    double total = 0.0;
+    smallest[robots] = 0.0;
+    for (int64_t p = robots - 1; p >= first; p--) {
+        smallest[p] = number == count ? total : INFINITY;
+        if (count == 0 || (number == count && worths[p] >= kept[number - 1])) continue;
+        int64_t k = number < count ? number : count - 1;
+        if (number == count) total -= kept[k];
+        else number++;
+        for (; k > 0 && kept[k - 1] > worths[p]; k--) kept[k] = kept[k - 1];
+        kept[k] = worths[p];
+        total += worths[p];
+    }
+}
+
+/* Record the sets whose last robot is at the deepest position or after it. */
+static void record(const Team *team, const LowSets *list, const double *worths, double room, int64_t depth) {
+    uint64_t set = 0;
+    for (int64_t d = 0; d < depth; d++) set |= (uint64_t)1 << (team->robots - list->position[d]);
+    for (int64_t i = list->position[depth]; i < team->robots; i++) {
+        if (worths[i] >= list->threshold || list->costs[i] >= room) continue;
+        list->sets[list->counters[1]] = set | (uint64_t)1 << (team->robots - 1 - i);
+        list->values[list->counters[1]++] = worths[i];
+    }
+}
+
+/* Go on until every set is decided (1), so many criteria of targets were computed, or there is no room (0). A set of q more
+   robots is worth at least the average, over them, of what q copies of each would give, as values are concave in the
+   information. `kept` (size + 1) and `one` (targets, entries) are spare. */
+EXPORTED int list_low_sets(const Team *team, LowSets *list, int64_t work, double *kept, double *one) {
+    int robots = team->robots, width = team->targets * entries_of(team);
+    int64_t size = list->size, depth = list->counters[0], done = 0;
+    int fresh = 1;
+    while (depth >= 0) {
+        int64_t left = size - depth, p = list->position[depth];
+        double *worths = list->worths + depth * (robots + 1), *smallest = list->smallest + depth * (robots + 1);
+        const double *sums = list->sums + depth * width;
+        double room = list->room - list->spent[depth];
+        if (fresh) {
+            if (done >= work || list->counters[1] + robots >= list->capacity) break;
+            done += (robots - p) * team->targets;
+            for (int64_t i = p; i < robots; i++) {
+                added(team, sums, (double)left, i, one);
+                worths[i] = value_of(team, one);
+            }
+            smallest_after(robots, p, worths, left - 1, kept, smallest);
+            fresh = 0;
+        }
+        if (left == 1) {
+            record(team, list, worths, room, depth--);
+            continue;
+        }
+        while (p <= robots - left && (worths[p] + smallest[p] >= (double)left * list->threshold || list->costs[p] >= room)) p++;
+        if (p > robots - left) {
+            depth--;
+            continue;
+        }
+        list->position[depth] = p + 1;
+        list->spent[depth + 1] = list->spent[depth] + list->costs[p];
+        added(team, sums, 1.0, p, list->sums + (depth + 1) * width);
+        list->position[++depth] = p + 1;
+        fresh = 1;
+    }
+    list->counters[0] = depth;
+    return depth < 0;
+}
+
+typedef struct {
+    const Team *team;
+    int64_t *home;              /* (robots) group of each, 0 for those that are blinded */
+    const uint8_t *must;        /* (robots) whether it cannot be blinded */
+    int groups;
+    double *sums, *values, *one;
+} Family;
+
+/* Value of a group once `leaves` is replaced by `enters`. */
+static double exchanged(const Family *f, int64_t group, int64_t leaves, int64_t enters) {
+    int width = f->team->targets * entries_of(f->team);
+    const double *sums = f->sums + group * width, *less = f->team->information + (size_t)leaves * width;
+    const double *more = f->team->information + (size_t)enters * width;
+    for (int t = 0; t < width; t++) f->one[t] = sums[t] - less[t] + more[t];
+    return value_of(f->team, f->one);
+}
+
+/* The exchange that leaves the least best group, both groups below what the best one was; 0 where there is none. Among
+   those that leave another group the best one the sum of both decides, with the weight `share`. */
+static int best_exchange(const Family *f, int64_t top, double share, int64_t *leaves, int64_t *enters) {
+    double second = -INFINITY, lowest = INFINITY, goal = f->values[top] - 1e-12 * fabs(f->values[top]);
+    for (int g = 1; g <= f->groups; g++)
+        if (g != top) second = fmax(second, f->values[g]);
+    for (int64_t i = 0; i < f->team->robots; i++) {
+        if (f->home[i] != top) continue;
+        for (int64_t e = 0; e < f->team->robots; e++) {
+            if (f->home[e] == top || (f->home[e] == 0 && f->must[i])) continue;
+            double mine = exchanged(f, top, i, e);
+            if (mine >= goal) continue;
+            double other = f->home[e] > 0 ? exchanged(f, f->home[e], e, i) : -INFINITY;
+            if (other >= goal) continue;
+            double larger = fmax(mine, other), score = fmax(larger, second) + share * (mine + larger);
+            if (score < lowest) lowest = score, *leaves = i, *enters = e;
+        }
+    }
+    return lowest < INFINITY;
+}
+
+/* Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens. *value: of
+   the best group; returns 1 at the end, 0 after so many `steps`, -1 where memory is short. */
+EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *must, double share, int64_t steps, double *value) {
+    int width = team->targets * entries_of(team), finished = 0;
+    double *memory = malloc(((size_t)(groups + 2) * width + (size_t)groups + 1) * sizeof(double));
+    if (!memory) return -1;
+    Family f = {team, home, must, groups, memory, memory + (size_t)(groups + 2) * width, memory + (size_t)(groups + 1) * width};
+    for (int g = 0; g <= groups; g++) memcpy(f.sums + g * width, team->prior, (size_t)width * sizeof(double));
+    for (int64_t i = 0; i < team->robots; i++) added(team, f.sums + home[i] * width, 1.0, i, f.sums + home[i] * width);
+    f.values[0] = -INFINITY;
+    for (int g = 1; g <= groups; g++) f.values[g] = value_of(team, f.sums + g * width);
+    while (1) {
+        int64_t top = 0, leaves = -1, enters = -1;
+        for (int g = 1; g <= groups; g++)
+            if (f.values[g] > f.values[top]) top = g;
+        *value = f.values[top];
+        if (steps-- <= 0) break;
+        if (!best_exchange(&f, top, share, &leaves, &enters)) {
+            finished = 1;
+            break;
+        }
+        int64_t other = home[enters];
+        double *mine = f.sums + top * width, *theirs = f.sums + other * width;
+        for (int t = 0; t < width; t++) {
+            double change = team->information[enters * width + t] - team->information[leaves * width + t];
+            mine[t] += change, theirs[t] -= change;
+        }
+        home[leaves] = other, home[enters] = top;
+        f.values[top] = value_of(team, mine);
+        if (other > 0) f.values[other] = value_of(team, theirs);
+    }
+    free(memory);
+    return finished;
+}
+
+enum { BARRED, INSIDE, OUTSIDE };
+
+/* Exchange one robot inside for one outside, the best pair each time, while that lowers the value of the set. `kept`
+   (targets, entries): information without the robots inside; `where` (robots) is changed in place. Returns 1 at the end, 0
+   after so many `steps`, -1 where memory is short. */
+EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t steps) {
+    int width = team->targets * entries_of(team), finished = 0;
+    double *sums = malloc(2 * (size_t)width * sizeof(double)), *changed = sums + width;
+    if (!sums) return -1;
+    memcpy(sums, kept, (size_t)width * sizeof(double));
+    for (int64_t i = 0; i < team->robots; i++)
+        if (where[i] == INSIDE) added(team, sums, 1.0, i, sums);
+    double value = value_of(team, sums), scale = fabs(value);
+    memcpy(changed, sums, (size_t)width * sizeof(double));
+    for (int64_t i = 0; i < team->robots; i++)
+        if (where[i] == OUTSIDE) added(team, changed, 1.0, i, changed);
+    scale = fmax(scale, fabs(value_of(team, changed))); /* less than 1e-12 of it is rounding */
+    while (steps-- > 0) {
+        int64_t leaves = -1, enters = -1;
+        double lowest = value - 1e-12 * scale;
+        for (int64_t i = 0; i < team->robots; i++) {
+            if (where[i] != INSIDE) continue;
+            for (int64_t e = 0; e < team->robots; e++) {
+                if (where[e] != OUTSIDE) continue;
+                added(team, sums, -1.0, i, changed);
+                added(team, changed, 1.0, e, changed);
+                double other = value_of(team, changed);
+                if (other < lowest) lowest = other, leaves = i, enters = e;
+            }
+        }
+        if (leaves < 0) {
+            finished = 1;
+            break;
+        }
+        where[leaves] = OUTSIDE, where[enters] = INSIDE;
+        added(team, sums, -1.0, leaves, sums);
+        added(team, sums, 1.0, enters, sums);
+        value = lowest;
+    }
+    free(sums);
+    return finished;
+}
