@@ -97,6 +97,9 @@ from .missions.live.tracker import Tracker as Tracker
 from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
 
+# == Studies
+from . import studies as studies
+
 # == Guarantees and bounds
 from .bounds.guarantees import (
     Guarantee as Guarantee,

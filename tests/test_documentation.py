@@ -195,7 +195,7 @@ def test_commands_in_the_text_exist_with_their_options(page: str, command: str) 
             return
         module = words[2] if (ROOT / f"{words[2].replace('.', '/')}.py").exists() else f"{words[2]}.__main__"
         known = (ROOT / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
-        known += (ROOT / "analysis" / "studies" / "command.py").read_text(encoding="utf-8")
+        known += (ROOT / "ratt_opt" / "studies" / "command.py").read_text(encoding="utf-8")
     assert [option for option in options if option not in known] == []
 
 

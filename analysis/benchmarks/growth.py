@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING, Any
 
 import ratt_opt as ro
 from analysis.benchmarks.timing import count_processor_time
-from analysis.studies.plots import IN_TURN, new_figure
 from analysis.tables import print_table
 from ratt_opt._rounding import relative_gap
+from ratt_opt.studies.plots import IN_TURN, new_figure
 
 if TYPE_CHECKING:
     from ratt_opt import Problem

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.command import Entry, main
-from analysis.studies.plots import LOOKS, new_figure, save
-from analysis.studies.statistics import column, select
-from analysis.studies.study import Case, Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.plots import LOOKS, new_figure, save
+from ratt_opt.studies.statistics import column, select
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -15,15 +15,15 @@ import numpy as np
 from analysis.limited_views.flights import MAIN, PLANNERS, STEPS, STUDIES
 from analysis.limited_views.one_step import STUDY as ONE_STEP
 from analysis.limited_views.verdicts import Outcome, outcome, relative_change
-from analysis.studies.statistics import Estimate, column, estimate, select
-from analysis.studies.store import read_table
 from ratt_opt._files import write_atomically
 from ratt_opt.errors import InputError
+from ratt_opt.studies.statistics import Estimate, column, estimate, select
+from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from analysis.studies.study import Study
+    from ratt_opt.studies.study import Study
 
     Row = Mapping[str, str]
 

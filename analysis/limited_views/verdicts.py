@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.statistics import Estimate, estimate
+from ratt_opt.studies.statistics import Estimate, estimate
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

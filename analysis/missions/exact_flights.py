@@ -9,8 +9,8 @@ import sys
 from functools import partial
 
 from analysis.missions.flights import MODELS, SIZES, cases, draw_study, measure
-from analysis.studies.command import Entry, main
-from analysis.studies.study import Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.study import Study
 
 
 def study_of(n_robots: int, n_targets: int) -> Study:

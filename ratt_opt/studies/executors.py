@@ -6,9 +6,9 @@ import logging
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from analysis.studies.versions import VERSIONS
 from ratt_opt.errors import InputError
 from ratt_opt.running.processes import local_processes
+from ratt_opt.studies.versions import VERSIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,7 +86,7 @@ def _check_workers(client: Client, address: str) -> None:
     # A standard-library function, so that a worker without the package can still be asked.
     from pkgutil import resolve_name
 
-    answers = client.run(resolve_name, "analysis.studies.versions:VERSIONS", on_error="return")
+    answers = client.run(resolve_name, "ratt_opt.studies.versions:VERSIONS", on_error="return")
     for worker, answer in sorted(answers.items()):
         if answer != VERSIONS:
             shown = f"{type(answer).__name__}: {answer}" if isinstance(answer, Exception) else answer

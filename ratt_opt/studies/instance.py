@@ -14,7 +14,10 @@ from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.heuristics.random_attack import random_attack
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
-from ratt_opt.problem import Problem
+from ratt_opt.missions.players.attackers import attack_of
+from ratt_opt.missions.players.named import player_called
+from ratt_opt.missions.players.planners import RefinedPlanner, elements_of
+from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
@@ -27,16 +30,19 @@ from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from analysis.studies.study import Case, Seeds
     from ratt_opt._validation import IntArray
     from ratt_opt.attackers.task import AttackResult
-    from ratt_opt.problem import Attack
+    from ratt_opt.missions.players.attackers import OwnAttacker
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.scenario.simulation import Tracking
     from ratt_opt.solvers.result import MaxMinResult
+    from ratt_opt.studies.study import Case, Seeds
 
-__all__ = ["ATTACKERS", "GRAPHS", "PLANNERS", "Instance"]
+__all__ = ["ATTACKERS", "GRAPHS", "METRICS", "PLANNERS", "Instance"]
 
+METRICS = ("value", "proved", "trace", "mse")
+"""What can be measured of a planner under an attacker; the last two need a physical scenario."""
 SENSOR = "sensor."
 """Prefix of the options that are fields of the sensor, not arguments of ``random_scenario``."""
 LARGEST_EXHAUSTIVE = 5
@@ -111,6 +117,32 @@ class Instance:
             self._attacked[key] = worst_case_attack(self.problem, plan)
         return self._attacked[key]
 
+    def plan(self, planner: str | Planner) -> IntArray:
+        """(N,) the elements that a planner of :data:`PLANNERS`, or one of your own, chooses.
+
+        Raises
+        ------
+        InputError : there is none of that name, or yours returns no plan.
+        """
+        if callable(planner):
+            return elements_of(planner(self.problem), self.problem)
+        return player_called("planner", planner, PLANNERS)(self)
+
+    def strike(self, attacker: str | OwnAttacker, plan: IntArray) -> tuple[Attack, float | None]:
+        """The attack of an attacker of :data:`ATTACKERS`, or of your own, and what no attack goes below.
+
+        The second is ``None`` if nobody attacks, and 0, the value of no measurements, if your attacker does not say.
+
+        Raises
+        ------
+        InputError : there is none of that name, or yours returns no attack within the budgets.
+        """
+        if callable(attacker):
+            own = attacker(self.problem, plan)
+            return attack_of(own, self.problem), getattr(own, "lower", 0.0)
+        found = player_called("attacker", attacker, ATTACKERS)(self, plan)
+        return attack_of(found, self.problem), getattr(found, "lower", None)
+
     @property
     def digest(self) -> str:
         """Hash of everything the planners see: equal for equal scenarios, budgets and objectives.
@@ -142,16 +174,19 @@ PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
     "nonrobust_optimum": lambda instance: nonrobust_optimum(instance.problem).elements,
     "greedy": lambda instance: greedy(instance.problem).elements,
     "myopic": lambda instance: myopic(instance.problem).elements,
+    "refined": lambda instance: RefinedPlanner()(instance.problem).elements,
     "random": lambda instance: random_plan(instance.problem, seed=instance.seeds.planner).elements,
 }
+"""The planners of studies by name. ``refined`` is limited by kicks, so that rows are reproducible."""
 
-ATTACKERS: dict[str, Callable[[Instance, IntArray], AttackResult | None]] = {
-    "none": lambda _instance, _plan: None,
+ATTACKERS: dict[str, Callable[[Instance, IntArray], Attack | AttackResult]] = {
+    "none": lambda _instance, _plan: Attack(),
     "exact": lambda instance, plan: instance.worst_case(plan),
     "bounded_rational": lambda instance, plan: bounded_rational_attack(instance.problem, plan),
     "greedy": lambda instance, plan: greedy_attack(instance.problem, plan),
     "random": lambda instance, plan: random_attack(instance.problem, plan, seed=instance.seeds.attacker),
 }
+"""The attackers of studies by name."""
 
 GRAPHS: dict[str, Callable[[int], nx.Graph]] = {
     "ring": nx.cycle_graph,

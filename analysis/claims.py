@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.statistics import Estimate, Verdict, column, estimate, judge, select
-from analysis.studies.store import read_table
 from ratt_opt._files import write_atomically
+from ratt_opt.studies.statistics import Estimate, Verdict, column, estimate, judge, select
+from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
-from analysis.studies.quantities import QUANTITIES
-from analysis.studies.study import name_of
-from ratt_opt.problem import Attack
+from ratt_opt.studies.instance import Instance
+from ratt_opt.studies.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from analysis.studies.study import Case, Cell, Seeds, Study
+    from collections.abc import Sequence
+
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.problem import Attack
+    from ratt_opt.studies.study import Case, Cell, Seeds, Study
 
 __all__ = ["DRAWS", "measure"]
 
@@ -31,24 +29,21 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     problem = None if study.problem is None else study.problem(case, seeds)
     instance = Instance.of(case, seeds, problem=problem)
     row: dict[str, Cell] = {"scenario": instance.digest}
-    for planner in study.planners:
-        plan = np.asarray((PLANNERS[planner] if isinstance(planner, str) else planner)(instance))
-        for attacker in study.attackers:
-            strike = ATTACKERS[attacker] if isinstance(attacker, str) else attacker
-            found = _outcome(instance, plan, strike(instance, plan), study.metrics)
-            where = f"{name_of(planner)}/{name_of(attacker)}"
-            row |= {f"{where}/{metric}": found[metric] for metric in study.metrics}
+    for planner, chosen in study.named_planners.items():
+        plan = instance.plan(chosen)
+        for attacker, striking in study.named_attackers.items():
+            found = _outcome(instance, plan, *instance.strike(striking, plan), metrics=study.metrics)
+            row |= {f"{planner}/{attacker}/{metric}": found[metric] for metric in study.metrics}
     for quantity in study.quantities:
         row |= QUANTITIES[quantity](instance)
     return row
 
 
 def _outcome(
-    instance: Instance, plan: IntArray, result: AttackResult | None, metrics: tuple[str, ...]
+    instance: Instance, plan: IntArray, attack: Attack, proved: float | None, *, metrics: Sequence[str]
 ) -> dict[str, float]:
-    attack = Attack() if result is None else result.attack
     value = instance.problem.team_value(plan, attack)
-    outcome = {"value": value, "proved": value if result is None else result.lower}
+    outcome = {"value": value, "proved": value if proved is None else proved}
     if "trace" in metrics:
         outcome["trace"] = instance.trace(plan, attack)
     if "mse" in metrics:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["Estimate", "Verdict", "column", "estimate", "judge", "select"]
+__all__ = ["Estimate", "Verdict", "column", "estimate", "judge", "players", "select"]
 
 LEVEL = 0.95
 """Confidence of every interval."""
@@ -38,6 +38,15 @@ class Estimate:
             return self
         wider = (self.high - self.mean) * float(t.ppf(1 - (1 - LEVEL) / (2 * m), self.n - 1)) / _quantile(self.n)
         return Estimate(self.mean, self.mean - wider, self.mean + wider, self.n)
+
+    def at_least(self, least: float) -> Estimate:
+        """Return the interval cut off at ``least``, below which the true mean cannot be: it holds as often."""
+        return Estimate(self.mean, max(self.low, least), max(self.high, least), self.n)
+
+    def text(self) -> str:
+        """Return ``mean [low, high]`` to four digits; the mean alone of a single trial."""
+        mean, low, high = (f"{number + 0.0:.4g}" for number in (self.mean, self.low, self.high))
+        return mean if self.n < 2 else f"{mean} [{low}, {high}]"
 
     def show(self, scale: float = 1.0) -> str:
         """Return ``mean [low, high]``, times ``scale``, to three digits and no more than twelve decimals."""
@@ -91,3 +100,13 @@ def select(rows: Iterable[Mapping[str, str]], **factors: object) -> list[Mapping
 def column(rows: Sequence[Mapping[str, str]], name: str) -> FloatArray:
     """(T,) one column as numbers."""
     return np.array([float(row[name]) for row in rows])
+
+
+def players(rows: Sequence[Mapping[str, str]], metric: str) -> dict[str, tuple[str, ...]]:
+    """The planners that meet each attacker in the columns ``planner/attacker/metric``, in their order."""
+    found: dict[str, list[str]] = {}
+    for name in rows[0]:
+        planner, attacker, of, *rest = (*name.split("/"), "", "")
+        if of == metric and not any(rest):
+            found.setdefault(attacker, []).append(planner)
+    return {attacker: tuple(planners) for attacker, planners in found.items()}

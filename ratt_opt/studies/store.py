@@ -18,15 +18,15 @@ from collections import Counter
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
-from analysis.studies.versions import VERSIONS, hash_of_modules
 from ratt_opt._files import output_directory, output_file, write_atomically, write_json
 from ratt_opt.errors import InputError
+from ratt_opt.studies.versions import VERSIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from analysis.studies.study import Cell, Study
+    from ratt_opt.studies.study import Cell, Study
 
 __all__ = ["Journal", "open_journal", "read_table"]
 
@@ -145,7 +145,7 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> dict[str, An
         "version": study.version,
         "fingerprint": study.fingerprint(),
         "made_with": VERSIONS,
-        "measured_by": hash_of_modules(study.modules()),
+        "measured_by": study.code(),
         "definition": study.definition(),
     }
     path = folder / MANIFEST

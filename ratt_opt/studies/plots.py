@@ -6,20 +6,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.report.palette import PLANNERS
+from ratt_opt.report.palette import PLANNERS, looks_of
+from ratt_opt.studies.results import headed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from analysis.studies.statistics import Estimate
     from ratt_opt._validation import FloatArray
     from ratt_opt.report.palette import Look
+    from ratt_opt.studies.results import Mean
+    from ratt_opt.studies.statistics import Estimate
 
-__all__ = ["IN_TURN", "LABELS", "LOOKS", "bands", "bars", "new_figure", "points", "save", "use_palette"]
+__all__ = ["IN_TURN", "LABELS", "LOOKS", "bands", "bars", "comparison", "new_figure", "points", "save", "use_palette"]
 
 LOOKS = {
     "optimum": PLANNERS["maxmin"],
@@ -27,6 +29,8 @@ LOOKS = {
     **{name: PLANNERS[name] for name in ("ratt", "greedy", "random", "myopic")},
 }
 """The library's own, so that a planner looks the same in every figure."""
+LIBRARY = {"optimum": "maxmin", "nonrobust_optimum": "nonrobust"}
+"""Planners of studies that the library's other figures call otherwise."""
 LABELS = {
     "optimum": "OPT",
     "ratt": "RATT",
@@ -35,6 +39,7 @@ LABELS = {
     "random": "Random",
     "myopic": "Myopic",
 }
+"""What the paper calls its planners; others go by their own names."""
 
 
 IN_TURN = [PLANNERS[name].colour for name in ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")]
@@ -62,22 +67,66 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
     Bars start at zero, which belongs to the picture.
     """
     error = {"elinewidth": 0.9, "ecolor": "#222222"}
+    looks = _looks(series)
     for at, width, planner, means, spread in _side_by_side(axes, groups, series):
-        look: dict[str, Any] = {"color": LOOKS[planner].colour, "hatch": LOOKS[planner].hatch, "edgecolor": "white"}
-        look |= {"linewidth": 0, "label": LABELS[planner]}
+        look: dict[str, Any] = {"color": looks[planner].colour, "hatch": looks[planner].hatch, "edgecolor": "white"}
+        look |= {"linewidth": 0, "label": LABELS.get(planner, planner)}
         axes.bar(at, means, 0.9 * width, yerr=spread, capsize=2, error_kw=error, **look)
     axes.axhline(0, color="black", linewidth=0.8)
 
 
 def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:
     """Draw what :func:`bars` draws, as points: for numbers far from zero that differ little."""
+    looks = _looks(series)
     for at, _, planner, means, spread in _side_by_side(axes, groups, series):
         look: dict[str, Any] = {
-            "color": LOOKS[planner].colour,
-            "fmt": LOOKS[planner].marker,
+            "color": looks[planner].colour,
+            "fmt": looks[planner].marker,
             "markeredgecolor": "#222222",
         }
-        axes.errorbar(at, means, spread, label=LABELS[planner], ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look)
+        axes.errorbar(
+            at, means, spread, label=LABELS.get(planner, planner), ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look
+        )
+
+
+def comparison(means: Sequence[Mean], note: str) -> Figure:
+    """Draw one metric's means of planners: a panel for each attacker, a group of marks for each case.
+
+    Bars where the numbers are large against their differences from zero, as values are; points on a line at zero for
+    differences.
+    """
+    attackers, cases = (list(dict.fromkeys(getattr(mean, name) for mean in means)) for name in ("attacker", "case"))
+    shared, groups = _told_apart(cases)
+    figure = new_figure(max(5.0, min(1.2 + 1.5 * len(cases), 14.0)), 0.8 + 2.8 * len(attackers))
+    every = figure.subplots(len(attackers), 1, squeeze=False, sharex=True)[:, 0]
+    for axes, attacker in zip(every, attackers, strict=True):
+        series: dict[str, list[Estimate]] = {}
+        for mean in means:
+            if mean.attacker == attacker:
+                series.setdefault(mean.planner, []).append(mean.estimate)
+        draw = points if means[0].minus else bars
+        draw(axes, groups, series)
+        axes.axhline(0, color="black", linewidth=0.8)
+        axes.set_ylabel(headed(means[0].metric) + (f"\nminus {means[0].minus}'s" if means[0].minus else ""))
+        axes.set_title(f"attacker: {attacker}", loc="left", fontsize="medium")
+    handles, labels = every[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 6), frameon=False)
+    figure.supxlabel("\n".join(filter(None, (shared, note))), fontsize="small")
+    return figure
+
+
+def _told_apart(cases: Sequence[str]) -> tuple[str, list[str]]:
+    """What all cases have in common, and what tells each apart, a line for each part of its name."""
+    parts = [case.split() for case in cases]
+    common = [part for part in parts[0] if all(part in other for other in parts)] if len(cases) > 1 else parts[0]
+    return " ".join(common), ["\n".join(part for part in own if part not in common) for own in parts]
+
+
+def _looks(planners: Iterable[str]) -> dict[str, Look]:
+    """The look of each planner of a figure, also of those that are the user's own."""
+    names = list(planners)
+    looks = looks_of([LIBRARY.get(name, name) for name in names])
+    return {name: looks[LIBRARY.get(name, name)] for name in names}
 
 
 def _side_by_side(
