@@ -17,6 +17,7 @@ from .coordinates.changed import ChangedProblem as ChangedProblem
 from .scenario.generator import random_scenario as random_scenario
 from .scenario.model import Scenario as Scenario, Robot as Robot, Target as Target
 from .scenario.sensor import Sensor as Sensor
+from .scenario.sensors.kinds import register_sensor as register_sensor, sensor_kinds as sensor_kinds
 from .scenario.information_input import InformationInput as InformationInput
 from .scenario.files import (
     load_input as load_input,
@@ -66,13 +67,13 @@ from .missions.players.attack_models import (
     PersistentAttacks as PersistentAttacks,
 )
 from .missions.belief import Belief as Belief
-from .missions.models.sensor_model import SensorModel as SensorModel
-from .missions.models.range_bearing import (
+from .scenario.sensors.model import SensorModel as SensorModel
+from .scenario.sensors.range_bearing import (
     BearingOnly as BearingOnly,
     RangeBearing as RangeBearing,
     RangeOnly as RangeOnly,
 )
-from .missions.models.sensors import PositionSensor as PositionSensor
+from .scenario.sensors.position import PositionSensor as PositionSensor
 from .missions.models.targets import (
     ConstantVelocity as ConstantVelocity,
     CoordinatedTurn as CoordinatedTurn,

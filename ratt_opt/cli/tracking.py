@@ -51,9 +51,13 @@ def track(
         typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
     ] = "known velocity",
     sensor: Annotated[
-        Literal["range and bearing", "range", "bearing"],
-        typer.Option("--sensor", help="What of the file's sensors is measured."),
-    ] = "range and bearing",
+        str | None,
+        typer.Option(
+            "--sensor",
+            help="Part of the file's sensors that is measured (range, bearing), or a registered kind; all by default.",
+            show_default=False,
+        ),
+    ] = None,
     linearisation: Annotated[
         Literal["first order", "second order", "iterated"],
         typer.Option("--linearisation", help="First order is the textbook EKF, without the second-order term."),

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.models.sensor_model import SensorModel
     from ratt_opt.missions.world import World
+    from ratt_opt.scenario.sensors.model import SensorModel
 
 __all__ = ["Reading", "group_pieces", "simulated_readings"]
 

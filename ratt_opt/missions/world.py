@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
     from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.models.robots import RobotMotion
-    from ratt_opt.missions.models.sensor_model import SensorModel
+    from ratt_opt.scenario.sensor import Sensor
+    from ratt_opt.scenario.sensors.model import SensorModel
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["Linearisation", "MissionModel", "Threatened", "World"]
@@ -48,8 +49,9 @@ class MissionModel:
     ----------
     motion : of the targets: ``"known velocity"`` (the paper's), ``"constant velocity"``, ``"coordinated turn"``, or a
         :class:`TargetMotion`
-    sensor : what of the scenario's sensors is measured, ``"range and bearing"`` (the same as ``None``), ``"range"`` or
-        ``"bearing"``; or a :class:`SensorModel` for all robots, or one for each
+    sensor : ``None`` for the scenario's sensors; what of its range-and-bearing sensors is measured, ``"range and
+        bearing"``, ``"range"`` or ``"bearing"``; a registered kind of sensor; or a :class:`Sensor` or
+        :class:`SensorModel` for all robots, or one for each
     robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
         is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
@@ -63,7 +65,7 @@ class MissionModel:
     """
 
     motion: str | TargetMotion = "known velocity"
-    sensor: str | SensorModel | Sequence[SensorModel] | None = None
+    sensor: str | Sensor | SensorModel | Sequence[Sensor | SensorModel] | None = None
     robot_motion: str = "paper"
     linearisation: Linearisation = "second order"
     objective: str = "trace"

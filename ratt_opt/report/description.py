@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.sensors.range_bearing import RangeBearing
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -90,7 +91,8 @@ def describe(problem: Problem, source: object = None) -> Description:
 
 def _views(scenario: Scenario) -> tuple[View, ...]:
     sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
-    return tuple(View(sensor.field_of_view, sensor.max_range) for sensor in sensors)
+    limited = [sensor.sensor if isinstance(sensor, RangeBearing) else sensor for sensor in sensors]
+    return tuple(View(getattr(one, "field_of_view", None), getattr(one, "max_range", None)) for one in limited)
 
 
 def _array(places: tuple[tuple[float, float], ...] | None) -> FloatArray | None:

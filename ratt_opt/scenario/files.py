@@ -75,14 +75,12 @@ def save_scenario(scenario: Scenario | InformationInput, path: str | Path) -> No
 
     Raises
     ------
-    InputError : the file cannot be written, or could not be read back: a file cannot name a sensor class of your own.
-        ``scenario.to_information()`` can be saved then.
+    InputError : the file cannot be written, or could not be read back: a file names a sensor class of your own only if
+        it is registered (:func:`register_sensor`). ``scenario.to_information()`` can always be saved.
     """
     if isinstance(scenario, Scenario):
         for field, kind in scenario.own_sensors.items():
-            rule = (
-                "must be the library's Sensor to be saved in a scenario file (save scenario.to_information() instead)"
-            )
+            rule = "must be the library's Sensor or a registered one to be saved (register_sensor, or to_information())"
             raise InputError(field, rule, kind)
     document = scenario.model_dump(mode="json")
     length = len(json.dumps(document, indent=1))

@@ -17,6 +17,8 @@ from ratt_opt.scenario.own_sensors import replaced_methods
 from ratt_opt.scenario.problem_record import Link, ProblemRecord, near_pairs
 from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
+from ratt_opt.scenario.sensors.kinds import AnySensor, kind_of
+from ratt_opt.scenario.sensors.model import SensorModel
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -43,7 +45,7 @@ class Robot(Record):
     y: Number
     heading: Number = 0.0
     controls: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1)] = DEFAULT_CONTROLS
-    sensor: Sensor | None = None
+    sensor: Annotated[Sensor | SensorModel, AnySensor] | None = None
     name: Text = ""
 
 
@@ -91,7 +93,7 @@ class Scenario(ProblemRecord):
     version: Literal[1] = 1
     robots: Annotated[tuple[Robot, ...], Field(min_length=1)]
     targets: Annotated[tuple[Target, ...], Field(min_length=1)]
-    sensor: Sensor = Sensor()
+    sensor: Annotated[Sensor | SensorModel, AnySensor] = Sensor()
     sampling_period: Positive = 1.0
     alpha_s: Whole
     alpha_c: Whole
@@ -183,11 +185,10 @@ class Scenario(ProblemRecord):
 
     @property
     def own_sensors(self) -> dict[str, str]:
-        """Fields that hold a sensor with behaviour of its own, and in words which."""
+        """Fields that hold a sensor with behaviour of its own that no file can name, and in words which."""
         fields = {"sensor": self.sensor}
         fields |= {f"robots[{i}].sensor": own for i, robot in enumerate(self.robots) if (own := robot.sensor)}
-        found = {name: (type(sensor).__name__, replaced_methods(sensor)) for name, sensor in fields.items()}
-        return {name: f"{kind} with its own {', '.join(own)}" for name, (kind, own) in found.items() if own}
+        return {name: words for name, sensor in fields.items() if (words := _unnamed(sensor))}
 
     @property
     def storable(self) -> Scenario | InformationInput:
@@ -251,6 +252,16 @@ class Scenario(ProblemRecord):
                 rule,
                 tuple(self.predicted_targets[j].tolist()),
             )
+
+
+def _unnamed(sensor: Sensor | SensorModel) -> str:
+    """What a sensor is that no file can name; nothing if one can."""
+    if type(sensor) is Sensor or kind_of(sensor):
+        return ""
+    if isinstance(sensor, SensorModel):
+        return f"{type(sensor).__name__}, which is not registered"
+    own = replaced_methods(sensor)
+    return f"{type(sensor).__name__} with its own {', '.join(own)}" if own else ""
 
 
 def _nested(array: FloatArray) -> Any:

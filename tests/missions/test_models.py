@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratt_opt import InputError, Sensor, random_scenario
-from ratt_opt.missions.models.range_bearing import BearingOnly, RangeBearing, RangeOnly
 from ratt_opt.missions.models.robots import move_on_arcs, robot_motion
-from ratt_opt.missions.models.sensors import PositionSensor, sensors_of
+from ratt_opt.missions.models.sensors import sensors_of
 from ratt_opt.missions.models.targets import ConstantVelocity, CoordinatedTurn, KnownVelocity, target_motion
+from ratt_opt.scenario.sensors.position import PositionSensor
+from ratt_opt.scenario.sensors.range_bearing import BearingOnly, RangeBearing, RangeOnly
 
 SENSORS = (RangeBearing(Sensor()), RangeOnly(Sensor()), BearingOnly(Sensor()), PositionSensor(0.7))
 

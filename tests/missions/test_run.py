@@ -22,11 +22,11 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.budget import Budget
-from ratt_opt.missions.models.sensors import PositionSensor
 from ratt_opt.missions.players.attack_models import PermanentFailures, PersistentAttacks
 from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
+from ratt_opt.scenario.sensors.position import PositionSensor
 from tests.missions import numpy_filter
 
 
@@ -342,7 +342,7 @@ def test_bad_models_and_journals(tmp_path) -> None:
     with pytest.raises(InputError, match="model must be a MissionModel"):
         run_mission(scenario_of(), steps=1, model=3)
     for sensor in (3, "radar", [], [3]):
-        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, a SensorModel, or"):
+        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, position, a Sensor"):
             MissionModel(sensor=sensor)
     with pytest.raises(InputError, match="sensor must be a SensorModel, or one for each of"):
         run_mission(scenario_of(), steps=1, model=MissionModel(sensor=[PositionSensor(1.0)]))

@@ -9,10 +9,10 @@ import numpy as np
 
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
-from ratt_opt.missions.models.own_information import stated_information, stated_weights
-from ratt_opt.missions.models.sensor_model import SensorModel
 from ratt_opt.scenario.own_sensors import tells_itself
 from ratt_opt.scenario.sensor import Sensor, jacobian, measure
+from ratt_opt.scenario.sensors.model import SensorModel
+from ratt_opt.scenario.sensors.own_information import stated_information, stated_weights
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray

@@ -10,6 +10,8 @@ import numpy as np
 from ratt_opt.scenario.sensor import wrap_angle
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import BoolArray, FloatArray
 
 __all__ = ["SensorModel"]
@@ -18,11 +20,20 @@ POSE_STEP = 1e-5
 """Of a pose [m], [rad], for central differences: errors of 1e-10 of the curvature, and 1e-11 of rounding."""
 
 
+POINT_STEP, BEND_STEP = 6e-6, 1e-3
+"""Of a point, per metre of its distance from the origin and at least per metre: the cube root of a rounding, at which
+central differences err by about 1e-10; of these the wider step makes second derivatives good to 1e-6."""
+
+
 class SensorModel(ABC):
     """Measurements (..., k) of points (..., 2) [m] from poses (..., 3) x [m], y [m], heading [rad].
 
-    A sensor of your own subclasses this: what it measures, its first and second derivatives by the point, its noise
-    and its reach. Components are independent; those named in ``angles`` wrap around.
+    A sensor of your own subclasses this and says how many numbers it measures (``size``), which (``measure``) and how
+    noisy they are (``noise``); with limits to what it sees also ``sees``. Derivatives by the point are central
+    differences unless you give them. Components are independent; those named in ``angles`` wrap around.
+
+    It can stand wherever a sensor can: ``Robot(sensor=)``, ``Scenario(sensor=)``, ``MissionModel(sensor=)``. Make it a
+    frozen dataclass, so that equal ones are equal; :func:`register_sensor` or an entry point gives it a name in files.
     """
 
     size: ClassVar[int]
@@ -34,13 +45,13 @@ class SensorModel(ABC):
     def measure(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., k) without noise."""
 
-    @abstractmethod
     def jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., k, 2) derivative by the point."""
+        """(..., k, 2) derivative by the point; central differences, to some ten digits, unless a subclass knows it."""
+        return _slopes(lambda x: self.measure(poses, x), points, POINT_STEP, self.surprise)
 
-    @abstractmethod
     def hessian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., k, 2, 2) second derivative by the point."""
+        """(..., k, 2, 2) second derivative by the point; differences of :meth:`jacobian`, to some four digits."""
+        return _slopes(lambda x: self.jacobian(poses, x), points, BEND_STEP, np.subtract)
 
     @abstractmethod
     def noise(self, poses: FloatArray, points: FloatArray) -> FloatArray:
@@ -117,3 +128,19 @@ class SensorModel(ABC):
         information = np.swapaxes(slope, -1, -2) @ weights @ slope
         information = (information + np.swapaxes(information, -1, -2)) / 2
         return np.asarray(information * self.sees(here, there)[..., None, None])
+
+
+def _slopes(
+    f: Callable[[FloatArray], FloatArray],
+    points: FloatArray,
+    step: float,
+    difference: Callable[[FloatArray, FloatArray], FloatArray],
+) -> FloatArray:
+    """Central differences of ``f`` (..., k) by points (..., 2): (..., k, 2)."""
+    steps = step * np.maximum(1.0, np.abs(points).max(axis=-1, keepdims=True))
+    columns = []
+    for axis in np.eye(2):
+        ends = [f(points + sign * steps * axis) for sign in (1, -1)]
+        change = difference(*ends)
+        columns.append(change / (2 * steps.reshape(steps.shape[:-1] + (1,) * (change.ndim - steps.ndim + 1))))
+    return np.stack(columns, axis=-1)
