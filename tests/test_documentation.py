@@ -70,7 +70,7 @@ def run_block(block: Block, names: dict[str, object], folder: Path) -> None:
         assert done.returncode == 0, f"{block.code}\n{done.stdout}\n{done.stderr}"
     else:
         assert block.language == "python", block
-        exec(compile(block.code, "a block", "exec"), names)
+        exec(compile(block.code, "a block", "exec", dont_inherit=True), names)
         check_results(block.code, names)
 
 
@@ -234,6 +234,6 @@ def test_examples_run(path: Path, folder: Path) -> None:
     from matplotlib.figure import Figure
 
     names: dict[str, object] = {"__name__": "__main__"}
-    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
+    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec", dont_inherit=True), names)
     assert any(isinstance(value, Figure) for value in names.values())
     assert not list(folder.glob("[!.]*"))  # an example leaves nothing behind
