@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Self
 
+from ratt_opt.findings.units import value_unit
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -36,6 +38,12 @@ class AssessedPlan:
     best_group: frozenset[int]
     posterior: FloatArray | None
 
+    def role(self, robot: int) -> str:
+        """What becomes of a robot under the attack: ``blinded``, ``sees`` (in the best group) or ``cut off``."""
+        if robot in self.worst_case.attack.sensing:
+            return "blinded"
+        return "sees" if robot in self.best_group else "cut off"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Findings:
@@ -43,6 +51,7 @@ class Findings:
 
     problem: Problem
     alpha_cs: int
+    n_max_upper: int | None = None
     ratt: AssessedPlan
     baselines: tuple[AssessedPlan, ...]
     optimum: MaxMinResult
@@ -59,6 +68,7 @@ class Findings:
     views: Mapping[str, AssessedPlan] = field(default_factory=dict)
     seeds: Mapping[str, int] = field(default_factory=dict)
     interrupted: bool = False
+    remarks: tuple[str, ...] = ()
 
     @property
     def objective(self) -> str:
@@ -68,8 +78,8 @@ class Findings:
 
     @property
     def unit(self) -> str:
-        """Unit of the objective; empty where none is stated."""
-        return getattr(self.problem.objective, "unit", "")
+        """Unit of the objective; of a state that is not a position in words; empty if none is stated."""
+        return value_unit(self.problem.objective, getattr(self.source, "units", None))
 
     @property
     def n_targets(self) -> int | None:

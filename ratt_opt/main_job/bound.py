@@ -9,7 +9,10 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
+import numpy as np
+
 from ratt_opt._rounding import down, up
+from ratt_opt._values import counted
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget, Stop
@@ -17,8 +20,12 @@ from ratt_opt.certificates.certification import INTERRUPTED, NOT_ASKED_FOR, Cert
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
+from ratt_opt.graph.largest_group.counting import by_counting
+from ratt_opt.graph.largest_group.smallest import SUBSETS_SOON, by_subsets
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
+from ratt_opt.missions.first_step import first_step
+from ratt_opt.missions.world import MissionModel
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
@@ -104,6 +111,7 @@ def bound(
     scenario_or_problem: HasProblem | Problem,
     *,
     objective: str | None = None,
+    model: MissionModel | None = None,
     gap: float = 1e-9,
     time_limit: float | None = 60.0,
     certificate: str | Path | None = None,
@@ -118,7 +126,10 @@ def bound(
     Parameters
     ----------
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
-    objective : name of the criterion (trace where ``None``); not with a problem, which has its own
+    objective : name of the criterion (the model's, or the trace, if ``None``); not with a problem, which has its own
+    model : of a scenario: plan as the first step of a mission with this model does, with its sensors, motions and
+        filter. The default filter of missions counts what linearisation leaves out, so values are below those of the
+        scenario alone, which is the paper's linearised problem
     gap : relative gap at which the search for the optimum stops
     time_limit : seconds for all of it, of which the search for the optimum may take three quarters of what
         the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit. Of a set
@@ -138,7 +149,7 @@ def bound(
     if guarantees not in GUARANTEES:
         raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
     began = datetime.now(UTC)
-    problem, source = _problem_of(scenario_or_problem, objective)
+    problem, source = _problem_of(scenario_or_problem, objective, model)
     check_workers(problem, workers)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
@@ -165,6 +176,7 @@ def bound(
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
+        n_max_upper=_n_max_upper(problem, problem.n_robots - alpha_cs, budget),
         ratt=robust,
         baselines=baselines,
         optimum=optimum,
@@ -181,6 +193,7 @@ def bound(
         views=views,
         seeds={"random": RANDOM_SEED},
         interrupted=whole.stop() is Stop.INTERRUPTED,
+        remarks=_remarks(problem),
     )
     return _delivered(report.with_certificate(proof), failure)
 
@@ -232,8 +245,15 @@ def _kept(budget: Budget, step: Callable[[], T]) -> T:
         return step()
 
 
-def _problem_of(given: HasProblem | Problem, objective: str | None) -> tuple[Problem, HasProblem | None]:
+def _problem_of(
+    given: HasProblem | Problem, objective: str | None, model: MissionModel | None = None
+) -> tuple[Problem, HasProblem | None]:
     """The problem, and what it was made from where that is known."""
+    if model is not None:
+        if not isinstance(model, MissionModel):
+            raise InputError("model", "must be a MissionModel", type(model).__name__)
+        step = first_step(given, model)
+        return step.problem(objective or model.objective), step
     if isinstance(given, Problem):
         if objective is not None:
             raise InputError("objective", "must be absent where a problem is given (it has its own)", objective)
@@ -268,6 +288,30 @@ def _omitted(baselines: tuple[PlanAssessment, ...], found: Curvature | None, gua
     elif guarantees == "quick" and found is not None and found.stop is Stop.TIME:
         omitted["a narrower curvature"] = f"guarantees are quick: {QUICK_SECONDS:g} s at most"
     return omitted
+
+
+def _n_max_upper(problem: Problem, lower: int, budget: Budget) -> int | None:
+    """A size of the largest group that some cut leaves: ``lower`` itself if that is known to be the smallest."""
+    if problem.threat.links_alike:
+        return lower
+    links = replace(problem.threat, alpha_s=0)
+    found = by_counting(links, budget).upper
+    if found > lower and problem.n_robots <= SUBSETS_SOON:
+        found = by_subsets(links, budget).upper
+    return found
+
+
+def _remarks(problem: Problem) -> tuple[str, ...]:
+    """What a user should know of the input: elements, and robots, that tell nothing about any target."""
+    f = problem.objective
+    if not isinstance(f, InformationObjective):
+        return ()
+    silent = np.all(f.information == 0, axis=(1, 2, 3))
+    if not silent.any():
+        return ()
+    robots = [i for i, own in enumerate(problem.choices) if silent[own].all()]
+    none = f"; none of robot {', '.join(map(str, robots))} tells anything: check its sensor" if robots else ""
+    return (f"{silent.sum()} of {counted(f.n, 'element')} tell nothing about any target{none}",)
 
 
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Problem
 
-__all__ = ["Description", "View", "describe"]
+__all__ = ["Description", "View", "describe", "named"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +48,8 @@ class Description:
     views: tuple[View, ...] | None = None
 
     def robot(self, i: int) -> str:
-        """Robot ``i`` for people: its number, and its name where it has one."""
-        return f"{i} {self.robot_names[i]}".rstrip()
+        """Robot ``i`` for people: its number, and its name if that says more."""
+        return named(i, self.robot_names[i], "robot")
 
     def label(self, element: int) -> str:
         """What an element is; its index where nothing is known."""
@@ -57,6 +58,13 @@ class Description:
     def pose_after(self, element: int) -> list[float] | None:
         """Where its robot is after an element's control: x, y [m], heading [rad] as far as known."""
         return None if self.poses_after is None else [float(x) for x in self.poses_after[element]]
+
+
+def named(number: int, name: str, kind: str) -> str:
+    """A robot's number, or a target's after a T, with its name unless that says the same ("R2", "robot 2", "2")."""
+    shown = f"T{number}" if kind == "target" else f"{number}"
+    again = re.fullmatch(rf"(?:{kind}|{kind[0]})?[\s_#-]*0*{number}", name, re.IGNORECASE)
+    return f"{shown} {name}" if name and not again else shown
 
 
 def describe(problem: Problem, source: object = None) -> Description:
@@ -83,10 +91,16 @@ def describe(problem: Problem, source: object = None) -> Description:
         target_names=source.target_names or unnamed[1],
         weights=weights,
         labels=source.labels,
+        controls=_array(source.element_controls),
         poses=_array(source.robot_positions),
-        poses_after=_array(source.element_positions),
+        poses_after=_poses_after(source),
         targets=_array(source.target_positions),
     )
+
+
+def _poses_after(source: InformationInput) -> FloatArray | None:
+    places, headings = _array(source.element_positions), source.element_headings
+    return places if places is None or headings is None else np.column_stack([places, headings])
 
 
 def _views(scenario: Scenario) -> tuple[View, ...]:

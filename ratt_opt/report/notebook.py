@@ -31,8 +31,7 @@ def plan_view(plan: AssessedPlan) -> str:
     """Return one plan as a table: what each robot does, and what is left of it."""
     attack = plan.worst_case.attack
     rows = [
-        (i, element, "yes" if i in plan.bait else "", "blinded" if i in attack.sensing else "sees")
-        for i, element in enumerate(plan.elements.tolist())
+        (i, element, "yes" if i in plan.bait else "", plan.role(i)) for i, element in enumerate(plan.elements.tolist())
     ]
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
     lost = f"{counted(len(attack.sensing), 'robot')} blinded and {counted(len(attack.links), 'link')} cut"
@@ -50,7 +49,7 @@ def report_view(report: Findings) -> str:
         )
         for plan in report.plans
     ]
-    table = html_table("what each planner keeps", ("planner", "worst-case value", "of the best possible"), rows)
+    table = html_table("what each planner keeps", ("planner", "worst-case value", "share of the best possible"), rows)
     drawing = io.StringIO()
     plan_figure(report, picture_of(report.source, report)).savefig(drawing, format="svg", metadata={"Date": None})
     svg = drawing.getvalue()

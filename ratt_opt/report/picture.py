@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.report.description import View, describe
+from ratt_opt.report.description import View, describe, named
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -59,7 +59,7 @@ class Picture:
         """Target ``j`` on the map: its number, its name if it has one, its weight where weights differ."""
         name = self.target_names[j] if self.target_names else ""
         weight = f" ×{self.weights[j]:g}" if self.weights is not None and self.is_weighted else ""
-        return f"T{j} {name}".rstrip() + weight
+        return named(j, name, "target") + weight
 
     @property
     def seeing(self) -> frozenset[int]:
@@ -86,7 +86,7 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
         is_layout=after is None and known.poses is None,
         headings=None if after is None or after.shape[1] < 3 else after[:, 2],
         before=None if known.poses is None or after is None else known.poses[:, :2],
-        names=known.robot_names,
+        names=tuple(name if known.robot(i).endswith(f" {name}") else "" for i, name in enumerate(known.robot_names)),
         targets=known.targets,
         target_names=known.target_names,
         weights=known.weights,

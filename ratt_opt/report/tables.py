@@ -144,12 +144,15 @@ def _best_links(found: Mapping[str, BestLinks]) -> Table:
 
 
 def _planners(report: Findings) -> Table:
-    table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
+    unit = f" [{report.unit}]" if report.unit else ""
+    value = f"worst-case value{unit}"
+    table = _table("what each planner keeps", "planner", value, "share of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(plan.worst_case.lower, report.upper)
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
         table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
-    table.caption = "; ".join(["* recommended: the best proved worst case", *omitted_texts(report)])
+    lines = ["* recommended: the best proved worst case", *omitted_texts(report), *report.remarks]
+    table.caption = "\n".join(lines)
     return table
 
 
@@ -163,10 +166,9 @@ def _plan(report: Findings) -> Table:
     table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
     home = {i: k for k, group in enumerate(plan.groups) for i in group}
     for i, element in enumerate(plan.elements.tolist()):
-        state = "blinded" if i in plan.worst_case.attack.sensing else "sees"
         group = f", group {home[i]} of {len(plan.groups)}" if len(plan.groups) > 1 else ""
         control = known.labels[element] if known.labels else ""
-        table.add_row(known.robot(i), str(element), control, state + group)
+        table.add_row(known.robot(i), str(element), control, plan.role(i) + group)
     table.caption = f"cut links: {_links(plan.worst_case.attack)}"
     return table
 
@@ -179,10 +181,11 @@ def _bracket(report: Findings) -> Table:
         table.add_row("gap, of the criterion left after measuring", up(optimum.posterior_gap, 3))
     table.add_row("search stopped because", optimum.stop.value)
     table.add_row("certificate", verdict_text(report.certificate))
-    table.add_row("certified ratio of RATT", share_text(report.ratt.worst_case.lower, report.upper))
+    table.add_row("RATT's certified share of the best possible", share_text(report.ratt.worst_case.lower, report.upper))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
-    is_known = problem.threat.links_alike  # by CAA; on other graphs RATT may know but a bound
-    table.add_row("smallest largest group, n_max", f"{'' if is_known else 'at least '}{report.n_max}")
+    is_known = report.n_max == report.n_max_upper  # a bound else, of which RATT is sure
+    most = "" if report.n_max_upper is None else f", at most {report.n_max_upper}"
+    table.add_row("smallest largest group, n_max", f"{report.n_max}" if is_known else f"at least {report.n_max}{most}")
     table.add_row("equivalent sensing attacks, alpha_cs", f"{'' if is_known else 'at most '}{report.alpha_cs}")
     for name, bracket in (("curvature k", report.curvature), ("total curvature c", report.total_curvature)):
         if bracket is not None:
@@ -202,7 +205,7 @@ def verdict_text(given: Certification) -> str:
 
 
 def _guarantees(report: Findings) -> Table:
-    table = _table("what was guaranteed before planning", "guarantee", "value", "needs", "proved at")
+    table = _table("what was guaranteed before planning", "guarantee", "share", "needs", "proved at")
     best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0

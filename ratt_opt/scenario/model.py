@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
-from ratt_opt.scenario.information_input import InformationInput
+from ratt_opt.scenario.information_input import InformationInput, nested
 from ratt_opt.scenario.motion import move_robots, predict_targets
 from ratt_opt.scenario.own_sensors import replaced_methods
 from ratt_opt.scenario.problem_record import Link, ProblemRecord, near_pairs
@@ -199,8 +199,8 @@ class Scenario(ProblemRecord):
         """The same one-step problem as matrices: what a sensor class of your own tells goes into a file this way."""
         links = near_pairs(self.poses, self.communication_range) if self.communication_range else self.links
         return InformationInput(
-            prior=_nested(self.prior),
-            information=_nested(self.information),
+            prior=nested(self.prior),
+            information=nested(self.information),
             robot=tuple(self.robot.tolist()),
             alpha_s=self.alpha_s,
             alpha_c=self.alpha_c,
@@ -212,9 +212,12 @@ class Scenario(ProblemRecord):
             notes=self.notes,
             robot_names=tuple(robot.name for robot in self.robots),
             target_names=tuple(target.name for target in self.targets),
-            robot_positions=_nested(self.poses[:, :2]),
-            element_positions=_nested(self.predicted_poses[:, :2]),
-            target_positions=_nested(self.predicted_targets),
+            robot_positions=nested(self.poses[:, :2]),
+            element_positions=nested(self.predicted_poses[:, :2]),
+            target_positions=nested(self.predicted_targets),
+            units=("m", "m"),
+            element_headings=nested(self.predicted_poses[:, 2]),
+            element_controls=nested(self.controls),
         )
 
     @property
@@ -262,8 +265,3 @@ def _unnamed(sensor: Sensor | SensorModel) -> str:
         return f"{type(sensor).__name__}, which is not registered"
     own = replaced_methods(sensor)
     return f"{type(sensor).__name__} with its own {', '.join(own)}" if own else ""
-
-
-def _nested(array: FloatArray) -> Any:
-    """An array as nested tuples, the form of the fields of a record."""
-    return tuple(_nested(part) for part in array) if array.ndim > 1 else tuple(array.tolist())

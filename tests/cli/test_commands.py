@@ -57,7 +57,7 @@ def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFi
     assert report["total_curvature"]["domain"] == "feasible"
     assert {"greedy", "myopic", "random", "nonrobust"} <= report["baselines"].keys()
     printed = capsys.readouterr().out
-    assert "certified ratio of RATT" in printed
+    assert "RATT's certified share of the best possible" in printed
     assert (tmp_path / "demo" / "plan.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "demo" / "plan.svg").read_text().startswith("<?xml")
 

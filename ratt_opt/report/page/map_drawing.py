@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.report.description import describe
+from ratt_opt.report.description import describe, named
 from ratt_opt.report.fields import FIELD_WORDS, LOST_WORDS, WATCH_WORDS, field_of, watched_pairs
 
 if TYPE_CHECKING:
@@ -155,8 +155,7 @@ def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
         return
     for j, target in enumerate(picture.targets):
         x, y = place(target)
-        text = f"target {j}"
-        text += f" {picture.target_names[j]}" if picture.target_names and picture.target_names[j] else ""
+        text = f"target {named(j, picture.target_names[j] if picture.target_names else '', 'target')}"
         text += "" if picture.weights is None else f", weight {picture.weights[j]:g}"
         if picture.prior is not None and picture.posterior is not None:
             for kind, covariance in (("before", picture.prior[j]), ("after", picture.posterior[j])):
@@ -183,7 +182,7 @@ def _robots(picture: Picture, at: list[tuple[float, float]], report: Findings, v
     for i, (x, y) in enumerate(at):
         hit, best = i in picture.attack.sensing, i in picture.best
         watches = ", ".join(f"T{j}" for _, j in watched_pairs(picture, [i]))
-        role = "blinded" if hit else "sees, in the best group" if best else "cut off from the best group"
+        role = view.role(i)
         guarded = ", protected" if i in picture.protected_robots else ""
         text = f"robot {known.robot(i)}: {known.label(int(view.elements[i]))}; {role}{guarded}"
         text += f"; measures {watches or 'no target'}" if picture.watched is not None else ""

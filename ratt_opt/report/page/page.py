@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["report_page"]
 
 GUARANTEE_COLUMNS = ("guarantee", "share", "needs", "proved at")
+LONG = 5
+"""Letters of a unit that is put into brackets: it is words, not a symbol."""
 VIEW_TITLES = {
     "worst": "worst attack",
     "next worst": "next worst: spares a part of the worst attack",
@@ -51,7 +53,7 @@ def report_page(report: Findings) -> str:
 
 def _sections(report: Findings) -> Iterator[str]:
     plan = report.recommended
-    unit = f" {report.unit}" if report.unit else ""
+    unit = f" {report.unit}" if len(report.unit) < LONG else f" [{report.unit}]"
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
     share = share_text(plan.worst_case.lower, report.upper)
     yield (
@@ -104,8 +106,10 @@ def _planner_section(report: Findings) -> Iterator[str]:
     missing, brackets, longest = bar_ends(report)
     what = "shortfall from the best possible" if missing else "kept"
     yield '<section aria-labelledby="planners"><h2 id="planners">What each planner keeps</h2><div class="wide"><table>'
-    yield '<thead><tr><th scope="col">planner</th><th scope="col">worst-case value</th><th scope="col">of the best '
-    yield f'possible</th><th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
+    unit = escape(f" [{report.unit}]" if report.unit else "")
+    yield f'<thead><tr><th scope="col">planner</th><th scope="col">worst-case value{unit}</th>'
+    yield '<th scope="col">share of the best possible</th>'
+    yield f'<th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
     for plan, bracket in zip(report.plans, brackets, strict=True):
         low, high = plan.worst_case.lower, plan.worst_case.upper
         ends = [100 * min(max(x / longest, 0.0), 1.0) for x in bracket]
@@ -120,7 +124,7 @@ def _planner_section(report: Findings) -> Iterator[str]:
             f"{bracket_text(low, high)}</td><td>{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
         )
     yield "</tbody></table></div>"
-    for text in omitted_texts(report):
+    for text in (*omitted_texts(report), *report.remarks):
         yield f"<p>{escape(text[0].upper() + text[1:])}.</p>"
     yield "</section>"
 
