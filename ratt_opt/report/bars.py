@@ -17,7 +17,7 @@ __all__ = ["bar_ends", "draw_bars"]
 
 CLOSE = 0.5
 """From this share of the bound on, what is missing is drawn, not what is kept: one per cent stays visible."""
-ROOM = 2.1
+ROOM = 2.5
 """The axis ends at so many times the longest bar, so that the numbers beside the bars have room."""
 
 
@@ -49,7 +49,8 @@ def draw_bars(axes: Axes, report: Findings) -> None:
         if high - low > least:
             axes.errorbar((low + high) / 2, row, xerr=(high - low) / 2, color=INK, capsize=5, linewidth=1.4)
         kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper, digits=6)
-        text = f"{kept}, {share_text(plan.worst_case.lower, report.upper)}"
+        share = share_text(plan.worst_case.lower, report.upper)
+        text = f"{kept}, {share}" if share.startswith("optimal") else f"{kept}, {share} of the best"
         at, weight = high + 0.02 * ROOM * longest, "bold" if chosen else "normal"
         room = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}  # no line runs through the words
         axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight, bbox=room)
@@ -58,7 +59,7 @@ def draw_bars(axes: Axes, report: Findings) -> None:
     axes.set_yticks(range(len(plans)), [plan.name for plan in plans])
     axes.invert_yaxis()
     axes.set_xlim(0, ROOM * longest)
-    unit = f" [{report.unit}]" if report.unit else ""
+    unit = f"[{report.unit}] " if report.unit else ""
     what = "shortfall from the best possible" if missing else "value kept"
-    axes.set_xlabel(f"{report.objective}: {what} under the worst attack{unit}\n(whiskers: not decided)")
+    axes.set_xlabel(f"{report.objective}: {what} under the worst attack\n{unit}(whiskers: not decided)")
     axes.spines[["top", "right"]].set_visible(False)

@@ -21,10 +21,15 @@ __all__ = ["html_table", "plan_view", "report_view"]
 
 
 def html_table(caption: str, columns: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return a table with a caption and headed columns; every text is escaped."""
-    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in columns)
-    body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
+    """Return a table with a caption and headed columns; every text is escaped. Cells know the name of their column."""
+    names = list(columns)
+    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in names)
+    body = "".join(f"<tr>{''.join(map(_cell, names, row))}</tr>" for row in rows)
     return f"<table><caption>{escape(caption)}</caption><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _cell(name: str, value: object) -> str:
+    return f'<td data-column="{escape(name)}">{escape(str(value))}</td>'
 
 
 def plan_view(plan: AssessedPlan) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,7 +25,7 @@ class Picture:
     ``places`` : (N, 2) robots after their controls, or a layout of the graph where ``is_layout``.
     ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty where none.
     ``targets`` : (M, 2) predicted means; ``target_names`` and ``weights`` : (M,); ``prior``, ``posterior`` :
-    (M, 2, 2) covariances, the latter with the best surviving group's measurements.
+    (M, 2, 2) covariances of the positions, the latter with the best surviving group's measurements.
     ``views`` : (N,) fields of view after the controls, where a sensor is limited; ``watched`` : (N, M) whether a robot
     measures a target, where not every robot measures all.
     ``groups`` : connected groups left by the attack; ``best`` : the one that performs best.
@@ -80,7 +80,7 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
     problem, known = report.problem, describe(report.problem, source)
     places = _places(report, plan, known)
     after = None if known.poses_after is None else known.poses_after[plan.elements]
-    flat = known.targets is not None and plan.posterior is not None and plan.posterior.shape[-1] == 2
+    plane = None if known.targets is None or plan.posterior is None else _plane(source, plan.posterior.shape[-1])
     return Picture(
         places=places,
         is_layout=after is None and known.poses is None,
@@ -90,8 +90,8 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
         targets=known.targets,
         target_names=known.target_names,
         weights=known.weights,
-        prior=problem.information_objective.prior if flat else None,
-        posterior=plan.posterior if flat else None,
+        prior=None if plane is None else problem.information_objective.prior[plane],
+        posterior=None if plane is None or plan.posterior is None else plan.posterior[plane],
         views=_views(known) if after is not None and after.shape[1] == 3 else None,
         watched=_watched(problem, plan) if after is not None and known.targets is not None else None,
         links=problem.communication.links,
@@ -101,6 +101,16 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
         groups=plan.groups,
         best=next((group for group in plan.groups if plan.best_group and plan.best_group <= group), plan.groups[0]),
     )
+
+
+def _plane(source: object, dimension: int) -> tuple[Any, ...] | None:
+    """What picks the covariances (M, 2, 2) of x and y out of those of whole states; ``None`` if they are not told.
+
+    They are the first two coordinates in metres; a state of two numbers is a position unless its units say otherwise.
+    """
+    units = getattr(source, "units", None) or (("m", "m") if dimension == 2 else ())
+    metres = [k for k, unit in enumerate(units) if unit == "m"][:2]
+    return (slice(None), *np.ix_(metres, metres)) if len(metres) == 2 else None
 
 
 def _views(known: Description) -> tuple[View, ...] | None:

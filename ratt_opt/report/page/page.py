@@ -59,8 +59,8 @@ def _sections(report: Findings) -> Iterator[str]:
     yield (
         f"<p>This plan keeps <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}) under the worst "
         f"attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
-        f"{counted(report.problem.alpha_c, 'link')}: of what any plan could keep that "
-        f"is {escape(share)}, and no plan keeps more than {up(report.upper, 10)}.</p>"
+        f"{counted(report.problem.alpha_c, 'link')}. {escape(_share_sentence(share))} "
+        f"No plan keeps more than {up(report.upper, 10)}.</p>"
     )
     yield from _map_section(report)
     yield from _planner_section(report)
@@ -69,6 +69,12 @@ def _sections(report: Findings) -> Iterator[str]:
     seconds = [(name, f"{value:.2f}") for name, value in report.seconds.items()]
     yield html_table("Seconds of each step", ("step", "seconds"), seconds)
     yield f"<footer>ratt-opt, {escape(report.created)}. Every number in full precision: report.json.</footer>"
+
+
+def _share_sentence(share: str) -> str:
+    if share.startswith("optimal"):
+        return f"It is {share}."
+    return f"That is {share} of what any plan could keep."
 
 
 def _map_section(report: Findings) -> Iterator[str]:
@@ -120,8 +126,10 @@ def _planner_section(report: Findings) -> Iterator[str]:
             f'<rect width="{ends[0]:.3f}" height="8" fill="{look_of(plan.name).colour}"/></svg>'
         )
         yield (
-            f'<tr><th scope="row">{escape(plan.name + mark)}</th><td data-lower="{low!r}" data-upper="{high!r}">'
-            f"{bracket_text(low, high)}</td><td>{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
+            f'<tr><th scope="row">{escape(plan.name + mark)}</th>'
+            f'<td data-column="worst-case value{unit}" data-lower="{low!r}" data-upper="{high!r}">'
+            f'{bracket_text(low, high)}</td><td data-column="share of the best possible">'
+            f"{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
         )
     yield "</tbody></table></div>"
     for text in (*omitted_texts(report), *report.remarks):
