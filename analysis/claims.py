@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._files import write_atomically
+from ratt_opt.report.latex import latex_table
 from ratt_opt.studies.statistics import Estimate, Verdict, column, estimate, judge, select
 from ratt_opt.studies.store import read_table
 
@@ -58,7 +59,7 @@ class Claim:
 
 
 def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = (), *, name: str = "claims") -> None:
-    """Write and print ``name.md``, and write ``name.csv`` with every interval behind it.
+    """Write and print ``name.md``, and write it as ``name.tex`` and ``name.csv`` with every interval behind it.
 
     ``first`` : Markdown rows that come before those of ``claims``.
     """
@@ -78,6 +79,9 @@ def write_claims(out: Path, claims: Sequence[Claim], first: Sequence[str] = (), 
     text = "\n".join(lines) + "\n"
     write_atomically(out / f"{name}.csv", lambda file: file.write_bytes(stream.getvalue().encode()))
     write_atomically(out / f"{name}.md", lambda file: file.write_text(text, encoding="utf-8"))
+    header, _, *cells = [line.strip("| ").replace("`", "").split(" | ") for line in lines]
+    latex = latex_table(header, cells, caption="Claims, and what was found")
+    write_atomically(out / f"{name}.tex", lambda file: file.write_text(latex, encoding="utf-8"))
     print(text, end="")
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, ObjectiveOption
+from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, LatexFlag, ObjectiveOption, check_output
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_tables
 from ratt_opt.errors import InputError
 
@@ -45,6 +45,7 @@ def attack(
         bool, typer.Option("--explain", help="Also say which stages of the exact attack ran, and what each proved.")
     ] = False,
     as_json: JsonFlag = False,
+    as_latex: LatexFlag = False,
 ) -> None:
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect.
 
@@ -59,6 +60,7 @@ def attack(
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan
 
+    check_output(as_json=as_json, as_latex=as_latex)
     if below is not None and not math.isfinite(below):
         raise InputError("--below", "must be a finite number", below)
     source = load_input(file)
@@ -79,7 +81,9 @@ def attack(
     if as_json:
         print_json(attack_document(objective, elements, results, critical, budgets, best_links=found, explains=explain))
     else:
-        print_tables(attack_tables(results, critical, budgets, below, best_links=found, explains=explain))
+        print_tables(
+            attack_tables(results, critical, budgets, below, best_links=found, explains=explain), latex=as_latex
+        )
     if budget.is_over:
         raise WorkInterrupted("interrupted; printed is what was found until then")
 

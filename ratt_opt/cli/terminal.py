@@ -12,7 +12,7 @@ from ratt_opt.errors import printable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rich.console import RenderableType
+    from rich.table import Table
 
 __all__ = [
     "OutputError",
@@ -24,6 +24,7 @@ __all__ = [
     "print_json",
     "print_lines",
     "print_tables",
+    "written",
 ]
 
 
@@ -63,8 +64,21 @@ def print_lines(lines: Iterable[str]) -> None:
         print("\n".join(lines))
 
 
-def print_tables(tables: Iterable[RenderableType]) -> None:
-    """Print tables; piped, they are plain text as wide as their content needs."""
+def written(files: Iterable[object]) -> str:
+    """The line that names the files that a command wrote."""
+    return "written: " + ", ".join(printable(str(file)) for file in files)
+
+
+def print_tables(tables: Iterable[Table], lines: Iterable[str] = (), *, latex: bool = False) -> None:
+    """Print tables, then lines; piped, tables are plain text as wide as their content needs.
+
+    ``latex`` : as LaTeX instead, the lines as its comments
+    """
+    if latex:
+        from ratt_opt.report.latex import latex_of
+
+        print_lines([*map(latex_of, tables), *(f"% {line}" for line in lines)])
+        return
     from rich.console import Console
 
     with _delivered():
@@ -73,6 +87,8 @@ def print_tables(tables: Iterable[RenderableType]) -> None:
         console.width = max(console.width, NARROWEST)
         for table in tables:
             console.print(table)
+        for line in lines:
+            print(line)
 
 
 def flush() -> None:

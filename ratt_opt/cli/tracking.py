@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ratt_opt.cli.options import JsonFlag, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, written
 from ratt_opt.errors import InputError, printable
 from ratt_opt.running.progress import Step
 
@@ -118,7 +118,7 @@ def track(
     if as_json:
         print_json(missions[0].to_dict())
     else:
-        print_lines([*_summary(missions), "written: " + ", ".join(printable(str(file)) for file in files)])
+        print_lines([*_summary(missions), written(files)])
 
 
 @contextmanager

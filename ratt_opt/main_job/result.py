@@ -14,8 +14,10 @@ from ratt_opt.errors import ProofError
 from ratt_opt.findings.bound import AssessedPlan, Findings
 from ratt_opt.report.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
+from ratt_opt.report.latex import latex_of
 from ratt_opt.report.notebook import plan_view, report_view
 from ratt_opt.report.picture import picture_of
+from ratt_opt.report.tables import report_tables
 from ratt_opt.report.write import write_report
 
 if TYPE_CHECKING:
@@ -128,6 +130,10 @@ class BoundReport(Findings):
             write_report(replace(self, certificate=Certification.faulty(fault)), directory)
             raise
         return write_report(self.with_certificate(proof), directory)
+
+    def to_latex(self) -> str:
+        r"""Return the tables that ``ratt-opt bound`` prints as LaTeX, which needs ``\usepackage{booktabs}``."""
+        return "\n".join(map(latex_of, report_tables(self)))
 
     def plot(self) -> Figure:
         """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""

@@ -12,7 +12,6 @@ from ratt_opt.report.description import describe
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rich.console import RenderableType
     from rich.table import Table
 
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
@@ -38,7 +37,7 @@ LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
 
-def report_tables(report: Findings) -> Iterable[RenderableType]:
+def report_tables(report: Findings) -> Iterable[Table]:
     """Yield the tables of a bound report: planners, plan, bracket, guarantees."""
     yield _planners(report)
     yield _plan(report)
