@@ -110,6 +110,7 @@ NO_SEARCH = {
     "survivor_bound",
     "theorem1_bound",
     "undominated",
+    "warm_up",
 }
 """Formulas, files, planners and heuristics of polynomial time, flights and fits as long as their arguments say, and
 generators that their caller may leave."""

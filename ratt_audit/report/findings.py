@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_audit.appendix.entry import EntryKind, EntryName
 from ratt_audit.appendix.misprints import MISPRINTS
+from ratt_audit.appendix.printed import numbered
 from ratt_audit.appendix.readings import LEFT_SIDE
 from ratt_audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
 
@@ -34,7 +35,7 @@ class Finding:
 def title(record: EntryHead) -> str:
     """Label, kind and reading of an entry."""
     reading = f" ({record['reading']})" if record["reading"] else ""
-    return f"{record['label']}, {record['kind']}{reading}"
+    return f"{numbered(record['label'])}, {record['kind']}{reading}"
 
 
 def findings(document: LedgerDocument) -> tuple[Finding, ...]:
@@ -68,7 +69,7 @@ def _theorems(records: list[EntryRecord]) -> Finding:
             "distribution of attacks, no A*."
         )
     table = [("entry", "statement", "verdict", "for which sizes")]
-    table += [(r["label"], r["statement"], r["verdict"], r["sizes"]) for r in rows]
+    table += [(numbered(r["label"]), r["statement"], r["verdict"], r["sizes"]) for r in rows]
     return Finding(heading="Does the theorem survive?", sentences=tuple(sentences), table=tuple(table))
 
 
@@ -97,7 +98,9 @@ def _lines(records: list[EntryRecord]) -> Finding:
     lost = [label for label, group in cumulative.items() if all(r["verdict"] == REFUTED for r in group)]
     table = [("numbered lines whose step ...", "how many", "which")]
     for name, labels in outcome.items():
-        table.append((name, str(len(labels)), "all others" if name == HOLDS else ", ".join(labels) or "none"))
+        table.append(
+            (name, str(len(labels)), "all others" if name == HOLDS else ", ".join(map(numbered, labels)) or "none")
+        )
     some, none = _equalities(records)
     table.append(("is printed with =, which holds in some reading only", str(len(some)), ", ".join(some) or "none"))
     table.append(("is printed with =, but holds with >= only", str(len(none)), ", ".join(none) or "none"))
@@ -139,7 +142,7 @@ def _readings(records: list[EntryRecord]) -> Finding:
     for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
         found = {who: r["verdict"] for r in group if (who := _whose(r["reading"]))}
         if len(found) > 1:
-            table.append((label, *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
+            table.append((numbered(label), *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
             for who, labels in fails.items():
                 labels.extend([label] * (found.get(who) == REFUTED))
     sentences = []
@@ -207,7 +210,7 @@ def _own_claims(records: list[EntryRecord]) -> Finding:
     for r in records:
         if r["chain"] == "tightness":
             cases = r.get("counterexamples") or [r["detail"]]
-            table.append((r["label"], r["statement"], r["verdict"], cases[0]))
+            table.append((numbered(r["label"]), r["statement"], r["verdict"], cases[0]))
     return Finding(heading="How tight are the bounds?", sentences=(), table=tuple(table))
 
 

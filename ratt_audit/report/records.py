@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
+from ratt_audit.appendix.printed import equation_number
 from ratt_audit.engine.evidence import step_inequality
 
 if TYPE_CHECKING:
@@ -95,9 +96,10 @@ class OtherEntry(TypedDict):
 
 
 class EntryHead(TypedDict):
-    """What an entry states, and how it was decided."""
+    """What an entry states, and how it was decided. ``equation`` : its number in the paper; older files lack it."""
 
     label: str
+    equation: NotRequired[int | None]
     kind: str
     chain: str
     reading: str
@@ -144,6 +146,7 @@ def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:
     """A record without its evidence, which the caller adds in the order of the file."""
     head: EntryHead = {
         "label": entry.label,
+        "equation": equation_number(entry.label),
         "kind": entry.kind.value,
         "chain": entry.chain,
         "reading": entry.reading,

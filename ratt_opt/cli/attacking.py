@@ -55,6 +55,7 @@ def attack(
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
     from ratt_opt.attackers.survey import attack_survey
     from ratt_opt.budget import Budget
+    from ratt_opt.report.description import describe
     from ratt_opt.report.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
@@ -81,9 +82,10 @@ def attack(
     if as_json:
         print_json(attack_document(objective, elements, results, critical, budgets, best_links=found, explains=explain))
     else:
-        print_tables(
-            attack_tables(results, critical, budgets, below, best_links=found, explains=explain), latex=as_latex
-        )
+        known = describe(problem, source)
+        names = [known.robot(i) for i in range(problem.n_robots)]
+        tables = attack_tables(results, critical, budgets, below, best_links=found, explains=explain, names=names)
+        print_tables(tables, latex=as_latex)
     if budget.is_over:
         raise WorkInterrupted("interrupted; printed is what was found until then")
 

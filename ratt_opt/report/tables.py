@@ -10,7 +10,7 @@ from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from rich.table import Table
 
@@ -54,9 +54,11 @@ def attack_tables(
     *,
     best_links: Mapping[str, BestLinks] | None = None,
     explains: bool = False,
+    names: Sequence[str] = (),
 ) -> Iterable[Table]:
     """Yield the attacks on a plan, and, where asked for, what to protect or add and what pushes it ``below`` a value.
 
+    ``names`` : (N,) robots for people, by their numbers where empty
     ``best_links`` : by what is done with them, "protect" and "add"
     ``explains`` : also which stages of the exact attack ran, and what each did
     """
@@ -64,11 +66,11 @@ def attack_tables(
     if explains:
         yield _stages(results["exact"])
     if critical is not None:
-        yield _critical(critical)
+        yield _critical(critical, names)
     if budgets is not None:
         yield _budgets(budgets, f"{below}")
     if best_links:
-        yield _best_links(best_links)
+        yield _best_links(best_links, names)
 
 
 def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
@@ -113,11 +115,12 @@ def _moved(before: float, after: float, rounded: Callable[[float, int], str]) ->
     return new if old == new else f"{old} → {new}"
 
 
-def _critical(ranking: Iterable[Criticality]) -> Table:
+def _critical(ranking: Iterable[Criticality], names: Sequence[str]) -> Table:
     """One row a robot or link: what protecting it alone gains, and what losing it alone costs."""
     table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
     for row in ranking:
-        name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
+        target = row.target
+        name = f"robot {_named(target, names)}" if isinstance(target, int) else f"link {_link(target, names)}"
         table.add_row(name, bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
     return table
 
@@ -132,14 +135,24 @@ def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
     return table
 
 
-def _best_links(found: Mapping[str, BestLinks]) -> Table:
+def _best_links(found: Mapping[str, BestLinks], names: Sequence[str]) -> Table:
     """One row a kind of change: the best links, and the worst case with them."""
     table = _table("the best links", "what to do", "links", "worst case with them", "no choice keeps more than")
     for what, best in found.items():
-        links = ", ".join(f"{i}-{j}" for i, j in best.links) or "none gains anything"
+        links = ", ".join(_link(link, names) for link in best.links) or "none gains anything"
         table.add_row(what, links, bracket_text(best.lower, best.after.upper), up(best.upper, 8))
         table.caption = f"without them {bracket_text(best.before.lower, best.before.upper)}; the plan is the same"
     return table
+
+
+def _named(robot: int, names: Sequence[str]) -> str:
+    return names[robot] if names else f"{robot}"
+
+
+def _link(link: tuple[int, int], names: Sequence[str]) -> str:
+    """A link by its robots' numbers, or by their names if there are any: "0 ada - 1 bob"."""
+    i, j = (_named(robot, names) for robot in link)
+    return f"{i} - {j}" if " " in i + j else f"{i}-{j}"
 
 
 def _planners(report: Findings) -> Table:

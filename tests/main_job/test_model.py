@@ -225,3 +225,28 @@ def test_the_smallest_largest_group_is_exact_where_a_cut_attains_it() -> None:
         assert (report.n_max, report.n_max_upper) == (exact.lower, exact.upper)
         cells = [list(column.cells) for column in list(report_tables(report))[2].columns]
         assert dict(zip(*cells, strict=True))["smallest largest group, n_max"] == f"{exact.upper}"
+
+
+def test_what_to_protect_is_said_by_names(tmp_path: Path, capsys) -> None:
+    from ratt_opt.cli import run
+
+    plain = ro.random_scenario(4, 2, alpha_s=1, alpha_c=3, seed=1)
+    names = ("ada", "bob", "", "robot 3")
+    robots = tuple(robot.replace(name=name) for robot, name in zip(plain.robots, names, strict=True))
+    ro.save_scenario(plain.replace(robots=robots), tmp_path / "team.json")
+    plan = ro.ratt(plain.problem())
+    (tmp_path / "plan.json").write_text(json.dumps({"elements": list(plan)}))
+    command = ["attack", str(tmp_path / "team.json"), "--plan", str(tmp_path / "plan.json"), "--rank", "99"]
+    assert run([*command, "--protect", "6"]) == 0
+    printed = capsys.readouterr().out
+    assert "robot 0 ada" in printed
+    assert "link 0 ada - 1 bob" in printed
+    assert "link 2-3" in printed  # without names, and with a name that is the number
+    best = ro.links_to_protect(plain.problem(), plan, 6).links
+    shown = next(line for line in printed.splitlines() if line.strip().startswith("protect"))
+    assert best
+    assert all(names[i] in shown for link in best for i in link if i < 2)
+
+
+def test_warming_up_takes_seconds_and_says_how_many() -> None:
+    assert ro.warm_up() > 0
