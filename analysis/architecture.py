@@ -101,7 +101,7 @@ def _draw(axes: Axes, layers: Sequence[Room]) -> None:
             axes.annotate(
                 "", (x - 0.62, height + 1.25), (x - 1.0, height + 1.25), arrowprops={"arrowstyle": "->", "color": FLOWS}
             )
-    axes.set_xlim(-0.1, 10.0)
+    axes.set_xlim(-0.1, 10.7)
     axes.set_ylim(0.3, height + 1.8)
     axes.axis("off")
 
