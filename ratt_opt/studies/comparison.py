@@ -26,8 +26,8 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     Metrics: ``value`` of the team [unit of the objective], ``proved`` (lower bound of the worst case), ``trace``
     of the posterior covariance and ``mse`` of the estimates, both per target and of the best surviving group [m^2].
     """
-    problem = None if study.problem is None else study.problem(case, seeds)
-    instance = Instance.of(case, seeds, problem=problem)
+    made = None if study.problem is None else study.problem(case, seeds)
+    instance = Instance.of(case, seeds, made=made)
     row: dict[str, Cell] = {"scenario": instance.digest}
     for planner, chosen in study.named_planners.items():
         plan = instance.plan(chosen)

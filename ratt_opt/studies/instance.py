@@ -19,6 +19,7 @@ from ratt_opt.missions.players.named import player_called
 from ratt_opt.missions.players.planners import RefinedPlanner, elements_of
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.task import AttackResult
     from ratt_opt.missions.players.attackers import OwnAttacker
     from ratt_opt.missions.players.planners import Planner
-    from ratt_opt.scenario.model import Scenario
     from ratt_opt.scenario.simulation import Tracking
     from ratt_opt.solvers.result import MaxMinResult
     from ratt_opt.studies.study import Case, Seeds
@@ -65,10 +65,12 @@ class Instance:
     _attacked: dict[bytes, AttackResult] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, case: Case, seeds: Seeds, *, problem: Problem | None = None) -> Instance:
-        """Draw the scenario of one trial, or take the problem that a study makes itself."""
-        if problem is not None:
-            return cls(problem, seeds)
+    def of(cls, case: Case, seeds: Seeds, *, made: Problem | Scenario | None = None) -> Instance:
+        """Draw the scenario of one trial, or take the problem or scenario that a study makes itself."""
+        if isinstance(made, Scenario):
+            return cls(made.problem(case.objective), seeds, made)
+        if made is not None:
+            return cls(made, seeds)
         options: dict[str, Any] = {name: value for name, value in case.options if not name.startswith(SENSOR)}
         noise: dict[str, Any] = {name.removeprefix(SENSOR): v for name, v in case.options if name.startswith(SENSOR)}
         scenario = random_scenario(

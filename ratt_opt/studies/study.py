@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.players.attackers import OwnAttacker
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
+    from ratt_opt.scenario.model import Scenario
 
 __all__ = ["Case", "Cell", "Seeds", "Study", "name_of", "path_of", "run_trial"]
 
@@ -89,8 +90,8 @@ class Study:
         Columns of the table call functions by their own names; a mapping ``{name: planner}`` gives others
     metrics : what is measured for every planner and attacker
     quantities : what is measured once for every case and trial
-    problem : function ``(case, seeds) -> Problem`` that makes the problem of a trial; by default that of a random
-        scenario. Metrics of physical scenarios (``trace``, ``mse``) need the default
+    problem : function ``(case, seeds)`` that makes the :class:`Problem` or :class:`Scenario` of a trial; by default a
+        random scenario. Metrics of physical scenarios (``trace``, ``mse``) need a scenario
     measure : function ``(study, case, seeds) -> row`` that measures one trial, or its ``module:function``; by default
         the comparison of planners under attackers
     seed : root of all seeds
@@ -112,7 +113,7 @@ class Study:
     attackers: Sequence[str | OwnAttacker] | Mapping[str, str | OwnAttacker] = ()
     metrics: tuple[str, ...] = ()
     quantities: tuple[str, ...] = ()
-    problem: Callable[[Case, Seeds], Problem] | None = None
+    problem: Callable[[Case, Seeds], Problem | Scenario] | None = None
     measure: str | Callable[[Study, Case, Seeds], dict[str, Cell]] = COMPARISON
     seed: int = 2022
     fixed_trials: int | None = None

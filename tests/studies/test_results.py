@@ -14,7 +14,7 @@ import pytest
 from scipy.stats import ttest_1samp
 
 import ratt_opt as ro
-from ratt_opt.studies import Case, Study, SweepError, run
+from ratt_opt.studies import Case, Seeds, Study, SweepError, run
 from tests.studies.own import STUDY, boldest, first_robot
 
 if TYPE_CHECKING:
@@ -227,3 +227,20 @@ def test_the_papers_figures_take_planners_and_attackers_of_ones_own(tmp_path: Pa
     names = {path.stem for path in tmp_path.glob("*.svg")}
     assert names == {"small_scale" + a + b for a in ("", "_first_robot") for b in ("", "_paired")}
     assert "boldest" in (tmp_path / "small_scale.svg").read_text()
+
+
+def cameras(case: Case, seeds: object) -> ro.Scenario:
+    """Turning cameras instead of the paper's teams."""
+    sizes = {"alpha_s": case.alpha_s, "alpha_c": case.alpha_c, "seed": seeds.scenario}
+    return ro.limited_view_scenario(case.n_robots, case.n_targets, view=60, **sizes)
+
+
+def test_a_study_makes_scenarios_of_its_own() -> None:
+    study = Study(
+        name="s", cases=CASES[1:], planners=("ratt",), attackers=("exact",), metrics=("value", "mse"), problem=cameras
+    )
+    row = run(study, trials=1).rows[0]
+    problem = cameras(CASES[1], Seeds.of(study.seed, 0)).problem()
+    worst = ro.worst_case_attack(problem, ro.ratt(problem))
+    assert worst.lower <= float(row["ratt/exact/value"]) <= worst.upper
+    assert float(row["ratt/exact/mse"]) > 0
