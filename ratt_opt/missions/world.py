@@ -49,8 +49,8 @@ class MissionModel:
     ----------
     motion : of the targets: ``"known velocity"`` (the paper's), ``"constant velocity"``, ``"coordinated turn"``, or a
         :class:`TargetMotion`
-    sensor : ``None`` for the scenario's sensors; what of its range-and-bearing sensors is measured, ``"range and
-        bearing"``, ``"range"`` or ``"bearing"``; a registered kind of sensor; or a :class:`Sensor` or
+    sensor : ``None`` for the scenario's sensors; ``"range and bearing"``, ``"range"`` or ``"bearing"``, a part of what
+        its range-and-bearing sensors measure; a registered kind of sensor; or a :class:`Sensor` or
         :class:`SensorModel` for all robots, or one for each
     robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
