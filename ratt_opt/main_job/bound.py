@@ -25,6 +25,7 @@ from ratt_opt.graph.largest_group.smallest import SUBSETS_SOON, by_subsets
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.missions.first_step import first_step
+from ratt_opt.missions.players.planners import elements_of
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.running.progress import Step
@@ -34,13 +35,14 @@ from ratt_opt.solvers.maxmin.subtrees.crew import check_workers
 from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks, random_plan
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator, Mapping
     from concurrent.futures import Executor
     from pathlib import Path
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
@@ -95,6 +97,8 @@ CURVATURE_GAP = 0.1
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
 GUARANTEES, QUICK_SECONDS = ("none", "quick", "full"), 2.0
 """How much time the guarantees have; of six bearing-only drones the curvature took half a minute, the plan a second."""
+TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust")
+"""Names of a report's own planners."""
 RANDOM_SEED = 0
 """Seed of the random baseline, so that a report is reproducible."""
 
@@ -118,6 +122,7 @@ def bound(
     progress: Callable[[str], None] | None = None,
     workers: int | Executor | None = None,
     guarantees: str = "quick",
+    planners: Mapping[str, Planner] | None = None,
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
@@ -139,6 +144,8 @@ def bound(
     workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`
     guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
         most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
+    planners : planners of your own by name, ``(problem) -> elements`` as in missions: their plans are attacked too, and
+        stand beside the others in every table and figure. They take what time they take
 
     Raises
     ------
@@ -148,6 +155,7 @@ def bound(
     check_limits(gap, time_limit)
     if guarantees not in GUARANTEES:
         raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
+    _check_planners(planners or {})
     began = datetime.now(UTC)
     problem, source = _problem_of(scenario_or_problem, objective, model)
     check_workers(problem, workers)
@@ -158,6 +166,7 @@ def bound(
         single = problem.objective.singletons()
         alpha_cs, robust = _planned(problem, single, budget)
         baselines = _kept(budget, lambda: tuple(_baselines(problem, single, budget)))
+        baselines += tuple(_own_plans(problem, planners or {}, budget))
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers)
         optimum, best = _best(problem, search, budget)
@@ -185,7 +194,7 @@ def bound(
         total_curvature=c,
         guarantees=sure,
         inapplicable={} if guarantees == "none" else inapplicable_guarantees(problem, alpha_cs),
-        omitted=_omitted(baselines, k or c, guarantees),
+        omitted=_omitted(baselines, k or c, guarantees, planners or {}),
         certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
@@ -278,9 +287,35 @@ def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
 
 
-def _omitted(baselines: tuple[PlanAssessment, ...], found: Curvature | None, guarantees: str) -> dict[str, str]:
+def _own_plans(problem: Problem, planners: Mapping[str, Planner], budget: Budget) -> Iterator[PlanAssessment]:
+    """The plans of the user's planners under attack; an interrupt ends them. InputError : one returns no plan."""
+    for name, planner in planners.items():
+        try:
+            found = planner(problem)
+            elements, cost = elements_of(found, problem), getattr(found, "evaluations", 0)
+        except KeyboardInterrupt:
+            budget.interrupt()
+            return
+        except InputError as error:
+            raise InputError(f"planners[{name!r}]: {error.argument}", error.rule, error.value) from None
+        plan = Plan(elements=elements, evaluations=cost)
+        yield _kept(budget, partial(assess, problem, name, plan, budget.part(ATTACK_SHARE)))
+
+
+def _check_planners(planners: Mapping[str, Planner]) -> None:
+    for name, planner in planners.items():
+        if name in TAKEN or not (isinstance(name, str) and name.isprintable() and name):
+            raise InputError("planners", f"must have names that are none of {', '.join(TAKEN)}", name)
+        if not callable(planner):
+            raise InputError(f"planners[{name!r}]", "must be a function of the problem", type(planner).__name__)
+
+
+def _omitted(
+    baselines: tuple[PlanAssessment, ...], found: Curvature | None, guarantees: str, planners: Collection[str]
+) -> dict[str, str]:
     """What the report leaves out, and why."""
-    omitted = {}
+    planned = {plan.name for plan in baselines}
+    omitted = {name: "interrupted" for name in planners if name not in planned}
     if all(plan.name != "nonrobust" for plan in baselines):
         omitted["nonrobust"] = "the best plan without attack was not found and proved in its share of the time"
     if guarantees == "none":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, up
-from ratt_opt.report.palette import INK, look_of
+from ratt_opt.report.palette import INK, looks_of
 from ratt_opt.report.tables import share_text
 
 if TYPE_CHECKING:
@@ -43,8 +43,9 @@ def draw_bars(axes: Axes, report: Findings) -> None:
     plans = report.plans
     missing, ends, longest = bar_ends(report)
     least = NOTHING * report.upper
+    looks = looks_of([plan.name for plan in plans])
     for row, (plan, (low, high)) in enumerate(zip(plans, ends, strict=True)):
-        look, chosen = look_of(plan.name), plan.name == report.recommended.name
+        look, chosen = looks[plan.name], plan.name == report.recommended.name
         axes.barh(row, low, color=look.colour, hatch=look.hatch, height=0.62, edgecolor="white", linewidth=0)
         if high - low > least:
             axes.errorbar((low + high) / 2, row, xerr=(high - low) / 2, color=INK, capsize=5, linewidth=1.4)

@@ -250,3 +250,80 @@ def test_what_to_protect_is_said_by_names(tmp_path: Path, capsys) -> None:
 
 def test_warming_up_takes_seconds_and_says_how_many() -> None:
     assert ro.warm_up() > 0
+
+
+def last(problem: ro.Problem) -> list[int]:
+    return [own[-1] for own in problem.choices]
+
+
+def first(problem: ro.Problem) -> ro.Plan:
+    return ro.Plan(elements=np.array([own[0] for own in problem.choices]), evaluations=1)
+
+
+def test_planners_of_ones_own_stand_in_every_table_and_figure(tmp_path: Path) -> None:
+    from ratt_opt.report.tables import report_tables
+
+    report = ro.bound(team(), planners={"last": last, "first": first}, **QUICK)
+    assert [plan.name for plan in report.baselines][-2:] == ["last", "first"]
+    problem = team().problem()
+    for plan, planner in zip(report.baselines[-2:], (last, first), strict=True):
+        worst = ro.worst_case_attack(problem, planner(problem))
+        assert (plan.worst_case.lower, plan.worst_case.upper) == (worst.lower, worst.upper)
+        assert plan.worst_case.lower <= report.upper
+    report.save(tmp_path, certificate=False)
+    assert {"last", "first"} <= json.loads((tmp_path / "report.json").read_text())["baselines"].keys()
+    assert '<th scope="row">last</th>' in (tmp_path / "report.html").read_text()
+    assert "last" in list(next(iter(report_tables(report))).columns[0].cells)
+    bars = report.plot().axes[1]
+    assert [label.get_text() for label in bars.get_yticklabels()][-2:] == ["last", "first"]
+    colours = [bar.get_facecolor() for bar in bars.patches]
+    assert len(set(colours)) == len(colours) == 8
+
+
+def test_a_better_plan_of_ones_own_is_recommended() -> None:
+    """Where the search has no time, what a user brings may be the best there is."""
+    problem = ro.random_scenario(8, 6, alpha_s=2, alpha_c=6, seed=5).problem()
+    best = ro.solve_maxmin(problem, time_limit=20)
+    report = ro.bound(problem, planners={"mine": lambda _: best.elements}, time_limit=0.0, guarantees="none")
+    assert report.recommended.worst_case.lower >= report.ratt.worst_case.lower
+    assert report.upper >= best.lower
+
+
+@pytest.mark.parametrize(
+    ("planners", "text"),
+    [
+        ({"ratt": last}, "planners must have names that are none of ratt"),
+        ({"": last}, "planners must have names"),
+        ({"mine": 3}, r"planners\['mine'\] must be a function of the problem; got int"),
+        ({"mine": lambda _: "x"}, r"planners\['mine'\]: planner must return a plan"),
+        ({"mine": lambda _: [0, 0, 0]}, r"planners\['mine'\]: elements\[1\] must be an element of robot 1"),
+    ],
+)
+def test_planners_that_do_not_plan_are_one_line(planners, text) -> None:
+    with pytest.raises(ro.InputError, match=text):
+        ro.bound(team(), planners=planners, **QUICK)
+
+
+def test_an_interrupted_planner_is_left_out_by_name() -> None:
+    def hit(_problem: ro.Problem) -> None:
+        raise KeyboardInterrupt
+
+    report = ro.bound(team(), planners={"last": last, "slow": hit, "first": first}, **QUICK)
+    assert report.interrupted
+    assert report.omitted["slow"] == report.omitted["first"] == "interrupted"
+    assert "last" in {plan.name for plan in report.baselines}
+
+
+def test_attackers_of_ones_own_stand_in_the_survey() -> None:
+    problem = team().problem()
+    plan = ro.ratt(problem).elements
+    found = ro.attack_survey(problem, plan, attackers={"first robot": lambda _p, _e: ro.Attack(frozenset({0}))})
+    assert found["first robot"].upper == pytest.approx(problem.team_value(plan, ro.Attack(frozenset({0}))))
+    assert found["first robot"].lower == 0
+    for attackers, text in (
+        ({"exact": lambda _p, _e: ro.Attack()}, "attackers must have names that are none of exact"),
+        ({"x": lambda _p, _e: 3}, r"attackers\['x'\] must return an Attack"),
+        ({"x": lambda _p, _e: ro.Attack(frozenset({0, 1, 2}))}, "at most"),
+    ):
+        with pytest.raises(ro.InputError, match=text):
+            ro.attack_survey(problem, plan, attackers=attackers)

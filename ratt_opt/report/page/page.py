@@ -12,7 +12,7 @@ from ratt_opt.report.bars import bar_ends
 from ratt_opt.report.description import describe
 from ratt_opt.report.notebook import html_table
 from ratt_opt.report.page.map_drawing import legend_html, map_svg
-from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
+from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, looks_of
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, verdict_text
@@ -113,6 +113,7 @@ def _planner_section(report: Findings) -> Iterator[str]:
     what = "shortfall from the best possible" if missing else "kept"
     yield '<section aria-labelledby="planners"><h2 id="planners">What each planner keeps</h2><div class="wide"><table>'
     unit = escape(f" [{report.unit}]" if report.unit else "")
+    looks = looks_of([plan.name for plan in report.plans])
     yield f'<thead><tr><th scope="col">planner</th><th scope="col">worst-case value{unit}</th>'
     yield '<th scope="col">share of the best possible</th>'
     yield f'<th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
@@ -123,7 +124,7 @@ def _planner_section(report: Findings) -> Iterator[str]:
         bar = (
             f'<svg class="bar" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">'
             f'<rect width="100" height="8" class="room"/><rect width="{ends[1]:.3f}" height="8" class="open"/>'
-            f'<rect width="{ends[0]:.3f}" height="8" fill="{look_of(plan.name).colour}"/></svg>'
+            f'<rect width="{ends[0]:.3f}" height="8" fill="{looks[plan.name].colour}"/></svg>'
         )
         yield (
             f'<tr><th scope="row">{escape(plan.name + mark)}</th>'
