@@ -63,7 +63,7 @@ def _draw(
             axes[down, 0].set_ylabel(f"{text}\n{label}")
         axes[0, across].set_title(f"N={cases[0].n_robots}, M={cases[0].n_targets}")
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 5), frameon=False)
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 6), frameon=False)
     figure.supxlabel(f"{note} with 95 % interval", fontsize="small")
     save(figure, folder, name)
 
