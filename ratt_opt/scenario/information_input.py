@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
@@ -20,6 +20,9 @@ __all__ = ["InformationInput"]
 
 LARGEST_ENTRY = 1e100
 """Units are the user's, so far larger entries than a scenario's are accepted; products of two stay finite."""
+
+LATER = ("output", "units", "element_headings", "element_controls")
+"""Optional fields that came after the first release of the format."""
 
 Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY), BeforeValidator(plain)]
 Matrix = tuple[tuple[Entry, ...], ...]
@@ -61,6 +64,12 @@ class InformationInput(ProblemRecord):
     units: tuple[Text, ...] | None = None
     element_headings: tuple[Number, ...] | None = None
     element_controls: tuple[Place, ...] | None = None
+
+    @model_serializer(mode="wrap")
+    def _as_before(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without later fields that hold nothing: files and their SHA-256 are as they were before these came."""
+        document: dict[str, Any] = whole(self)
+        return {name: value for name, value in document.items() if value is not None or name not in LATER}
 
     @model_validator(mode="after")
     def _check_whole(self) -> Self:

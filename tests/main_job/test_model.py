@@ -130,6 +130,14 @@ def test_the_units_of_positions_and_of_set_functions() -> None:
     assert ro.bound(ro.Problem(ro.Modular([1.0, 2.0]), [0, 1], None, 0, 0), **QUICK).unit == ""
 
 
+def test_files_without_the_later_fields_keep_their_digest() -> None:
+    """As the release before wrote them: the certificates made then name it."""
+    document = tracks().model_dump(mode="json")
+    assert not {"output", "units", "element_headings", "element_controls"} & document.keys()
+    assert tracks().digest == "4e79571edac90d756d1bf9ac035fec5262facd959d37041b0cd619b1cca16a4a"
+    assert tracks(units=UNITS).digest != tracks().digest
+
+
 def test_an_output_of_a_file_is_that_of_the_criterion(tmp_path: Path) -> None:
     given = tracks(output=POSITION, units=UNITS)
     ro.save_scenario(given, tmp_path / "tracks.json")
