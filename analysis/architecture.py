@@ -1,7 +1,8 @@
-"""Draw the house from its own code: ``python -m analysis.architecture --out docs`` writes ``architecture.png``.
+"""Draw the architecture from the code: ``python -m analysis.architecture --out docs/contributors``.
 
-Layers come from the import contract in ``pyproject.toml``, sentences from the packages' docstrings, arrows from the
-import statements. Nothing in the picture is typed by hand but the flow along its top.
+It writes ``architecture.png``. Layers come from the import contract in ``pyproject.toml``, sentences from the
+packages' docstrings, arrows from the import statements. Nothing in the picture is typed by hand but the flow along its
+top.
 """
 
 from __future__ import annotations

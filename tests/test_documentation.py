@@ -128,7 +128,7 @@ def test_a_newcomer_s_first_hour(folder: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("page", pages_with_blocks(), ids=lambda page: page.name)
 def test_slow_blocks_run(page: Path, folder: Path) -> None:
-    (folder / "docs").mkdir()
+    (folder / "docs" / "researchers").mkdir(parents=True)
     for block in blocks(page):
         if block.mark == "slow":
             run_block(Block(block.language, block.code, ""), {}, folder)

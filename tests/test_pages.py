@@ -69,7 +69,7 @@ def test_the_source_distribution_holds_docs_licence_and_builds_the_same_wheel(tm
         "CITATION.cff",
         "docs/first_hour.md",
         "docs/guides/own_graph.md",
-        "docs/audit.md",
+        "docs/researchers/audit.md",
         "formal/README.md",
         "tests/conftest.py",
     ):

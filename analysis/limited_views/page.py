@@ -40,12 +40,12 @@ commands fly everything, 60 trials of the main cases, 20 of the varied ones, and
 ```bash
 python -m analysis.limited_views --trials 20 --only limited_views_varied --out results
 python -m analysis.limited_views --trials 60 --only limited_views_main limited_views_one_step --out results
-python -m analysis.limited_views.page results > docs/limited_views.md
+python -m analysis.limited_views.page results > docs/researchers/limited_views.md
 ```
 
 Every trial draws another team, other targets and other noise, and all planners fly it: trials share nothing, and
 differences are paired. A cell shows the change of a mean against that of the greedy planner [%] with its 95 % interval.
-It *pays* where the interval is below zero and *costs* where it is above; where neither is said, no difference is seen.
+It *pays* if the interval is below zero and *costs* if it is above; if neither is said, no difference is seen.
 One interval in twenty misses by chance. Missions have {steps} steps, and their two windows, the first and the last
 half, share no step. Max-min plans are searched for ten nodes a step and refined ones take twenty kicks, so that every
 machine flies the same missions. The

@@ -59,9 +59,9 @@ def worst_case_attack(
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
-    Stages run one after the other until the bracket is closed or the budget is spent. ``docs/engine.md`` lists them,
-    their conditions and shares of the budget; ``stages`` of the result says which ran. What a node is depends on the
-    stage: a threshold, a branch, a set of robots.
+    Stages run one after the other until the bracket is closed or the budget is spent. The page
+    ``docs/contributors/engine.md`` lists them, their conditions and shares of the budget; ``stages`` of the result
+    says which ran. What a node is depends on the stage: a threshold, a branch, a set of robots.
 
     - Up to 12 robots the values of all sets decide, and the result relies on nothing. If the budget ends before, the
       lower end relies on a non-decreasing objective.

@@ -36,7 +36,7 @@ def bar_ends(report: Findings) -> tuple[bool, list[tuple[float, float]], float]:
 
 
 def draw_bars(axes: Axes, report: Findings) -> None:
-    """Draw one bar a planner and its number: what it surely keeps, or, where all keep much, what it surely misses.
+    """Draw one bar a planner and its number: what it surely keeps, or, if all keep much, what it surely misses.
 
     A whisker spans what is not decided of it, so a search that ran out of time shows a whisker, never a value.
     """

@@ -29,7 +29,7 @@ class View:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Description:
-    """Names are empty, and the rest ``None``, where the source does not tell.
+    """Names are empty, and the rest ``None``, if the source does not tell.
 
     ``robot_names`` : (N,); ``target_names`` : (M,); ``weights`` : (M,) importance of the targets.
     ``labels`` : (E,) what each element is ("3 m/s, 1 rad/s"); ``controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
@@ -52,7 +52,7 @@ class Description:
         return named(i, self.robot_names[i], "robot")
 
     def label(self, element: int) -> str:
-        """What an element is; its index where nothing is known."""
+        """What an element is; its index if nothing is known."""
         return self.labels[element] if self.labels else f"element {element}"
 
     def pose_after(self, element: int) -> list[float] | None:

@@ -20,10 +20,10 @@ __all__ = ["Picture", "picture_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Picture:
-    """Lengths in metres, angles in radians; ``None`` where nothing is known.
+    """Lengths in metres, angles in radians; ``None`` if nothing is known.
 
-    ``places`` : (N, 2) robots after their controls, or a layout of the graph where ``is_layout``.
-    ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty where none.
+    ``places`` : (N, 2) robots after their controls, or a layout of the graph if ``is_layout``.
+    ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty if none.
     ``targets`` : (M, 2) predicted means; ``target_names`` and ``weights`` : (M,); ``prior``, ``posterior`` :
     (M, 2, 2) covariances of the positions, the latter with the best surviving group's measurements.
     ``views`` : (N,) fields of view after the controls, where a sensor is limited; ``watched`` : (N, M) whether a robot
@@ -56,7 +56,7 @@ class Picture:
         return self.weights is not None and len(self.weights) > 0 and bool(np.ptp(self.weights) > 0)
 
     def target_label(self, j: int) -> str:
-        """Target ``j`` on the map: its number, its name if it has one, its weight where weights differ."""
+        """Target ``j`` on the map: its number, its name if it has one, its weight if weights differ."""
         name = self.target_names[j] if self.target_names else ""
         weight = f" ×{self.weights[j]:g}" if self.weights is not None and self.is_weighted else ""
         return named(j, name, "target") + weight
@@ -68,7 +68,7 @@ class Picture:
 
     @property
     def unseen(self) -> frozenset[int]:
-        """Targets that no robot of the best group measures; none where all robots measure all."""
+        """Targets that no robot of the best group measures; none if all robots measure all."""
         if self.watched is None:
             return frozenset()
         return frozenset(np.flatnonzero(~self.watched[sorted(self.seeing)].any(axis=0)).tolist())

@@ -56,7 +56,7 @@ def attack_tables(
     explains: bool = False,
     names: Sequence[str] = (),
 ) -> Iterable[Table]:
-    """Yield the attacks on a plan, and, where asked for, what to protect or add and what pushes it ``below`` a value.
+    """Yield the attacks on a plan, and, if asked for, what to protect or add and what pushes it ``below`` a value.
 
     ``names`` : (N,) robots for people, by their numbers where empty
     ``best_links`` : by what is done with them, "protect" and "add"
@@ -110,7 +110,7 @@ def _stages(exact: AttackResult) -> Table:
 
 
 def _moved(before: float, after: float, rounded: Callable[[float, int], str]) -> str:
-    """An end of a bracket, and what it was where it moved; a dash where it is not known."""
+    """An end of a bracket, and what it was if it moved; a dash if it is not known."""
     old, new = (rounded(end, 8) if math.isfinite(end) else "-" for end in (before, after))
     return new if old == new else f"{old} → {new}"
 
@@ -232,7 +232,7 @@ def _guarantees(report: Findings) -> Table:
 
 
 def guarantee_text(report: Findings) -> str:
-    """What the strongest guarantee says where that is all or nothing, else nothing."""
+    """What the strongest guarantee says if that is all or nothing, else nothing."""
     best = report.guaranteed_share
     if best == 1:
         return "RATT's plan is optimal, and was sure to be before planning"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt._values import counted
+from ratt_opt._version import CITATION
 from ratt_opt.report.bars import bar_ends
 from ratt_opt.report.description import describe
 from ratt_opt.report.notebook import html_table
@@ -68,7 +69,8 @@ def _sections(report: Findings) -> Iterator[str]:
     yield from _plan_section(report)
     seconds = [(name, f"{value:.2f}") for name, value in report.seconds.items()]
     yield html_table("Seconds of each step", ("step", "seconds"), seconds)
-    yield f"<footer>ratt-opt, {escape(report.created)}. Every number in full precision: report.json.</footer>"
+    yield f"<footer>Made {escape(report.created)}. Every number in full precision: report.json. "
+    yield f"To cite: {escape(CITATION)}.</footer>"
 
 
 def _share_sentence(share: str) -> str:

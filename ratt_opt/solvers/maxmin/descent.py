@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Descent"]
 
-# Measured at 20 robots, max-eigenvalue, (0, 180), (0, 134) and (0, 156): docs/what_resists.md.
+# Measured at 20 robots, max-eigenvalue, (0, 180), (0, 134) and (0, 156): docs/researchers/open_problems.md.
 FIRST_NODES = 100
 """Nodes of the first tree, which has no floor: most searches end within. With 20, ten robots took a third longer."""
 NEARLY, MORE_NODES = 5e-3, 500
