@@ -68,7 +68,7 @@ def evenly_split_value(problem: Problem, plan: np.ndarray) -> float:
 def one_run(
     setting: tuple[int, int, int, int], objective: str, seed: int, degree: float | None = None
 ) -> dict[str, object]:
-    """All attackers on RATT's plan for one scenario; on a graph of this mean degree where one is given."""
+    """All attackers on RATT's plan for one scenario; on a graph of this mean degree if one is given."""
     n_robots, n_targets, alpha_s, alpha_c = setting
     scenario = random_scenario(n_robots, n_targets, alpha_s=alpha_s, alpha_c=0, seed=seed)
     if degree is not None:

@@ -30,9 +30,9 @@ def up(value: float | Fraction, digits: int) -> str:
 
 
 def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
-    """The bracket as text: both ends, outward, or the digits that both begin with where these are ``digits`` many.
+    """The bracket as text: both ends, outward, or the digits that both begin with if these are ``digits`` many.
 
-    The value to ``digits`` digits where both ends are one float.
+    The value to ``digits`` digits if both ends are one float.
     """
     if lower == upper:
         return f"{upper:.{digits}g}"
@@ -43,12 +43,12 @@ def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
 
 
 def gap_text(lower: float, upper: float, digits: int) -> str:
-    """``(upper - lower) / upper``, rounded up once; ``0`` where ``upper`` is 0."""
+    """``(upper - lower) / upper``, rounded up once; ``0`` if ``upper`` is 0."""
     return up(_gap(lower, upper), digits)
 
 
 def relative_gap(lower: float, upper: float) -> float:
-    """``(upper - lower) / upper`` as the smallest float that is no smaller; 0 where ``upper`` is 0."""
+    """``(upper - lower) / upper`` as the smallest float that is no smaller; 0 if ``upper`` is 0."""
     exact = _gap(lower, upper)
     try:
         near = float(exact)

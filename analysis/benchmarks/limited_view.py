@@ -2,7 +2,7 @@
 
 Run as ``python -m analysis.benchmarks.limited_view [--rows 6,8 10,10 20,20 50,50] [--networks complete disk]
 [--objectives trace logdet] [--seeds 10] [--log FILE]``. Each row is searched to 1e-4 within the limit of its size.
-Seconds are of the processor. Where a row of 6 or 10 robots closes, its certificate is written and verified with
+Seconds are of the processor. If a row of 6 or 10 robots closes, its certificate is written and verified with
 ``--certify``. Teams are those of ``limited_view_scenario`` with a view of 57 degrees: 16 controls; on a disk network
 robots within 45 m are linked.
 """

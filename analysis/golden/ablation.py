@@ -58,7 +58,7 @@ def main() -> int:
     parser.add_argument("--cases", type=int, default=16, help="of each part of the corpus")
     parser.add_argument("--only", nargs="+", default=None, help="names of what is left out")
     parser.add_argument("--workers", type=int, default=None, help="processes; one for each core by default")
-    parser.add_argument("--twice", action="store_true", help="a second time, where rows differ by chance")
+    parser.add_argument("--twice", action="store_true", help="a second time, if rows differ by chance")
     parser.add_argument("--folder", type=Path, default=Path("build/ablation"))
     options = parser.parse_args()
     from analysis.golden.comparison import apart, compared, read_rows

@@ -72,7 +72,7 @@ def _timed(run: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def _named(elements: IntArray) -> str:
-    """A short name of a plan: two attacks are of the same plan where it is the same."""
+    """A short name of a plan: two attacks are of the same plan if it is the same."""
     return f"{crc32(np.asarray(elements, dtype=np.int64).tobytes()):08x}"
 
 

@@ -46,7 +46,7 @@ MAXMIN = MaxMinPlanner(gap=1e-3, max_nodes=10)
 
 
 def nonrobust(problem: Problem) -> MaxMinResult:
-    """The best plan where nobody attacks, searched as :data:`MAXMIN` searches."""
+    """The best plan if nobody attacks, searched as :data:`MAXMIN` searches."""
     return MAXMIN(replace(problem, alpha_s=0, alpha_c=0))
 
 
@@ -119,7 +119,7 @@ MILD = Study(
     metrics=("rmse", "trace", "nees"),
     measure=measure,
 )
-"""What planning for the worst costs where nobody attacks, or somebody who does not see what hurts most."""
+"""What planning for the worst costs if nobody attacks, or somebody who does not see what hurts most."""
 NAMES = {"maxmin": "optimum", "nonrobust": "nonrobust_optimum"}
 """Planners whose look in figures goes by another name."""
 

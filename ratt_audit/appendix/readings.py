@@ -1,6 +1,6 @@
 """Lines that the text admits several readings of: whose worst attack A* is, which robots a set holds, who is replaced.
 
-Here the readings differ in the statement itself; where they differ in a premise only, they stand with their line.
+Here the readings differ in the statement itself; if they differ in a premise only, they stand with their line.
 
 The dominance claim of Pattern 2 (Distributions 2 and 3, ii) says that baits of V1 beat greedy survivors of V2. With
 its stated reason only, it is one linear claim. "A* is the worst attack" adds one disjunction

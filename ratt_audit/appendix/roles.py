@@ -33,7 +33,7 @@ __all__ = ["CUBED", "KEPT", "KEPT_OVER_ONE_PLUS_K", "ONE_PLUS_K", "SQUARED", "T2
 class SizedClaim:
     """One linear claim of an entry: a size and who is attacked in words, robots in play, the question.
 
-    ``team`` : the roles, where the elements have any.
+    ``team`` : the roles, if the elements have any.
     """
 
     size: str

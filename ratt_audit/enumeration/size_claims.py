@@ -113,7 +113,7 @@ def _blinded_balance(s: Setting) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Spread:
-    """Counts of Pattern 1, Distribution 3, where A* blinds ``part`` robots of V1, baits only of V1b2.
+    """Counts of Pattern 1, Distribution 3, if A* blinds ``part`` robots of V1, baits only of V1b2.
 
     ``safe`` : |V1b1|, the baits of V1 beyond V1b2; ``left`` : |V1b2 minus A*|; ``hit`` : blinded greedy robots.
     """

@@ -62,7 +62,7 @@ def _theorems(records: list[EntryRecord]) -> Finding:
     if _all_proved([r for r in rows if r["label"] in (PATTERN_FREE_ND.label, PATTERN_FREE_SUB.label)]):
         sentences.append(
             "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
-            "every curvature strictly between 0 and 1; the survivor bounds are at least as large; where attacks can "
+            "every curvature strictly between 0 and 1; the survivor bounds are at least as large; if attacks can "
             "keep every group to one seeing robot RATT is optimal. The machine decides teams up to the size shown; "
             "written proofs for any number of robots are in the documentation of pattern_free_bound, group_size_bound "
             "and survivor_bound. What Theorem 1 needs is RATT's choices, one robot at a time: no pattern, no "
@@ -125,13 +125,13 @@ def _equalities(records: Sequence[EntryRecord]) -> tuple[list[str], list[str]]:
 
 
 def _misprints(records: list[EntryRecord]) -> Finding:
-    """Places that are judged as meant, and what the ledger says of both where they are statements."""
+    """Places that are judged as meant, and what the ledger says of both if they are statements."""
     verdicts = {r["label"]: r["verdict"] for r in records}
     table = [("where", "printed", "meant", "as printed", "as meant")]
     for one in MISPRINTS:
         found = (verdicts.get(one.label, "-"), verdicts.get(one.repaired, "-"))
         table.append((one.where, one.printed, one.meant, *found))
-    text = "Misprints are no failures: these places are judged by what they mean, and where that matters in both ways."
+    text = "Misprints are no failures: these places are judged by what they mean, and if that matters in both ways."
     return Finding(heading="Misprints", sentences=(text,), table=tuple(table))
 
 

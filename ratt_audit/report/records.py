@@ -35,7 +35,7 @@ class WitnessRecord(TypedDict):
     """A function that breaks a claim: its values on all subsets, by bit mask over ``elements``.
 
     ``ratt_chooses_the_roles`` : whether RATT itself, run on the function with this many baits,
-    picks the elements named as its choices (``None`` where the elements have no roles).
+    picks the elements named as its choices (``None`` if the elements have no roles).
     """
 
     elements: list[str]
@@ -89,7 +89,7 @@ class RealRecord(TypedDict):
 
 
 class OtherEntry(TypedDict):
-    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` where readings differ)."""
+    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` if readings differ)."""
 
     entry: str
     verdict: str | None
@@ -113,7 +113,7 @@ class EntryRecord(EntryHead):
     """One entry with its evidence.
 
     ``detail``, ``counterexamples`` : of entries decided by enumeration; ``function_class``, ``curvature`` : of the
-    others, and, where they were looked for, ``best_factors``, ``realistic`` and ``follows_from``.
+    others, and, if they were looked for, ``best_factors``, ``realistic`` and ``follows_from``.
     """
 
     sizes: str

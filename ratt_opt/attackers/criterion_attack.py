@@ -182,7 +182,7 @@ class CriterionAttack(TeamAttack):
         self.task.offer(greedy_attack(self.task.problem, self._plan, budget=self.task.budget).attack)
 
     def list_groups(self) -> None:
-        """The groups an attack may leave, where they are few enough, and soon listed."""
+        """The groups an attack may leave, if they are few enough, and soon listed."""
         from ratt_opt.graph.separable_groups import separable_groups  # compiles
 
         few = FEW_GROUPS if self.task.problem.n_robots <= LARGEST_COMPILED else MANY_GROUPS
@@ -215,7 +215,7 @@ class CriterionAttack(TeamAttack):
         return last_stage(self.task, CoverSearch(self.task, self._team, self._groups))
 
     def anneal_among_groups(self) -> None:
-        """Annealed attacks, few where partitions are searched."""
+        """Annealed attacks, few if partitions are searched."""
         assert self._prices is not None
         self._prices.task = self.task
         self._prices.anneal(self._starts if self._has_many_groups and not self._is_brief else INNER_STARTS)
@@ -240,7 +240,7 @@ class CriterionAttack(TeamAttack):
         self._sizes.bound(self.task, lists_sets=False)
 
     def possible_sizes(self) -> None:
-        """Groups of possible sizes, whichever robots are in them; lists the weak sets of these, where they are few."""
+        """Groups of possible sizes, whichever robots are in them; lists the weak sets of these, if they are few."""
         self._sizes = PossibleGroups(self._team, self._sure)
         self._sizes.bound(self.task)
 

@@ -37,7 +37,7 @@ class Criticality:
     """One robot or link of a plan [values in the unit of the objective].
 
     ``loss`` : team value lost when it alone is attacked and nothing else is. ``gain_lower``, ``gain_upper`` : bracket
-    on the worst-case value gained when it alone is protected (equal up to rounding where the exact attacker closes).
+    on the worst-case value gained when it alone is protected (equal up to rounding if the exact attacker closes).
     """
 
     target: int | Link

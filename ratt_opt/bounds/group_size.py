@@ -42,18 +42,18 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
 
     Proof. Let ``v`` be the largest individual value of a robot outside ``T`` and ``r`` the first such robot in RATT's
     order; all before it are in ``T``. RATT takes the ``alpha_s + alpha_cs`` robots of the largest individual values
-    as bait, with their best elements; where ``alpha_cs >= 1`` that includes ``r``. A protected ``r`` always sees.
+    as bait, with their best elements; if ``alpha_cs >= 1`` that includes ``r``. A protected ``r`` always sees.
     Otherwise the bait includes ``T`` and ``r``, one more than can be blinded, all of value at least ``v``. So some
     bait worth ``v`` sees after every attack, and by monotonicity RATT keeps ``v``. The attack above leaves any plan
     ``o`` only groups ``S`` of at most ``g`` robots outside ``T``. Submodular: ``phi(o_S) <= sum_S phi(o_i) <= g v``.
     Non-decreasing with total curvature ``c``: a marginal of ``x`` is at most ``phi(x) / t``, so ``phi(o_S) <= v + (g
     - 1) v / t``.
 
-    Where ``alpha_cs = 0`` (``baits_survive=False``) an attack may blind exactly the bait. No cut then splits the team,
+    If ``alpha_cs = 0`` (``baits_survive=False``) an attack may blind exactly the bait. No cut then splits the team,
     so that leaves all greedy robots in one group, which keeps ``1 / (1 + k)`` of the optimum (submodular; Fisher,
     Nemhauser, Wolsey 1978; Conforti and Cornuejols 1984), respectively ``1 - c`` (their marginals, chosen greedily,
     are at least ``(1 - c)`` times those of any other choice). Any other attack leaves a bait, as before. The bound is
-    then the minimum of both, and 1 where ``g <= 1``: at most one robot is then greedy, and takes its best element.
+    then the minimum of both, and 1 if ``g <= 1``: at most one robot is then greedy, and takes its best element.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int
     """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
     The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
-    on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
+    on any graph; it depends on which robots are the strongest. Otherwise two cuts are tried, one that makes the
     largest group small and one that makes the most seeing robots few, and the better one is annealed, up to
     ``MOST_ANNEALED`` links: the number returned is achievable, and a larger one only weakens the guarantee, as a spent
     ``budget`` does.

@@ -68,7 +68,7 @@ def instance_bound(
     InputError : neither or both curvatures, one over another domain, or ``elements`` is no plan.
 
     Source: this library. For RATT's plan never below the pattern-free bound: a greedy element's ``l`` in RATT's own
-    order is its greedy marginal, at least ``(1-k) m_i``, respectively ``(1-c)^2 m_i``; a bait's likewise. Where
+    order is its greedy marginal, at least ``(1-k) m_i``, respectively ``(1-c)^2 m_i``; a bait's likewise. If
     ``alpha_cs >= 1`` nor below the group-size bound.
     """
     if (k is None) == (c is None):

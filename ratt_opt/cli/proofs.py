@@ -32,11 +32,11 @@ def verify(
 ) -> int:
     """Check a certificate without trusting what wrote it, and say what it proves.
 
-    With --verified an end counts as proved where ratt-check says so too; that program is looked for on the search path,
+    With --verified an end counts as proved if ratt-check says so too; that program is looked for on the search path,
     or where RATT_CHECK says.
 
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
-    proved; 4: neither proved nor refuted within the limits. None of these where the output cannot be written (74).
+    proved; 4: neither proved nor refuted within the limits. None of these if the output cannot be written (74).
     """
     from ratt_opt.certificates.verifier.verify import verify_certificate
     from ratt_opt.certificates.verifier.work import watched

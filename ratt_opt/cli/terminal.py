@@ -48,7 +48,7 @@ def encode_anything() -> None:
 
 
 def fail(text: str, code: int) -> int:
-    """Print an error as one line and return its exit code, also where standard error is closed."""
+    """Print an error as one line and return its exit code, also if standard error is closed."""
     _complain(f"error: {printable(text)}")
     return code
 
@@ -59,7 +59,7 @@ def print_json(document: object) -> None:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """Print lines to standard output; raises :class:`OutputError` where they cannot arrive."""
+    """Print lines to standard output; raises :class:`OutputError` if they cannot arrive."""
     with _delivered():
         print("\n".join(lines))
 
@@ -92,13 +92,13 @@ def print_tables(tables: Iterable[Table], lines: Iterable[str] = (), *, latex: b
 
 
 def flush() -> None:
-    """Send on what was printed; raises :class:`OutputError` where it cannot arrive."""
+    """Send on what was printed; raises :class:`OutputError` if it cannot arrive."""
     with _delivered():
         pass
 
 
 def abandon_output() -> None:
-    """Send on what was printed where that is still possible; the program ends without another try."""
+    """Send on what was printed if that is still possible; the program ends without another try."""
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             with suppress(OSError, ValueError):

@@ -40,7 +40,7 @@ def track(
     ] = "best group",
     horizon: Annotated[int, typer.Option("--horizon", help="Steps that a plan looks ahead.")] = 1,
     beam: Annotated[
-        int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all where absent.")
+        int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all if absent.")
     ] = None,
     objective: Annotated[
         Literal["trace", "logdet", "maxeig"],

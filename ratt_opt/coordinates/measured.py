@@ -99,7 +99,7 @@ class _Coordinates:
 
 
 def _measured(problem: Problem) -> _Coordinates | None:
-    """The measured coordinates, in units of the prior's deviations; ``None`` where these are all."""
+    """The measured coordinates, in units of the prior's deviations; ``None`` if these are all."""
     objective = problem.information_objective
     deviations = np.sqrt(np.diagonal(objective.prior, axis1=-2, axis2=-1))
     scaled = objective.information * deviations[:, :, None] * deviations[:, None, :]

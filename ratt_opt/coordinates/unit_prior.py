@@ -1,4 +1,4 @@
-"""Coordinates in which the prior is the identity, where digits would be lost otherwise.
+"""Coordinates in which the prior is the identity, if digits would be lost otherwise.
 
 With ``P = R R'`` and ``y = R^{-1} x`` a target has the prior 1 and the information ``R'XR``. However ill-conditioned
 ``P`` is, sums ``1 + R'XR`` are as well conditioned as what is measured allows: clock seconds and the bias of a

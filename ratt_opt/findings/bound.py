@@ -119,7 +119,7 @@ class Findings:
 
     @property
     def guaranteed_share(self) -> float:
-        """The largest share of the optimum that was guaranteed before planning; 0 where nothing was."""
+        """The largest share of the optimum that was guaranteed before planning; 0 if nothing was."""
         return max((float(guarantee) for guarantee in self.guarantees.values()), default=0.0)
 
     def with_certificate(self, certification: Certification) -> Self:

@@ -62,7 +62,7 @@ def _connected(masks: Any, neighbours: Any) -> Any:
 def _group_of(mask: int, groups: Any, is_group: Any, start: Any, best: Any, tables: Any) -> int:  # noqa: PLR0917
     """Fill ``best`` (K,) with the fewest links for ``mask`` by number of blinded robots; returns the last improver.
 
-    The groups of the lowest robot are listed or, where that is fewer, all subsets are tried.
+    The groups of the lowest robot are listed or, if that is fewer, all subsets are tried.
     """
     inside, row, need, links = tables
     width, pick = len(best), -1

@@ -90,7 +90,7 @@ class PossibleSizes:
         return [(inside, need) for inside, need in needs if (self._most[:, size + inside] >= need).all()]
 
     def vectors(self, budget: Budget, at_most: int) -> list[Sizes] | None:
-        """Possible vectors of which every other possible one is a merger; ``None`` where they are too many.
+        """Possible vectors of which every other possible one is a merger; ``None`` if they are too many.
 
         Non-increasing sizes, the smallest largest group first.
         """
@@ -109,7 +109,7 @@ class PossibleSizes:
         return sorted(kept)
 
     def _below(self, sizes: Sizes, table: FloatArray, left: int, largest: int) -> Iterator[Sizes]:
-        """Possible vectors that begin with ``sizes``; where the others may all be alone, only that one."""
+        """Possible vectors that begin with ``sizes``; if the others may all be alone, only that one."""
         if not self._is_possible(table, self._best[min(largest, left)][left]):
             return
         first = sizes[0] if sizes else min(left, 1)

@@ -124,7 +124,7 @@ def _robots(mask: int) -> list[int]:
 def fewest_blinded(threat: Threat, values: FloatArray, threshold: float) -> IntArray:
     """(2**N,) fewest robots to blind in each group so that the others are worth at most ``threshold``.
 
-    More than N where it cannot be done (protected robots, or a threshold below the value of no measurement).
+    More than N if it cannot be done (protected robots, or a threshold below the value of no measurement).
     """
     n_robots = threat.graph.n_robots
     sizes = np.bitwise_count(np.arange(2**n_robots)).astype(np.int64)

@@ -77,7 +77,7 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
 
 
 def _spared(problem: Problem, attack: Attack) -> Iterator[Problem]:
-    """The problem with one blinded robot (or cut link, where none is blinded) protected, each in turn."""
+    """The problem with one blinded robot (or cut link, if none is blinded) protected, each in turn."""
     if attack.sensing:
         for i in sorted(attack.sensing)[:MOST_SPARED]:
             yield replace(problem, protected_robots=problem.protected_robots | {i})

@@ -88,9 +88,9 @@ ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75,
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
 on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
 of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
-bracket, so shares trade strength only; the non-robust optimum is a baseline where it is proved in its share."""
+bracket, so shares trade strength only; the non-robust optimum is a baseline if it is proved in its share."""
 CERTIFICATE_SHARE = 0.25
-"""Of the whole time, kept for writing and verifying a certificate where one is asked for; what the searches leave of
+"""Of the whole time, kept for writing and verifying a certificate if one is asked for; what the searches leave of
 theirs comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
@@ -139,7 +139,7 @@ def bound(
     time_limit : seconds for all of it, of which the search for the optimum may take three quarters of what
         the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit. Of a set
         function of the user's own the value of each element is asked for whatever the limit: RATT's plan needs them
-    certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
+    certificate : file for the proof of the bracket, verified before it is named so; none if ``None``
     progress : called with one line of text whenever there is something to tell
     workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`
     guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
@@ -265,7 +265,7 @@ def _problem_of(
         return step.problem(objective or model.objective), step
     if isinstance(given, Problem):
         if objective is not None:
-            raise InputError("objective", "must be absent where a problem is given (it has its own)", objective)
+            raise InputError("objective", "must be absent if a problem is given (it has its own)", objective)
         return given, None
     if not isinstance(given, HasProblem):
         raise InputError("scenario_or_problem", "must be a scenario or a Problem", type(given).__name__)
@@ -350,7 +350,7 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
 
 
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
-    """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
+    """Curvature (of a submodular criterion) or total curvature over feasible sets, if it can be bracketed."""
     f, owners = problem.objective, problem.robot
     try:
         if f.is_submodular:

@@ -76,7 +76,7 @@ class BoundReport(Findings):
     ``seconds`` : wall time of each step; ``created`` : when the call began (UTC, ISO 8601).
     ``source`` : the scenario or model-free input that was given, ``None`` for a problem.
     ``views`` : the recommended plan under other attacks too, for maps: its ``worst`` case; the worst found that spares
-    one of the robots or links which that attacks (``next worst``, where the worst attacks anything); and ``none``.
+    one of the robots or links which that attacks (``next worst``, if the worst attacks anything); and ``none``.
     ``seeds`` : of everything drawn at random.
     ``interrupted`` : the user ended the searches; the brackets hold all the same.
 

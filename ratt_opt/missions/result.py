@@ -115,12 +115,12 @@ class FlownMission(ByValue):
 
     @property
     def nees(self) -> FloatArray:
-        """(T,) normalised estimation error squared, mean over the targets; ``d`` where the filter is consistent."""
+        """(T,) normalised estimation error squared, mean over the targets; ``d`` if the filter is consistent."""
         return readonly(np.array([step.team.belief.nees(step.truth).mean() for step in self.steps]))
 
     @property
     def nis(self) -> FloatArray:
-        """(T,) normalised innovation squared of the team's group per number measured; NaN where none was."""
+        """(T,) normalised innovation squared of the team's group per number measured; NaN if none was."""
         pairs = [(step.team.innovation.squared, step.team.innovation.count) for step in self.steps]
         return readonly(np.array([s / n if n else np.nan for s, n in pairs]))
 
@@ -132,7 +132,7 @@ class FlownMission(ByValue):
         return low / self.scenario.n_targets, high / self.scenario.n_targets
 
     def nis_band(self, level: float = 0.95) -> FloatArray:
-        """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN where none."""
+        """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN if none."""
         _check_level(level)
         counts = np.array([step.team.innovation.count or np.nan for step in self.steps])
         ends = [(1 - level) / 2, (1 + level) / 2]

@@ -61,7 +61,7 @@ def group_pieces(
     Every measurement is linearised at the predicted positions, as the plan does; with an iterated linearisation at the
     estimate that follows, again and again. A sighting counts wherever its target was expected, in view or not.
 
-    ``poses`` : robot by robot (3,), or (M, 3) where each target was measured from another pose.
+    ``poses`` : robot by robot (3,), or (M, 3) if each target was measured from another pose.
     ``pose_covariances`` : (N, 3, 3) of the poses, whose errors are taken for further noise of every measurement.
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)

@@ -56,7 +56,7 @@ class MissionModel:
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
         is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
         estimate
-    objective : criterion of a plan; the log-det only where a single position is planned for
+    objective : criterion of a plan; the log-det only if a single position is planned for
     output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``. The max-eigenvalue's mean is the
         worst axis of the errors of all steps together, over their number
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
@@ -91,7 +91,7 @@ class MissionModel:
 def _beside(prior: FloatArray, information: FloatArray) -> FloatArray:
     """The information (E, M, d, d), scaled down if a prior (M, d, d) would lose its digits beside it.
 
-    Where nothing is known of a target yet, a sighting that is worth 1e14 times as much leaves it as well known as one
+    If nothing is known of a target yet, a sighting that is worth 1e14 times as much leaves it as well known as one
     that is worth more: the value changes in its last digits.
     """
     sizes = np.trace(information, axis1=-2, axis2=-1) * np.trace(prior, axis1=-2, axis2=-1)  # at least the largest axes
@@ -140,7 +140,7 @@ class World:
         object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
         if self.model.objective not in WITH_OUTPUT and self.horizon > 1:
-            rule = f"must be {' or '.join(WITH_OUTPUT)} where a plan looks several steps ahead"
+            rule = f"must be {' or '.join(WITH_OUTPUT)} if a plan looks several steps ahead"
             raise InputError("objective", rule, self.model.objective)
 
     @property

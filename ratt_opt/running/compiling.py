@@ -1,9 +1,9 @@
 """Numba for modules of compiled loops, which take it from here: interrupts are answered, and no outdated code is run.
 
 Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
-those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
+those callbacks, if every one ends up that came during the call, is dropped by Python, and what was half made then
 fails with an error of its own; so is one in the callback of a weak reference, of which compiling ends many. So it is
-raised again as soon as the callback has ended. Where the compiler takes a
+raised again as soon as the callback has ended. If the compiler takes a
 module over, an interrupt just after it left two owners, each of which freed it; one at the very end of compiling left
 interrupts handled as while it lasts: there, too, it comes again a little later. What is kept of compiled code:
 ``kept_code.py``.

@@ -111,7 +111,7 @@ def read_json(path: str | Path) -> Any:
 
     Raises
     ------
-    FileFormatError : any of these is broken, with the line where one is known.
+    FileFormatError : any of these is broken, with the line if one is known.
     """
     text = _read_text(Path(path))
     try:

@@ -64,9 +64,9 @@ def limited_view_scenario(
     alpha_s, alpha_c : robots that may be blinded, links that may be cut
     seed : integer >= 0
     view : full angle that a sensor sees about its robot's heading [degrees], in (0, 360]
-    reach : distance up to which a sensor sees [m]; no limit where ``None``
+    reach : distance up to which a sensor sees [m]; no limit if ``None``
     headings : directions in which a robot can look after a step
-    communication_range : robots within this distance are linked [m]; all are where ``None``
+    communication_range : robots within this distance are linked [m]; all are if ``None``
     sensor : ``"camera"`` (precise bearing), ``"radar"`` (precise range), or a :class:`Sensor` whose noise is taken
     prior_std, process_std : standard deviation per axis of each target's estimate and motion noise [m]
 

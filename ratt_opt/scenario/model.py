@@ -106,7 +106,7 @@ class Scenario(ProblemRecord):
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
         if self.links is not None and self.communication_range is not None:
-            raise InputError("communication_range", "must be absent where links are listed", self.communication_range)
+            raise InputError("communication_range", "must be absent if links are listed", self.communication_range)
         self._check_sizes(sum(len(robot.controls) for robot in self.robots), 2)
         self._check_links()
         self._check_ranges()
@@ -145,7 +145,7 @@ class Scenario(ProblemRecord):
 
     @cached_property
     def predicted_targets(self) -> FloatArray:
-        """(M, 2) predicted mean positions [m], where the sensor model is linearised."""
+        """(M, 2) predicted mean positions [m]; the sensor model is linearised there."""
         positions = np.array([(target.x, target.y) for target in self.targets])
         motions = np.array([(target.speed, target.turn_rate, target.heading) for target in self.targets])
         return readonly(predict_targets(positions, motions, self.sampling_period))

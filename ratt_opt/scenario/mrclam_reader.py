@@ -56,7 +56,7 @@ def opened_mrclam(data: str | Path | MrclamData, corrections: Mapping[int, int] 
     if not isinstance(data, MrclamData):
         return read_mrclam(data, corrections)
     if corrections is not None:
-        raise InputError("corrections", "must be given where the folder is read (read_mrclam)", dict(corrections))
+        raise InputError("corrections", "must be given if the folder is read (read_mrclam)", dict(corrections))
     return data
 
 
@@ -133,7 +133,7 @@ def _table(
 ) -> FloatArray:
     """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment. ``empty`` : it may have none.
 
-    The columns ``identifiers`` hold whole numbers, in each column all different where ``unique``.
+    The columns ``identifiers`` hold whole numbers, in each column all different if ``unique``.
     """
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()  # some loggers write a byte-order mark

@@ -92,7 +92,7 @@ def unmetered(f: SetFunction) -> SetFunction:
 
 
 def table_within(f: SetFunction, budget: Budget) -> FloatArray:
-    """The full table of ``f``, as fast as it makes it itself; raises ``OutOfBudget`` where the budget is too small."""
+    """The full table of ``f``, as fast as it makes it itself; raises ``OutOfBudget`` if the budget is too small."""
     check_table_size(f.n)
     if isinstance(f, TableFunction):
         return f.values

@@ -35,7 +35,7 @@ TRIALS = 20_000
 BATCH = 2_000
 """Pairs evaluated at once: bounds the memory, a membership row a pair."""
 CLIMBS = 50
-"""Most steps from the worst pair found, each to its best neighbour; it ends earlier where no neighbour is worse."""
+"""Most steps from the worst pair found, each to its best neighbour; it ends earlier if no neighbour is worse."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +72,7 @@ class Violation:
 class NotFound:
     """No violation found in ``trials`` pairs of sets; not a proof. False.
 
-    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` where all pairs asked for were tried.
+    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` if all pairs asked for were tried.
     """
 
     rule: str

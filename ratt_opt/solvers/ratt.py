@@ -69,8 +69,8 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
     Parameters
     ----------
-    alpha_cs : sensing attacks that the link attacks are worth, where known; else asked for
-    budget : an outer search's budget: where ``alpha_cs`` takes long it is a bound found in a part of its seconds, and
+    alpha_cs : sensing attacks that the link attacks are worth, if known; else asked for
+    budget : an outer search's budget: if ``alpha_cs`` takes long it is a bound found in a part of its seconds, and
         once it is spent, the robots left get their individually best element too
 
     Returns

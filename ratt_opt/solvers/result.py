@@ -57,12 +57,12 @@ class MaxMinResult(ByValue, Shown):
     """``upper - lower`` as a share of the posterior criterion (trace, max-eigenvalue) that ``lower`` leaves: a
     diffuse prior hides real differences in the relative gap. ``None`` for other objectives."""
     worst_case: AttackResult | None = None
-    """The attack on ``elements`` that ``lower`` rests on; ``None`` where it was enumerated."""
+    """The attack on ``elements`` that ``lower`` rests on; ``None`` if it was enumerated."""
     proof: UpperProof | None = None
-    """What ``upper`` rests on; ``None`` where it was enumerated."""
+    """What ``upper`` rests on; ``None`` if it was enumerated."""
     unattacked: float | None = None
     """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
-    ``None`` where plans were enumerated, and for set functions that are no information criterion."""
+    ``None`` if plans were enumerated, and for set functions that are no information criterion."""
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         """Its plan: a result can be given wherever elements are asked for."""

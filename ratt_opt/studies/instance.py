@@ -99,7 +99,7 @@ class Instance:
     def scenario(self) -> Scenario:
         """The random scenario; what needs one is refused for problems that a study makes itself."""
         if self.drawn is None:
-            raise InputError("metrics", "must not need a scenario where the study makes its problems itself", "mse")
+            raise InputError("metrics", "must not need a scenario if the study makes its problems itself", "mse")
         return self.drawn
 
     @property

@@ -149,7 +149,7 @@ def _side_by_side(
 def bands(
     axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], *, look: Look, label: str, dashed: bool = False
 ) -> None:
-    """Draw a curve of means with its confidence band; ``dashed`` where it may run along one drawn before."""
+    """Draw a curve of means with its confidence band; ``dashed`` if it may run along one drawn before."""
     colour = look.colour
     style: dict[str, Any] = {"linestyle": (0, (3, 3)), "markerfacecolor": "none"} if dashed else {}
     means = [e.mean for e in estimates]

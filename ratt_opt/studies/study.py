@@ -95,7 +95,7 @@ class Study:
     measure : function ``(study, case, seeds) -> row`` that measures one trial, or its ``module:function``; by default
         the comparison of planners under attackers
     seed : root of all seeds
-    fixed_trials : number of trials where nothing is random; otherwise the command line decides
+    fixed_trials : number of trials if nothing is random; otherwise the command line decides
 
     Functions stand at the top of their module, so that worker processes find them. A planner or attacker may also be a
     ``functools.partial`` of such a function, or an instance of a dataclass that can be called.

@@ -101,7 +101,7 @@ def _coverage(
 def sensing_instance(size: int, swapped: int, curvature: Fraction) -> RatioWitness:
     """Return the instance with ``N = g + p``, ``alpha_s = p``, no link cut, on which RATT keeps :func:`sensing_ratio`.
 
-    ``g = size`` robots are left, ``p = swapped <= g``, ``t = 1-c``, ``h = min(g-1, p (1 + 1/t))`` or ``g - 1`` where p
+    ``g = size`` robots are left, ``p = swapped <= g``, ``t = 1-c``, ``h = min(g-1, p (1 + 1/t))`` or ``g - 1`` if p
     is 0. Robots have weights w: 1, but the last ``g - p`` greedy ones, in order, as much as leaves them ``h + 1 - p``
     in all, so at most one is between 0 and 1. Largest marginals are w for bait and for those greedy elements, ``1/t``
     for the first p greedy ones, and ``w/t`` for the others'. Prescribed: an element alone is worth w; the first greedy

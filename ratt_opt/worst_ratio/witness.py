@@ -1,7 +1,7 @@
 """An explicit instance on which a planner attains a ratio, and its exact replay through the library.
 
 Two families show that no larger share than the pattern-free bounds holds for all teams: :func:`attaining_instance`
-has ``1-k`` where ties go against RATT, and comes as close as wanted without ties; the ratios of :func:`limit_instance`
+has ``1-k`` if ties go against RATT, and comes as close as wanted without ties; the ratios of :func:`limit_instance`
 tend to ``(1-c)^2``. For one budget more is true (``bounds/survivors.py``). ``families.py`` has more of them.
 """
 
@@ -88,7 +88,7 @@ class RatioWitness(ByValue, RatioQuestion):
 
 
 def scaled_values(values: Sequence[Fraction]) -> IntArray | None:
-    """Multiply rationals by the least common multiple of their denominators; ``None`` where that exceeds 2**52."""
+    """Multiply rationals by the least common multiple of their denominators; ``None`` if that exceeds 2**52."""
     scale = lcm(*(value.denominator for value in values))
     if scale * max(values) > LARGEST_VALUE:
         return None
@@ -98,7 +98,7 @@ def scaled_values(values: Sequence[Fraction]) -> IntArray | None:
 def replay(witness: RatioWitness) -> Fraction:
     """Check that the function is of its class and return planner's worst-case value over optimum, exactly.
 
-    Runs the library's planner, exact attacker and exhaustive optimum on the instance; raises ``ProofError`` where the
+    Runs the library's planner, exact attacker and exhaustive optimum on the instance; raises ``ProofError`` if the
     function is not normalised, not of the class, exceeds its curvature, or has optimum 0.
     """
     _check(witness)
@@ -124,7 +124,7 @@ def _check(witness: RatioWitness) -> None:
 def attaining_instance(size: int, curvature: Fraction, epsilon: Fraction = Fraction(0)) -> RatioWitness:
     """Return the instance with ``N = 3 size`` robots, ``alpha_s = size`` on which RATT keeps exactly ``1 - curvature``.
 
-    That is where ties go against RATT, by the order of the elements. With ``epsilon > 0`` RATT's choices are strictly
+    That is if ties go against RATT, by the order of the elements. With ``epsilon > 0`` RATT's choices are strictly
     the best, in whatever order elements come, and it keeps at most ``1 - curvature + 3/2 epsilon``.
 
     Let ``t = 1-k`` and m = ``size``. A weighted coverage function, hence submodular and non-decreasing. Each element

@@ -69,7 +69,7 @@ class PossibleGroups:
     def bound(self, task: AttackTask, *, lists_sets: bool = True) -> None:
         """Raise the lower end to the least that groups of possible sizes leave.
 
-        ``lists_sets`` : also list the weak sets to :meth:`ask` about, where they are few
+        ``lists_sets`` : also list the weak sets to :meth:`ask` about, if they are few
 
         Raises
         ------

@@ -42,7 +42,7 @@ class BestLinks(Shown):
 
     ``links`` : at most k, ascending; with them the plan keeps ``lower``. ``before`` : the worst attack on the team as
     it is; ``after`` : on the team that has these links. ``attacks`` : exact attacks made, ``nodes`` of them. ``stop``
-    is ``CLOSED`` where the ends meet but for rounding.
+    is ``CLOSED`` if the ends meet but for rounding.
     """
 
     links: tuple[Link, ...]
@@ -127,7 +127,7 @@ def links_to_add(
 ) -> BestLinks:
     """Choose the k links whose addition raises the worst case of a plan most.
 
-    A new link lets its ends pool what they see, and can be cut like any other: it spoils an attack only where the
+    A new link lets its ends pool what they see, and can be cut like any other: it spoils an attack only if the
     adversary cannot afford to cut it too. The plan and the robots' sensors stay as they are, and so does ``alpha_c``,
     however many links there are: a budget that is a share of the links is the caller's to scale. Otherwise as
     :func:`links_to_protect`.
@@ -135,7 +135,7 @@ def links_to_add(
     Parameters
     ----------
     candidates : pairs of robots without a link, to choose from; all by default. Those within radio range of each
-        other where positions are known: :meth:`ratt_opt.scenario.model.Scenario.pairs_within`
+        other if positions are known: :meth:`ratt_opt.scenario.model.Scenario.pairs_within`
 
     Raises
     ------

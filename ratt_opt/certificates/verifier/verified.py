@@ -17,7 +17,7 @@ class Verified:
     at least ``lower`` under every attack: proved if ``lower_proved``, otherwise only claimed.
     ``largest_defect`` bounds how far below zero an eigenvalue of the stored information is (rounding);
     the proofs account for it. ``problem_hash`` is the SHA-256 of the problem record; ``made_from`` that of the scenario
-    or information from which the record is said to be made, ``None`` where that is not said.
+    or information from which the record is said to be made, ``None`` if that is not said.
     """
 
     lower: float

@@ -1,4 +1,4 @@
-"""Compiled loops over contexts and cuts, imported where a search needs them; the plain versions are in the tests."""
+"""Compiled loops over contexts and cuts, imported if a search needs them; the plain versions are in the tests."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """How far the smallest level of all targets can rise above one target's own: a linear program over mixtures.
 
 For contexts ``S`` (one option an owner) let ``t(S)`` be the smallest level over all targets of ``base + S``, and
-``own(S)`` the level of target ``j`` of ``own_base + S``, where its weakest direction, at double angle ``a``, lies in a
+``own(S)`` the level of target ``j`` of ``own_base + S``, if its weakest direction, at double angle ``a``, lies in a
 sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V >= t(S) - slope own(S)``.
 
 - ``t`` is at most every target's quadratic form in every direction, so at most any average of them (*cuts*).
@@ -10,7 +10,7 @@ sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V
 - In the sector ``y . v >= 0`` for the two unit vectors ``v`` at ``middle +- (pi/2 - half)``.
 
 All are linear in ``S``. Whatever multipliers the linear program has, clipped and normalised, give a valid ``V``: a sum
-over owners of their best option (``compiled.py``). Where the sector holds no mixture at all ``V`` is merely low, as
+over owners of their best option (``compiled.py``). If the sector holds no mixture at all ``V`` is merely low, as
 the multipliers of its edges are capped.
 """
 
@@ -39,7 +39,7 @@ NEW_CUTS = 6
 VIOLATION = 3e-2
 """Cuts violated by less than this, relative to ``|t - own|``, are left."""
 FIRST_CUTS = 10
-"""Targets that get a cut where there is none to start from."""
+"""Targets that get a cut if there is none to start from."""
 SMALLEST_SHARE = 1e-9
 """Targets with a smaller share of the average to start from get no cut at once."""
 EDGES = 2

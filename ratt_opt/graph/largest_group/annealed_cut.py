@@ -1,6 +1,6 @@
 """Few links whose cut leaves no group above a size, by simulated annealing over the robots' groups, in compiled code.
 
-Imported only where compiled loops are used.
+Imported only if compiled loops are used.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ robots none are needed, at 200 a third or more."""
 def annealed_cut(
     threat: Threat, cut: frozenset[Link], lower: int, budget: Budget, *, ignoring: Collection[int] = ()
 ) -> frozenset[Link]:
-    """A cut that leaves a smaller largest group than ``cut`` does, where annealing finds one.
+    """A cut that leaves a smaller largest group than ``cut`` does, if annealing finds one.
 
     Sizes are bisected first; as annealing may miss one size and meet a smaller one, the next few are tried after that.
 

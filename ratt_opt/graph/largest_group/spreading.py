@@ -8,7 +8,7 @@ whole:
 
 The program asks for the x and b within the budgets that make the largest left side least; its inequalities come from
 shortest-path trees. What it says is not taken: for any multipliers ``y >= 0`` of the inequalities an attack leaves a
-group of at least their mean left side, which is least where the attack takes the links and the robots of the largest
+group of at least their mean left side, which is least if the attack takes the links and the robots of the largest
 coefficients. That is computed in integers, so weights are integers too.
 
 Source: spreading metrics; Even, Naor, Rao and Schieber, Journal of the ACM 47 (2000), here for cuts within a budget.

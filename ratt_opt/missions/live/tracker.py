@@ -121,7 +121,7 @@ class Tracker:
             time, in whatever order they arrive. One that tells nothing is not used, and a ``RuntimeWarning`` says so.
         now : the caller's clock [s]; it must not run backwards, and the belief is predicted by what has passed.
             ``None`` is one sampling period after the last step.
-        poses : (N, 3) where the robots know to be; where the last plan led them by default
+        poses : (N, 3) poses that the robots know of themselves; by default those that the last plan led to
         pose_covariances : (N, 3, 3) of these poses [m^2], [m rad], [rad^2]; exact by default. They are taken for
             further noise of every measurement made from there.
 
@@ -275,6 +275,6 @@ def _within_reach(state: TrackerState) -> TrackerState:
 
 
 def _nearest(offered: Sequences, wanted: FloatArray) -> IntArray:
-    """(N,) elements whose controls are those wanted (N, H, 2), or nearest to them where they are not offered."""
+    """(N,) elements whose controls are those wanted (N, H, 2), or nearest to them if they are not offered."""
     apart = np.abs(offered.controls - wanted[offered.owner]).sum(axis=(1, 2))
     return np.array([(own := np.flatnonzero(offered.owner == i))[np.argmin(apart[own])] for i in range(len(wanted))])

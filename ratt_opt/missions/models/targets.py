@@ -240,7 +240,7 @@ def target_motion(motion: str | TargetMotion, scenario: Scenario) -> TargetMotio
 
 
 def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """``sin(wT)/w`` and ``(1 - cos(wT))/w`` with their derivatives by ``w``, by series where ``wT`` is small."""
+    """``sin(wT)/w`` and ``(1 - cos(wT))/w`` with their derivatives by ``w``, by series if ``wT`` is small."""
     small = np.abs(rate * period) < STRAIGHT
     w = np.where(small, 1.0, rate)
     sine, cosine = np.sin(w * period), np.cos(w * period)

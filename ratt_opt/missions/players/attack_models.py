@@ -50,7 +50,7 @@ class PersistentAttacks(AttackModel):
         check_integer("hold", self.hold, low=1)
 
     def threatened(self, step: int, before: Attack, scenario: Scenario) -> Threatened:
-        """All budgets where an attack begins, else what is in force and no more."""
+        """All budgets if an attack begins, else what is in force and no more."""
         if step % self.hold == 0:
             return Threatened(Attack(), scenario.alpha_s, scenario.alpha_c)
         return Threatened(before, 0, 0)

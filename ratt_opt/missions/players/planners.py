@@ -47,7 +47,7 @@ class MaxMinPlanner:
     max_nodes: int | None = 30
 
     def __call__(self, problem: Problem, start: IntArray | None = None) -> MaxMinResult:
-        """Search until closed to the gap or out of limits, from a plan ``start`` where one is known."""
+        """Search until closed to the gap or out of limits, from a plan ``start`` if one is known."""
         return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes, start=start)
 
     def within(self, problem: Problem, budget: Budget, start: IntArray) -> MaxMinResult:

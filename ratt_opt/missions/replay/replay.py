@@ -72,7 +72,7 @@ class Replay(ByValue):
 
     @property
     def nees(self) -> FloatArray:
-        """(T,) mean over the landmarks; 2 where the filter is consistent."""
+        """(T,) mean over the landmarks; 2 if the filter is consistent."""
         return readonly(np.array([step.belief.nees(step.belief.mean - step.errors).mean() for step in self.steps]))
 
     @property

@@ -131,7 +131,7 @@ def _check_sendable(problem: Problem) -> None:
     try:
         pickle.dumps(problem)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
-        rule = "must be None where the problem cannot be pickled (define its classes and functions in a module)"
+        rule = "must be None if the problem cannot be pickled (define its classes and functions in a module)"
         raise InputError("workers", rule, f"{type(error).__name__}: {error}") from None
 
 
