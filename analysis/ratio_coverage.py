@@ -1,9 +1,9 @@
 """Print a table of ``docs/researchers/ratios.md``, on RATT's exact worst ratio.
 
 Run as ``python -m analysis.ratio_coverage TABLE``. TABLE is ``coverage`` (budgets settled by proof and by
-computation), ``values`` (their ratios beside the formulas), ``others`` (values that no conjecture was made from),
-``threes`` (submodular, three robots left), ``large`` (submodular, six and seven robots), ``planners`` (the best of
-three planners, bracketed) or ``best`` (exactly). Minutes each; with ``--quick`` the first rows only.
+computation); ``values`` (their ratios beside the formulas); ``others`` (values that no conjecture was made from);
+``threes`` (submodular, three robots left); ``large`` (submodular, six and seven robots); ``planners`` (the best of
+three planners, bracketed); or ``best`` (exactly). Minutes each; with ``--quick`` the first rows only.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Numbers as text, rounded outward: what is printed of a bracket holds the bracket, of a gap is not less than it.
 
 The one place where ends of brackets, shares, gaps and guarantees become text. Exact: a float or fraction is rounded
-once, in decimal arithmetic, in the direction that is asked for.
+once, in decimal arithmetic, in the direction that the function names.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ AT_LEAST, AT_MOST = {"lower", "proved", "share", "guarantee"}, {"upper", "gap"}
 
 
 def down(value: float | Fraction, digits: int) -> str:
-    """The largest decimal of so many significant digits that is at most ``value``."""
+    """The largest decimal of that many significant digits that is at most ``value``."""
     return _text(value, digits, ROUND_FLOOR)
 
 
 def up(value: float | Fraction, digits: int) -> str:
-    """The smallest decimal of so many significant digits that is at least ``value``."""
+    """The smallest decimal of that many significant digits that is at least ``value``."""
     return _text(value, digits, ROUND_CEILING)
 
 

@@ -62,7 +62,7 @@ class Budget:
     """Seconds, nodes and evaluations that a search may spend, and whether the user interrupted it.
 
     A search passes its budget down and asks it in every loop that can be long. Inner searches get a
-    :meth:`part` of it. Whoever catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
+    :meth:`part` of it. Code that catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
     that every search around it stops too instead of taking the inner result for a finished one.
 
     Parameters
@@ -70,7 +70,7 @@ class Budget:
     time_limit : seconds from now; ``None`` is unlimited, 0 is spent at once
     max_nodes : nodes; ``None`` is unlimited
     max_evaluations : values of a set function, here and in all parts; ``None`` is unlimited. Counted, and kept, if
-        values are asked for through :class:`ratt_opt.setfunctions.metered.Metered`
+        values are computed through :class:`ratt_opt.setfunctions.metered.Metered`
 
     Raises
     ------
@@ -179,7 +179,7 @@ class Budget:
         self.nodes += nodes
 
     def part(self, share: float = 1.0, *, max_nodes: int | None = None, at_least: float = 0.0) -> Budget:
-        """A budget of its own nodes with ``share`` of the seconds and evaluations left (``at_least`` so many seconds).
+        """A budget of its own nodes with ``share`` of the seconds and evaluations left (at least ``at_least`` seconds).
 
         An interrupt of either is an interrupt of both.
         """

@@ -162,7 +162,7 @@ class LinearProgram:
         self._highs.clearSolver()
 
     def solve(self, seconds: float = inf, *, is_long: bool = False) -> ClaimedSolution:
-        """Run HiGHS for at most so many seconds and return what it claims.
+        """Run HiGHS for at most that many seconds and return what it claims.
 
         ``is_long`` : end it if the user interrupts, which otherwise is answered once it has run
         """

@@ -34,7 +34,7 @@ STEPS = 8
 CLOSED = {"attack": 1e-6, "maxmin": 1e-4}
 """Relative width that counts as closed."""
 GAP = 5e-5
-"""That a max-min search is asked for."""
+"""Names a max-min search."""
 BUSY = 10
 """Wall seconds that a processor second may take on a busy machine before a call counts as lost."""
 SMALL = 13
@@ -72,7 +72,7 @@ def budgets(draw: str, robots: int, seed: int) -> list[tuple[int, int]]:
 
 
 def budget_grid(robots: int, steps: int) -> list[tuple[int, int]]:
-    """So many numbers of blinded robots, from none to all but two, by as many of cut links, from 5 % to 95 %."""
+    """``steps`` numbers of blinded robots, from none to all but two, by ``steps`` of cut links, from 5 to 95 %."""
     links = robots * (robots - 1) // 2
     blinded = np.round(np.linspace(0, robots - 2, steps)).astype(int).tolist()
     cut = np.round(np.linspace(0.05, 0.95, steps) * links).astype(int).tolist()

@@ -45,7 +45,7 @@ def earlier_bracket(
     """``lower``, ``upper``, ``stop`` and ``seconds`` of the edition in ``tree``; ``stop`` "none" if nothing came.
 
     ``plan`` : attacked; without one the best plan is searched for
-    ``gap`` : that a search for the best plan is asked for
+    ``gap`` : present for a search for the best plan
     ``processor`` : count seconds of the processor
     """
     patience = BUSY * seconds + SPARE if processor else seconds + SPARE

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 KINDS = ["trace", "logdet", "maxeig"]
-"""Criteria that are asked for; ``--kinds`` names some of them."""
+"""Criteria that are measured; ``--kinds`` names some of them."""
 PAPER = {
     10: (15, ((3, 11), (5, 15), (6, 22))),
     20: (20, ((6, 47), (10, 63), (13, 95))),

@@ -5,7 +5,7 @@ With ``--earlier FOLDER`` RATT of the edition in FOLDER beside it, to the first 
 
 Complete graph, 12 controls, 0.3 targets a robot, a tenth of the robots blinded, a twentieth of the links cut. RATT
 (processor seconds) beside the ``O(N^2)`` evaluations of Theorem 2; then the bracket of its worst case, and of the
-optimum, after so many seconds, and the memory of the process. ``--out`` writes the growth as a figure; with
+optimum, after that many seconds, and the memory of the process. ``--out`` writes the growth as a figure; with
 ``--processor`` limits are of the processor, which other work on the machine does not stretch.
 """
 

@@ -45,7 +45,7 @@ def team(robots: int, targets: int, network: str, seed: int) -> Any:
 
 
 def measure(problem: Problem, seconds: float, *, certified: bool) -> dict[str, Any]:
-    """How much stays open, the seconds, and what RATT's plan keeps of the best one."""
+    """How much stays open, the seconds, and RATT's worst case as a share of the best one."""
     began = process_time()
     found = solve_maxmin(problem, gap=CLOSED, time_limit=seconds)
     row: dict[str, Any] = {
@@ -124,7 +124,9 @@ def main() -> None:
         print(*(f"{value:.4g}" if isinstance(value, float) else value for value in row.values()), flush=True)
         if args.log is not None:
             append_csv(args.log, row)
-    print_table("Open of the best plan's bracket, processor seconds, and what RATT's plan keeps of it", summary(rows))
+    print_table(
+        "Open of the best plan's bracket, processor seconds, and RATT's worst case as a share of it", summary(rows)
+    )
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ __all__ = ["network_table", "read_rows", "summary"]
 
 Row = dict[str, str]
 DONE = {"closed", "gap"}
-"""Stops of searches that proved all that they were asked for."""
+"""Stops of searches that proved all that they should."""
 
 
 def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
@@ -36,7 +36,7 @@ def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
 
 
 def network_table(rows: list[Row]) -> str:
-    """Families by seeds: seconds of the processor if all was proved that was asked for, else what is left."""
+    """Families by seeds: seconds of the processor if all was proved, else what is left."""
     cells: dict[str, dict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
         cells[row["family"]][int(row["seed"])].append(_cell(row))
@@ -54,7 +54,7 @@ def summary(rows: list[Row], within: float) -> str:
     over = [row for row in open_rows if float(row["gap"]) > within]
     text = f"{len(rows) - len(open_rows)} of {len(rows)} closed, {len(rows) - len(over)} within {100 * within:g} %"
     if over:
-        text += "; beyond: " + ", ".join(
+        text += "; beyond: " + "; ".join(
             f"{row['family']} ({row['alpha_s']}, {row['alpha_c']}) seed {row['seed']} {_cell(row)}" for row in over
         )
     compared = [float(row["plain_over_exact"]) for row in rows if row.get("plain_over_exact")]

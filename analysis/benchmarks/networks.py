@@ -34,7 +34,7 @@ TARGETS = {24: 25, 30: 25, 50: 30, 100: 100}
 SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
 """Of the robots blinded and of the links cut; ``None`` draws both up to twice a third of them."""
 GAP = 1e-6
-"""That a max-min search is asked for."""
+"""Names a max-min search."""
 WARM, WARM_LARGE = 24, 64
 """Robots of the first problems of each objective, not counted: what is compiled is loaded then. Large teams are asked
 who is inside first (``attackers/by_prices/paying_groups.py``)."""

@@ -46,7 +46,7 @@ SHOWN = {
 
 
 def shares(rows: Sequence[Mapping[str, str]]) -> dict[str, FloatArray]:
-    """(T,) each kind of guarantee: a share of the optimum that RATT's plan keeps under any attack."""
+    """(T,) each kind of guarantee: RATT's least share of the optimum under any attack."""
     certified = column(rows, "ratt/exact/proved") / column(rows, "optimum/upper")
     return {name: certified if name == "certified" else column(rows, name) for name in SHOWN}
 

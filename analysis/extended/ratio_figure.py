@@ -1,4 +1,4 @@
-"""The share of the certified optimum that planners keep under the exact attack."""
+"""Worst cases of planners as shares of the certified optimum."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["GAP", "measured", "measured_by_name", "warm"]
 
 GAP = 1e-4
-"""That a search for the best plan is asked for."""
+"""Names a search for the best plan."""
 BRIEF = 2.0
 """Seconds below which a run is made again and the second counts: the first may have loaded compiled code."""
 WARM = 40

@@ -1,4 +1,4 @@
-"""Single plans under the exact worst attack, against what any plan could keep: by view and network."""
+"""Single plans under the exact worst attack, beside the best possible value: by view and network."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GAP, NODES = 1e-3, 3_000
 
 
 def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
-    """What each plan keeps in the first step of the mission, and the bracket of what any could keep."""
+    """The worst case of each plan in the first step of the mission, and the bracket of the best possible one."""
     problem = scenario_of(case, seeds).problem(case.objective)
     row: dict[str, Cell] = {}
     for planner, chosen in study.named_planners.items():

@@ -112,9 +112,9 @@ def _particular(row: Row) -> str:
 
 
 def _one_step(rows: Sequence[Row]) -> Iterator[str]:
-    """How much more of the best possible an exact plan keeps, in one step."""
+    """How much nearer to the best possible an exact plan is, in one step."""
     yield "## One step\n"
-    yield "Share of the best possible worst-case value that each plan keeps (trace, mean over the teams), and what an"
+    yield "Worst-case value of each plan as a share of the best possible (trace, mean over the teams), and what an"
     yield "exact plan adds to that of RATT. Shares are of the proved upper end, so they are at least as stated. Open:"
     yield "teams whose search ended with more than 0.1 % undecided.\n"
     planners = [planner for planner in ONE_STEP.planner_names if f"{planner}/worst/value" in rows[0]]

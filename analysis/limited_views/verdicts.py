@@ -1,4 +1,4 @@
-"""Paired intervals as words: what pays, what costs, and where no difference is seen."""
+"""Paired intervals as words: what pays, what costs, and what makes no visible difference."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ _reading = partial(ClaimEntry, chain="readings", hypotheses="RATT's choices", su
 
 
 def _left() -> Iterator[SizedClaim]:
-    """The value under A* is the best group's, of which one is left here: both ways, by definition."""
+    """The value under A* is the best group's. One group is left here, so both ways agree, by definition."""
     team, under = team_of(1, 1), Linear.of("value")
     for attacked in attacks_on(team.robots, 1):
         best = team.chosen(set(team.robots) - set(attacked))

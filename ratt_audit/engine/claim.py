@@ -170,8 +170,8 @@ class Claim:
 class Elementary:
     """Name of an elementary inequality: a rule, one or two elements, and the set they are added to.
 
-    Rules: ``monotone`` f(S+x) >= f(S); ``low`` f(S+x) - f(S) >= (1-c) m(x); ``high`` f(S+x) - f(S) <= m(x), where
-    m(x) is the largest marginal of x; ``diminishing`` f(S+x) + f(S+y) >= f(S+x+y) + f(S);
+    Rules: ``monotone`` f(S+x) >= f(S); ``low`` f(S+x) - f(S) >= (1-c) m(x); ``high`` f(S+x) - f(S) <= m(x),
+    the largest marginal of x; ``diminishing`` f(S+x) + f(S+y) >= f(S+x+y) + f(S);
     ``curvature`` f(S+x) - f(S) >= (1-k) f(x).
     """
 

@@ -1,4 +1,4 @@
-"""Decide one claim: checked proof, checked counterexample or open question; and what is left of a refuted one."""
+"""Decide one claim: checked proof, checked counterexample or open question; and the rest of a refuted one."""
 
 from __future__ import annotations
 

@@ -148,7 +148,7 @@ def _safe_baits_repaired(s: Setting) -> str:
 
 
 def _wrong_balance(s: Setting) -> str:
-    """The reason of nd_p1d3v1_4 as printed, with V1b1, of which none is blinded."""
+    """The reason of nd_p1d3v1_4 as printed, with V1b1 not blinded."""
     wrong = (one for one in _spreads(s) if one.safe != one.hit)
     return next(
         (f"alpha_s^1 = {one.part}: |V1b1\\A*| = {one.safe}, greedy robots blinded: {one.hit}" for one in wrong), ""

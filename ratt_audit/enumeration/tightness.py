@@ -79,7 +79,7 @@ def _exceeded(function_class: FunctionClass, proved: Factor, printed: Factor) ->
     form = gap.form(gap.degree)
     exceeded = holds and min(form) >= 0 and max(form) > 0
     symbol = function_class.symbol
-    keeps = f"RATT keeps at least {proved.above.text(symbol)} of the optimum"
+    keeps = f"RATT has at least {proved.above.text(symbol)} of the optimum"
     text = f"{keeps}, more than Theorem 1 says for 0 < {symbol} < 1"
     return Counted(
         verdict=Verdict.REFUTED if exceeded else Verdict.UNDECIDED,

@@ -63,7 +63,7 @@ def _theorems(records: list[EntryRecord]) -> Finding:
         sentences.append(
             "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
             "every curvature strictly between 0 and 1; the survivor bounds are at least as large; if attacks can "
-            "keep every group to one seeing robot RATT is optimal. The machine decides teams up to the size shown; "
+            "keep every group to one unblinded robot RATT is optimal. The machine decides teams up to the size shown; "
             "written proofs for any number of robots are in the documentation of pattern_free_bound, group_size_bound "
             "and survivor_bound. What Theorem 1 needs is RATT's choices, one robot at a time: no pattern, no "
             "distribution of attacks, no A*."
@@ -166,7 +166,9 @@ def _whose(reading: str) -> str | None:
 
 
 def _repairs(records: list[EntryRecord]) -> Finding:
-    table = [("refuted", "smallest counterexample", "what is left of it, or serves instead", "conclusion without it")]
+    table = [
+        ("refuted", "smallest counterexample", "what still holds of it, or serves instead", "conclusion without it")
+    ]
     for record in records:
         if record["verdict"] == REFUTED and record["chain"] != "tightness" and record["kind"] != EntryKind.CUMULATIVE:
             survival = record.get("conclusion_without_it")

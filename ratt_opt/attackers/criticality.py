@@ -36,8 +36,8 @@ ATTACK_SHARE = 0.1
 class Criticality:
     """One robot or link of a plan [values in the unit of the objective].
 
-    ``loss`` : team value lost when it alone is attacked and nothing else is. ``gain_lower``, ``gain_upper`` : bracket
-    on the worst-case value gained when it alone is protected (equal up to rounding if the exact attacker closes).
+    ``loss`` : team value lost under an attack on it alone. ``gain_lower``, ``gain_upper`` : bracket on the worst-case
+    value gained by protecting it alone (equal up to rounding if the exact attacker closes).
     """
 
     target: int | Link
@@ -66,7 +66,7 @@ def criticality_ranking(
     links : links to rank; all by default
     max_nodes : for each exact attack
     time_limit : seconds for all of it; unlimited by default. The value of the team without each robot, and at each
-        bridge, is asked for whatever the limit
+        bridge, is computed whatever the limit
     budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
         the gains left are bounded without a search
 

@@ -33,7 +33,7 @@ class GroupCut:
     """``phi(plan on group) <= constant + sum_{i in group} scores[e_i]`` for every plan.
 
     ``group`` : robots, ascending. ``scores`` : (E,), zero for robots outside the group.
-    ``point`` : (M, d, d) posterior information ``Lambda`` where the bound touches, from which a
+    ``point`` : (M, d, d) posterior information ``Lambda`` at which the bound touches, from which a
     checker can derive it again (``Y = Lambda^{-1}`` in its Fenchel form). ``target`` : for the max-eigenvalue
     criterion, the target whose largest eigenvalue the bound is about.
     """

@@ -41,7 +41,7 @@ class Guarantee(float):
     """A share of the optimum that is guaranteed, with its hypotheses, its source and its proof.
 
     ``proof`` : the function of this library whose documentation has the proof, and the theorem in ``formal/`` if
-    there is one; empty if the source has to be believed. A number wherever one is wanted: equal, as numbers are, to
+    there is one; empty if only the source has the proof. It is a number: equal, as numbers are, to
     what has its ``value``.
     """
 

@@ -1,4 +1,4 @@
-"""The guarantee from how many seeing robots an attack worth making can leave in one group."""
+"""The guarantee from how many unblinded robots an attack worth making can leave in one group."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
     needs = (
         SUBMODULAR if kind == "k" else NON_DECREASING,
         f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
-        f"no group of more than {size} seeing robots",
+        f"no group of more than {size} unblinded robots",
         "RATT's plan",
     )
     by_size = kind == "c" or bound > 1 - value
@@ -81,7 +81,7 @@ def survivor_share(size: int, kept: Share, *, submodular: bool) -> Share:
 
 
 def largest_survivor_group(problem: Problem) -> int:
-    """A number of seeing robots that no group exceeds, whatever attack that no other refines.
+    """A number of unblinded robots that no group exceeds, whatever attack that no other refines.
 
     The smallest such number on complete graphs without protected links; elsewhere the larger groups that an attack
     could still split count too, which only weakens the guarantee.

@@ -41,7 +41,7 @@ def any_marginals(domain: Domain, budget: Budget, stop: Stop) -> MeasuredMargina
 
 
 class _Seen:
-    """Ends so far of every element; raises ``OutOfBudget`` if a value is asked for that the budget forbids."""
+    """Ends so far of every element; raises ``OutOfBudget`` if the budget forbids a value that is needed."""
 
     def __init__(self, domain: Domain, budget: Budget) -> None:
         self.domain, self.f, n = domain, Metered(domain.restricted, budget), domain.restricted.n

@@ -105,11 +105,11 @@ class Findings:
 
     @property
     def upper(self) -> float:
-        """Proved upper bound on what any plan can keep."""
+        """Proved upper bound on the worst-case value of every plan."""
         return float(max(self.optimum.upper, *(plan.worst_case.lower for plan in self.plans)))
 
     def share(self, plan: AssessedPlan) -> float:
-        """What a plan keeps at least, as a share of the best possible; 1 when both are 0."""
+        """Proved worst-case value of a plan as a share of the best possible; 1 if both are 0."""
         return float(plan.worst_case.lower) / self.upper if self.upper > 0 else 1.0
 
     @property

@@ -101,7 +101,7 @@ def _group_of(mask: int, groups: Any, is_group: Any, start: Any, best: Any, tabl
 
 @numba.njit(cache=True)
 def _fill(masks: Any, groups: Any, is_group: Any, start: Any, tables: Any, first: int, steps: int) -> int:  # noqa: PLR0917
-    """Fill the rows of ``tables`` from ``first`` on until so many groups were looked at; returns the next row."""
+    """Fill the rows of ``tables`` from ``first`` on until that many groups were looked at; returns the next row."""
     links = tables[3]
     best = np.zeros(links.shape[1], dtype=np.int16)
     k = first

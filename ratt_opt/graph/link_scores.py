@@ -52,7 +52,7 @@ eigenvalues and sums are off by some 1e-14 of the numbers that go into them."""
 class LinkScores:
     """For each share, groups of ``s`` robots score at most ``most[k, s]`` and all together ``need[k]`` or more.
 
-    ``most`` : (K, N + 1), minus infinity if no group of an attack has so many robots; ``need`` : (K,);
+    ``most`` : (K, N + 1), minus infinity if no group of an attack has that many robots; ``need`` : (K,);
     ``least`` : (K,) what each group scores at least
     """
 
@@ -230,7 +230,7 @@ class RelaxedScores:
 
 
 def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> Top:
-    """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value but for rounding; where.
+    """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value up to rounding; its point.
 
     For every ``t > levels`` the value is at most ``t radius + sum of slope^2 / (4 (t - levels))``; the best ``t`` has
     ``z = slope / (2 (t - levels))`` on the sphere.

@@ -141,7 +141,7 @@ def count_ones(mask: int) -> int:
 
 @numba.njit(cache=True)
 def _enumerate(given: Any, found: Any, stack: Any, position: Any, steps: int) -> bool:
-    """Go on with listing connected sets with at most so many outgoing links, none locked; whether that is all of them.
+    """Go on with listing connected sets with at most that many outgoing links, none locked; whether these are all.
 
     Each set grows from its lowest robot; a robot next to it is taken in or left out, and what is left out
     already costs its links. It ends, for now, after ``steps``, or if ``found`` (G,) is full.

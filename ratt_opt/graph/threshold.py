@@ -74,7 +74,7 @@ class ThresholdTest:
     """Decides for one plan whether an attack can push the team value to a threshold.
 
     ``threat`` : N robots, at most ``LARGEST_LATTICE``; ``values`` : (2**N,) value of every set of robots, by bit mask;
-    ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most so many robots
+    ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most this many robots
     """
 
     def __init__(self, threat: Threat, values: FloatArray, *, largest_group: int | None = None) -> None:

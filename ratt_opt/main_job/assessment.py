@@ -1,4 +1,4 @@
-"""One plan under attack: what is left of the team in its worst case, and under other attacks worth seeing."""
+"""One plan under attack: the team after its worst attack, and after other attacks worth seeing."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def recommended(plans: Iterable[PlanAssessment]) -> PlanAssessment:
 def assess(
     problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
 ) -> PlanAssessment:
-    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
+    """Attack one plan in the worst way, unless that is ``known``, and describe the team after it."""
     elements = plan.elements
     worst = known or worst_case_attack(problem, elements, budget=budget)
     seeing, f = problem.best_group(elements, worst.attack), problem.objective

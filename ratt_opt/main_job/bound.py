@@ -90,7 +90,7 @@ on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 %
 of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
 bracket, so shares trade strength only; the non-robust optimum is a baseline if it is proved in its share."""
 CERTIFICATE_SHARE = 0.25
-"""Of the whole time, kept for writing and verifying a certificate if one is asked for; what the searches leave of
+"""Of the whole time, kept for writing and verifying a certificate if one is wanted; what the searches leave of
 theirs comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
@@ -138,7 +138,7 @@ def bound(
     gap : relative gap at which the search for the optimum stops
     time_limit : seconds for all of it, of which the search for the optimum may take three quarters of what
         the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit. Of a set
-        function of the user's own the value of each element is asked for whatever the limit: RATT's plan needs them
+        function of the user's own the value of each element is computed whatever the limit: RATT's plan needs them
     certificate : file for the proof of the bracket, verified before it is named so; none if ``None``
     progress : called with one line of text whenever there is something to tell
     workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`

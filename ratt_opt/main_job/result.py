@@ -68,7 +68,7 @@ class BoundReport(Findings):
     """What to do now, the worst that can follow, and how far that is from the best possible.
 
     Claims, all in floating point unless a certificate says more: each plan's worst case lies in
-    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
+    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan has a worst-case value of at least
     ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
     ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
     ``inapplicable`` : the guarantees that do not apply here, and why; ``omitted`` : what was left out, and why.
@@ -109,7 +109,7 @@ class BoundReport(Findings):
         """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
 
         ``report.json`` (all of it), ``report.html`` (to read), ``plan.csv`` (to execute), ``plan.png``, ``plan.svg``,
-        and ``certificate.json``: a copy of the report's, or if none was asked for before, one that is written now.
+        and ``certificate.json``: a copy of the report's, or, if the report has none, one that is written now.
 
         Parameters
         ----------
@@ -136,14 +136,14 @@ class BoundReport(Findings):
         return "\n".join(map(latex_of, report_tables(self)))
 
     def plot(self) -> Figure:
-        """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""
+        """Return a figure: the recommended plan and its worst attack on a map, beside the worst case of each plan."""
         return plan_figure(self, picture_of(self.source, self))
 
     def _repr_html_(self) -> str:
         return report_view(self)
 
     def __repr__(self) -> str:
-        best = f"the best plan keeps {down(self.optimum.lower, 8)} to {up(self.upper, 8)}"
+        best = f"the best plan has a worst-case value of {down(self.optimum.lower, 8)} to {up(self.upper, 8)}"
         return f"BoundReport({self.objective}, {self.problem.n_robots} robots, {best}, {self.recommended!r})"
 
     def __eq__(self, other: object) -> bool:

@@ -36,8 +36,8 @@ class MissionStep(ByValue):
 
     ``truth`` : (M, d) states; ``links`` : those that were not cut; ``groups`` : by the lowest robot. ``best`` : which
     of them is the team's, the one with the smallest trace of position covariances (sharing the best group's belief
-    only: the group that the criterion values most); ``value`` : the criterion of its seeing robots. ``links_short`` :
-    by how many links the network was smaller than the attacker's budget, which was capped at the network's.
+    only: the group that the criterion values most); ``value`` : the criterion of its unblinded robots. ``links_short``
+    : by how many links the network was smaller than the attacker's budget, which was capped at the network's.
     """
 
     poses: FloatArray

@@ -59,7 +59,7 @@ def group_pieces(
     """The pieces of a group's seeing ``robots`` (zero for others), and how surprising they were together.
 
     Every measurement is linearised at the predicted positions, as the plan does; with an iterated linearisation at the
-    estimate that follows, again and again. A sighting counts wherever its target was expected, in view or not.
+    estimate that follows, again and again. A sighting counts even if its target was expected out of view.
 
     ``poses`` : robot by robot (3,), or (M, 3) if each target was measured from another pose.
     ``pose_covariances`` : (N, 3, 3) of the poses, whose errors are taken for further noise of every measurement.

@@ -1,4 +1,4 @@
-"""Draw what each planner keeps under attack against what any planner could keep."""
+"""Draw the worst-case value of each planner's plan beside the best possible one."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def bar_ends(report: Findings) -> tuple[bool, list[tuple[float, float]], float]:
 
 
 def draw_bars(axes: Axes, report: Findings) -> None:
-    """Draw one bar a planner and its number: what it surely keeps, or, if all keep much, what it surely misses.
+    """Draw one bar a planner and its number: its proved value, or, if all values are high, its proved shortfall.
 
     A whisker spans what is not decided of it, so a search that ran out of time shows a whisker, never a value.
     """
@@ -56,7 +56,7 @@ def draw_bars(axes: Axes, report: Findings) -> None:
         room = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}  # no line runs through the words
         axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight, bbox=room)
     axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
-    axes.set_title(f"no plan can keep more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
+    axes.set_title(f"no plan can have more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
     axes.set_yticks(range(len(plans)), [plan.name for plan in plans])
     axes.invert_yaxis()
     axes.set_xlim(0, ROOM * longest)

@@ -81,7 +81,7 @@ def attack_document(
     best_links: Mapping[str, BestLinks] | None = None,
     explains: bool = False,
 ) -> dict[str, Any]:
-    """Return the attacks on one plan as JSON-ready values, and what to protect or add if that was asked for.
+    """Return the attacks on one plan as JSON-ready values, and what to protect or add, if wanted.
 
     ``best_links`` : by what is done with them, "protect" and "add"
     ``explains`` : also which stages of the exact attack ran, and what each did

@@ -33,7 +33,7 @@ def _cell(name: str, value: object) -> str:
 
 
 def plan_view(plan: AssessedPlan) -> str:
-    """Return one plan as a table: what each robot does, and what is left of it."""
+    """Return one plan as a table: what each robot does, and its role under attack."""
     attack = plan.worst_case.attack
     rows = [
         (i, element, "yes" if i in plan.bait else "", plan.role(i)) for i, element in enumerate(plan.elements.tolist())

@@ -32,7 +32,7 @@ __all__ = [
 ]
 
 PROVED_OPTIMAL = Fraction("1e-9")
-"""A plan proved to keep all but this share of the best possible is called optimal."""
+"""A plan is called optimal if at most this share of the best possible value is lost."""
 LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
@@ -56,7 +56,7 @@ def attack_tables(
     explains: bool = False,
     names: Sequence[str] = (),
 ) -> Iterable[Table]:
-    """Yield the attacks on a plan, and, if asked for, what to protect or add and what pushes it ``below`` a value.
+    """Yield the attacks on a plan, and, if wanted, what to protect or add and what pushes it ``below`` a value.
 
     ``names`` : (N,) robots for people, by their numbers where empty
     ``best_links`` : by what is done with them, "protect" and "add"
@@ -137,7 +137,7 @@ def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
 
 def _best_links(found: Mapping[str, BestLinks], names: Sequence[str]) -> Table:
     """One row a kind of change: the best links, and the worst case with them."""
-    table = _table("the best links", "what to do", "links", "worst case with them", "no choice keeps more than")
+    table = _table("the best links", "what to do", "links", "worst case with them", "no choice is better than")
     for what, best in found.items():
         links = ", ".join(_link(link, names) for link in best.links) or "none gains anything"
         table.add_row(what, links, bracket_text(best.lower, best.after.upper), up(best.upper, 8))

@@ -71,7 +71,7 @@ def local_processes(workers: int | None) -> Iterator[Executor]:
 
 
 class SeparateProcesses(Executor):
-    """So many pools of one process each, started when asked for first: one that dies takes no other's work along.
+    """That many pools of one process each, started at first use: one that dies takes no other's work along.
 
     Unlike a pool of several processes it goes on after that: the next call starts another one. Shutting down ends
     them at once, whatever they are at.

@@ -40,7 +40,7 @@ def random_scenario(
     """Draw robots and targets uniformly in a square, headings zero, as the paper's trials do.
 
     Robots and targets come from two child streams of ``SeedSequence(seed)``, one number after the
-    other: with the same seed the first robots stay where they are when more are asked for.
+    other: with the same seed a larger team has the same first robots.
 
     Parameters
     ----------

@@ -54,11 +54,11 @@ def simulate_tracking(
 ) -> Tracking:
     """Draw true target positions and measurements, and update the EKF with the measurements of ``robots``.
 
-    The truth comes from the predicted distribution of every target. Robot ``i`` of ``robots`` moves by
-    its chosen control and measures with the sensor's noise at the true geometry; the
-    filter assumes the noise and the Jacobian at the predicted position, as the plan does. A measurement
-    exists if the sensor sees the true position, wherever the target was expected. The random numbers of a robot
-    depend on ``seed`` only: plans and groups are compared on the same luck.
+    The truth comes from the predicted distribution of every target. Robot ``i`` of ``robots`` moves by its chosen
+    control and measures with the sensor's noise at the true geometry; the filter assumes the noise and the Jacobian at
+    the predicted position, as the plan does. A measurement exists if the sensor sees the true position, even if the
+    target was expected elsewhere. The random numbers of a robot depend on ``seed`` only: plans and groups are compared
+    on the same luck.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ class SetFunction(ABC):
 
     @property
     def rounding(self) -> float:
-        """Values that differ by no more may be equal but for rounding; 0 if nothing is known of that."""
+        """Values that differ by no more may be equal up to rounding; 0 if nothing is known of that."""
         return 0.0
 
     @property

@@ -43,7 +43,8 @@ class Tangent:
 class Choices:
     """The elements of the owners other than ``x``'s: K elements of R owners about M targets, d by d.
 
-    ``elements`` : (K,); ``owners`` : (K,) position of the owner; ``first`` : (R,) where each owner's elements begin.
+    ``elements`` : (K,); ``owners`` : (K,) position of the owner; ``first`` : (R,) first position of each owner's
+    elements.
     ``inverse`` : (K, M, d, d) of their ``information``, zero if it is not ``regular`` (K, M).
     """
 
@@ -77,7 +78,7 @@ class SeparableMinorant:
 
 
 def lacking(criterion: object, part: str, what: str) -> InputError:
-    """The refusal of a criterion that leaves a part out which is asked for."""
+    """The error for a criterion that lacks a part which is needed."""
     return InputError("objective", f"must define {part}, the {what}", type(criterion).__name__)
 
 

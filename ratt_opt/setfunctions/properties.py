@@ -1,4 +1,4 @@
-"""What a set function is: each check returns a witness against the property, or says that there is none.
+"""What a set function is: each check returns a witness against the property, or says that none exists.
 
 ``None`` is a statement: every set was looked at (or theory decides). If the ground set is too large for a table, or
 the time too short, the answer is a witness or :class:`NotFound`, which is false, counts its trials and claims nothing

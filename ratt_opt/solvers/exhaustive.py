@@ -46,7 +46,7 @@ def exhaustive_optimum(
     Parameters
     ----------
     time_limit : seconds; unlimited by default
-    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
+    max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises

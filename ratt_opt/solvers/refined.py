@@ -50,7 +50,7 @@ PATIENCE = 200
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RefinedPlan(Plan):
-    """A plan that keeps at least ``lower`` under any attack, and at most ``upper`` under ``worst_case``'s.
+    """A plan and its worst-case value: at least ``lower``, at most ``upper`` (by ``worst_case``).
 
     ``unattacked`` : its value when nobody attacks; ``kicks`` : how often it was tried to leave the best plan
     """

@@ -41,7 +41,7 @@ class NonrobustPlan(Plan):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MaxMinResult(ByValue, Shown):
-    """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` keeps at least ``lower`` under any attack.
+    """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` is worth at least ``lower`` under any attack.
 
     ``Phi*`` is the largest worst-case value of any plan [unit of the objective]. Two results are equal when all
     their fields are.
@@ -65,7 +65,7 @@ class MaxMinResult(ByValue, Shown):
     ``None`` if plans were enumerated, and for set functions that are no information criterion."""
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        """Its plan: a result can be given wherever elements are asked for."""
+        """Its plan: functions that take elements take a result, too."""
         return np.array(self.elements, dtype=dtype, copy=copy)
 
     def outward(self, problem: Problem) -> Self:

@@ -42,7 +42,7 @@ def main(
 ) -> int:
     """Run studies from the command line and return the exit code.
 
-    2 for bad input, 1 for a lost sweep or where the system refuses, 130 interrupted.
+    2 for bad input, 1 for a lost sweep or if the system refuses, 130 interrupted.
     ``after(out)`` runs when all results are there.
     """
     options = _parse(description, entries, trials)
@@ -70,7 +70,7 @@ def main(
 
 
 def _deliver(results: Results, entry: Entry, folder: Path, *, latex: bool) -> None:
-    """Make of the rows what the entry says; print the means if that is nothing, or as LaTeX if that is asked for."""
+    """Make of the rows what the entry says; print the means if that is nothing, as LaTeX with ``--latex``."""
     if entry.draw is not None:
         entry.draw(list(results.rows), folder)
     else:

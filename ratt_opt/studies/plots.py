@@ -92,7 +92,7 @@ def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Esti
 def comparison(means: Sequence[Mean], note: str) -> Figure:
     """Draw one metric's means of planners: a panel for each attacker, a group of marks for each case.
 
-    Bars where the numbers are large against their differences from zero, as values are; points on a line at zero for
+    Bars if the numbers are large against their differences from zero, as values are; points on a line at zero for
     differences.
     """
     attackers, cases = (list(dict.fromkeys(getattr(mean, name) for mean in means)) for name in ("attacker", "case"))

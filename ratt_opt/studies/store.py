@@ -4,7 +4,7 @@
 the order they finished, ``table.csv`` those of whole trials sorted by case and trial. The journal is
 append-only and each line is forced to disk; a line torn by a kill is cut off and its trial run again.
 Every line of the journal ends with a checksum of its cells. The manifest names the code that made the rows: rows of
-other code are refused, or kept if that is asked for; each row's own versions then say which code made it.
+other code are refused, or kept on demand; each row's own versions then say which code made it.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ __all__ = ["VERSIONS", "hash_of_modules", "hash_of_texts"]
 
 
 def _hash_of_code() -> str:
-    """A hash of every source file of the package: the same wherever it is installed."""
+    """A hash of every source file of the package: the same in every installation."""
     digest = hashlib.sha256()
     root = Path(ratt_opt.__file__).parent
     for file in sorted(root.rglob("*.py"), key=lambda file: file.relative_to(root).as_posix()):
@@ -36,7 +36,7 @@ def hash_of_modules(names: Iterable[str]) -> str:
 
 
 def hash_of_texts(functions: Iterable[object]) -> str:
-    """A hash of the text of each function that no file holds (a notebook's), in their order; empty where none is."""
+    """A hash of the text of each function that no file holds (a notebook's), in their order; empty if there is none."""
     texts = (_text(function) for function in functions if not _file_of(str(getattr(function, "__module__", None))))
     return " ".join(hashlib.sha256(text.encode()).hexdigest()[:12] for text in texts)
 
@@ -50,7 +50,7 @@ def _file_of(module: str) -> str | None:
 
 
 def _text(function: object) -> str:
-    """The source of a function, or of an instance's class; nothing where Python does not keep it."""
+    """The source of a function, or of an instance's class; nothing if Python does not keep it."""
     try:
         return inspect.getsource(function if inspect.isroutine(function) else type(function))
     except (OSError, TypeError):

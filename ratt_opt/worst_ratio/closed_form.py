@@ -30,7 +30,7 @@ class KnownRatio:
 
 
 def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
-    """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
+    """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner reach it on any instance.
 
     Proved in ``bounds.guarantees.pattern_free_bound``: its plan is any whose robots are bait or chosen greedily.
     They are the infima over all teams: ``witness.attaining_instance`` attains the first for every ``k < 1`` if ties

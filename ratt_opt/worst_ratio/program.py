@@ -82,7 +82,7 @@ class RatioProgram:
             self.on[index] = on
 
     def solve(self, seconds: float, *, afresh: bool = False) -> ClaimedOptimum | None:
-        """Run HiGHS for at most so many seconds; ``None`` unless it claims an optimum.
+        """Run HiGHS for at most that many seconds; ``None`` unless it claims an optimum.
 
         ``afresh`` : forget the basis of the last solve
         """

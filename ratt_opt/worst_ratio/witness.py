@@ -44,7 +44,7 @@ LARGEST_VALUE = 2**52
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RatioQuestion:
-    """Whose worst ratio is asked for: a planner on N robots of the complete graph, a threat, a class of functions.
+    """The subject of a worst ratio: a planner on N robots of the complete graph, a threat, a class of functions.
 
     ``family`` : ``"submodular"`` or ``"nondecreasing"``; ``domain`` : what ``curvature`` is over, ``"elements"`` or
     ``"feasible"`` sets; ``planner`` : a name of ``PLANNERS``.
@@ -176,7 +176,7 @@ def limit_instance(size: int, curvature: Fraction) -> RatioWitness:
     Let ``t = 1-c``. Largest marginals are 1 for RATT's elements and ``1/t`` for the others. Prescribed: any number
     ``a >= 1`` of bait elements is worth ``1 + (a-1) t``; ``b`` greedy elements are worth ``b``, and with one other
     element ``b + 1``; ``d >= 1`` others are worth ``1 + (d-1)/t``. All single values are 1, so RATT picks its own
-    elements by the tie rule. Blinding the greedy half leaves it ``1 + (g-1) t``; the other plan keeps
+    elements by the tie rule. Blinding the greedy half leaves it ``1 + (g-1) t``; the other plan is worth
     ``1 + (g-1)/t`` whatever ``g`` robots are left.
 
     Such values extend to a function of total curvature c if for all prescribed sets ``f(X) - f(Y)`` is at most

@@ -146,7 +146,7 @@ def test_a_bound_comes_with_a_certificate_that_verifies(
     assert "certificate.json" in printed
     assert run(["verify", str(out / "certificate.json"), *about]) == 0
     text = capsys.readouterr().out
-    assert "no plan keeps more than" in text
+    assert "no plan has a worst-case value above" in text
     assert "not covered" in text
     assert run(["verify", str(out / "certificate.json"), "--json"]) == 0
     found = _strict(capsys.readouterr().out)

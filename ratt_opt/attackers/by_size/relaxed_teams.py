@@ -45,7 +45,7 @@ def unprotected_bound(task: AttackTask, team: PackedTeam) -> None:
 
 
 class PossibleGroups:
-    """Lower bounds from the sizes that groups of an attack may have, whichever robots are in them.
+    """Lower bounds from the sizes that groups of an attack may have, with any robots in them.
 
     ``least`` : seeing robots that are known to be left in some group, by sizes too
     """

@@ -40,9 +40,9 @@ measured."""
 class BestLinks(Shown):
     """Claim: ``lower <= worst case of the plan with the best k links <= upper`` [unit of the objective].
 
-    ``links`` : at most k, ascending; with them the plan keeps ``lower``. ``before`` : the worst attack on the team as
-    it is; ``after`` : on the team that has these links. ``attacks`` : exact attacks made, ``nodes`` of them. ``stop``
-    is ``CLOSED`` if the ends meet but for rounding.
+    ``links`` : at most k, ascending; with them the worst case is ``lower``. ``before`` : the worst attack on the team
+    as it is; ``after`` : on the team that has these links. ``attacks`` : exact attacks made, ``nodes`` of them.
+    ``stop`` is ``CLOSED`` if the ends meet up to rounding.
     """
 
     links: tuple[Link, ...]

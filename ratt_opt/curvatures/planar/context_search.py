@@ -1,7 +1,7 @@
 """Branch and bound for one element's smallest, or largest, marginal of the max-eigenvalue criterion in the plane.
 
 What a region of the contexts is and how it is bounded: :mod:`ratt_opt.curvatures.planar.regions`. A region is split by
-halving its sector or one owner's options, whichever its bound owes more to.
+halving its sector or one owner's options: the one that its bound depends on more.
 """
 
 from __future__ import annotations

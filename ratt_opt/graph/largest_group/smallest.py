@@ -1,8 +1,8 @@
-"""The smallest possible largest group by the way asked for, or by the first that settles it; ways by enumeration.
+"""The smallest possible largest group by the way that is named, or by the first that settles it; ways by enumeration.
 
 Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker make the largest
 one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Small teams are decided over all
-their subsets; larger ones get a bracket from annealing and a linear program first, and if that does not close are
+their subsets; larger ones get a bracket from annealing and a linear program first. If that does not close, they are
 partitioned into separable groups of at most p robots, for p = 1, 2, ... in turn, or given to the integer program.
 """
 
@@ -183,7 +183,7 @@ def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
     if found is None:
         rule = 'must be "milp" (or "caa" on a complete graph) for more than 60 robots, or a graph'
         value = f"enumeration of {threat.graph.n_robots} robots"
-        raise InputError("method", f"{rule} that an attack can split in so many ways", value)
+        raise InputError("method", f"{rule} that an attack can split in that many ways", value)
     return found
 
 

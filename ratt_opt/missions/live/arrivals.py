@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Arrivals"]
 
 MOST_PERIODS = 10_000
-"""That may pass between two steps: each is predicted on its own; after so many nothing is known of a target."""
+"""Most periods between two steps. Each is predicted on its own; after that many nothing is known of a target."""
 ROUNDING = 1e-9
 """Largest asymmetry and most negative eigenvalue of a pose's covariance, relative to its largest entry."""
 

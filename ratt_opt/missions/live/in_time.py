@@ -44,7 +44,7 @@ class InTime:
     _running: Future[IntArray] | None = field(default=None, init=False, repr=False)
 
     def __call__(self, problem: Problem, start: IntArray, began: float) -> Planned:
-        """Plan one step. A search begins from ``start``, what is left of the last plan, and from RATT's plan."""
+        """Plan one step. A search begins from ``start``, the rest of the last plan, and from RATT's plan."""
         if self.time_limit is None:
             return Planned(self._whole(problem, start), late=False)
         known = ratt(problem).elements

@@ -57,7 +57,7 @@ class Tracker:
     lag : seconds that a measurement may come late; ten sampling periods by default
 
     ``state`` : all it knows; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot executes next.
-    ``scenario`` : the team with the targets that there are now; whoever goes on from ``state`` needs it.
+    ``scenario`` : the team with its present targets; needed to go on from ``state``.
 
     Raises
     ------
@@ -163,11 +163,11 @@ class Tracker:
     def attacked(self, attack: Attack) -> None:
         """Say which sensors are known to be blinded and which links to be cut, in place of what was said before.
 
-        Plans do without them, and against what is left of the budgets. ``Attack()`` : nothing is, any more.
+        Plans do without them, and against the remaining budgets. ``Attack()`` : nothing is attacked any more.
 
         Raises
         ------
-        InputError : it is no attack, or names robots that there are not.
+        InputError : it is no attack, or names robots that do not exist.
         """
         self.state = with_attack(self.world, self.state, attack)
 
@@ -266,7 +266,7 @@ def _recent(moments: tuple[Moment, ...], oldest: float) -> tuple[Moment, ...]:
 def _within_reach(state: TrackerState) -> TrackerState:
     """Return the state after checking that what is computed with it stays finite.
 
-    Raises ``InputError`` : a robot or target is where no scenario could place it, as after a range of 1e300 m.
+    Raises ``InputError`` : a robot or target is outside every scenario, as after a range of 1e300 m.
     """
     for name, numbers in (("poses", state.poses), ("estimates", state.belief.mean)):
         if not np.abs(numbers).max() <= LARGEST:

@@ -178,7 +178,7 @@ class _Fit:
         return cls(law, of_range, of_bearing, outliers, likelihood, box)
 
     def gate(self, r: Residuals) -> float:
-        """Where both densities are equal, at the median geometry; at least the 95 % ellipse."""
+        """The point at which both densities are equal, at the median geometry; at least the 95 % ellipse."""
         range_std = float(_std(self.of_range, np.median(r.distance, keepdims=True), self.law)[0])
         bearing_std = float(_std(self.of_bearing, np.median(np.abs(r.bearing), keepdims=True), self.law)[0])
         odds = (1 - self.outliers) * self.box / (2 * np.pi * range_std * bearing_std * self.outliers)

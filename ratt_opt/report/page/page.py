@@ -80,7 +80,7 @@ def _share_sentence(share: str) -> str:
 
 
 def _map_section(report: Findings) -> Iterator[str]:
-    """The map once for each attack, of which one is shown; on paper the worst."""
+    """One map for each attack. The page shows one of them; on paper, the worst."""
     yield '<section aria-labelledby="map-h"><h2 id="map-h">Map</h2><fieldset><legend>Show the team under</legend>'
     for k, name in enumerate(report.views):
         checked = " checked" if k == 0 else ""

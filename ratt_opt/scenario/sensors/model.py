@@ -32,8 +32,9 @@ class SensorModel(ABC):
     noisy they are (``noise``); with limits to what it sees also ``sees``. Derivatives by the point are central
     differences unless you give them. Components are independent; those named in ``angles`` wrap around.
 
-    It can stand wherever a sensor can: ``Robot(sensor=)``, ``Scenario(sensor=)``, ``MissionModel(sensor=)``. Make it a
-    frozen dataclass, so that equal ones are equal; :func:`register_sensor` or an entry point gives it a name in files.
+    It can stand in every place of a sensor: ``Robot(sensor=)``, ``Scenario(sensor=)``, ``MissionModel(sensor=)``. Make
+    it a frozen dataclass, so that equal ones are equal; :func:`register_sensor` or an entry point gives it a name in
+    files.
     """
 
     size: ClassVar[int]

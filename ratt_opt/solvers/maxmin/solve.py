@@ -77,7 +77,7 @@ def solve_maxmin(
     max_nodes : search nodes; with it (and no time limit) the result is reproducible
     progress : called as ``progress(nodes, lower, upper)``
     alpha_cs : sensing attacks that the link attacks are worth, if RATT was asked before
-    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
+    max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
         problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
@@ -89,8 +89,8 @@ def solve_maxmin(
     Raises
     ------
     InputError : a limit is negative, ``start`` is a plan but not one element per robot, ``workers`` is neither a number
-        nor an executor or cannot receive the problem, or the objective is no information criterion and falls if it
-        was looked at.
+        nor an executor or cannot receive the problem; or the objective is no information criterion, and one of its
+        values that the search computed falls.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
