@@ -228,6 +228,19 @@ def test_registrations_that_files_could_not_keep_are_refused(registry, kind, sen
     assert registry == {}
 
 
+@pytest.mark.parametrize("part", [ro.BearingOnly, ro.RangeOnly, ro.RangeBearing])
+def test_a_part_of_a_sensor_of_one_s_own_has_no_name_in_files(part, tmp_path: Path) -> None:
+    """A file would hold the fields and lose the class: another problem than the one that was planned."""
+    divers = team(part(Noisy(factor=50.0)))
+    with pytest.raises(ro.InputError, match="to_information"):
+        ro.save_scenario(divers, tmp_path / "divers.json")
+    report = ro.bound(divers, time_limit=5, guarantees="none").to_dict()
+    (tmp_path / "input.json").write_text(json.dumps(report["input"]["document"]))
+    again = ro.load_input(tmp_path / "input.json").problem()
+    value = again.team_value(report["recommended"]["elements"], ro.Attack())
+    assert value == pytest.approx(divers.problem().team_value(report["recommended"]["elements"], ro.Attack()))
+
+
 def test_a_part_of_another_sensor_is_refused() -> None:
     with pytest.raises(
         ro.InputError, match=r"sensor must be absent, or Sonar of robots\[0\] a range-and-bearing Sensor"

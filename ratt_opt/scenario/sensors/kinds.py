@@ -71,6 +71,8 @@ def kind_of(sensor: Sensor | SensorModel) -> str | None:
     kind = type(sensor)
     if kind is Sensor:
         return None
+    if isinstance(sensor, RangeBearing) and type(sensor.sensor) is not Sensor:
+        return None  # a file would hold the fields of its sensor and lose what that sensor's class replaces
     for known in (LIBRARY, _registered):
         if found := next((name for name, one in known.items() if one is kind), None):
             return found
