@@ -9,14 +9,14 @@ out the check of twine, for a machine that has none.
 from __future__ import annotations
 
 import argparse
-import os
 import subprocess
 import sys
-import sysconfig
 import tarfile
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from analysis.fresh import installed, run_alone
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 return 1
             print("same wheel from the source distribution")
             if options.twine:
-                _run([sys.executable, "-m", "twine", "check", "--strict", source, wheel], place)
+                run_alone([sys.executable, "-m", "twine", "check", "--strict", source, wheel], place)
                 print("twine check: passed")
             for built in (wheel, source):
                 print(f"installed without a network from {built.name}: {install_and_plan(built, place)}")
@@ -61,7 +61,7 @@ def build(kind: str, project: Path, out: Path) -> Path:
     """Build ``"sdist"`` or ``"wheel"`` of a project into ``out`` and return the file."""
     out.mkdir(parents=True, exist_ok=True)
     code = f"import hatchling.build; print(hatchling.build.build_{kind}({str(out.resolve())!r}))"
-    return out / _run([sys.executable, "-c", code], project).split()[-1]
+    return out / run_alone([sys.executable, "-c", code], project).split()[-1]
 
 
 def unpacked(source: Path, place: Path) -> Path:
@@ -73,30 +73,13 @@ def unpacked(source: Path, place: Path) -> Path:
 
 
 def install_and_plan(built: Path, place: Path) -> str:
-    """Install a wheel or source distribution into a fresh environment, offline; return what a small plan prints there.
-
-    The environment sees the dependencies, and the build backend, of the running one.
-    """
+    """Install a wheel or source distribution into a fresh environment, offline; return what a plan prints there."""
     home = place / f"with-{built.suffix.strip('.')}"
-    _run([sys.executable, "-m", "venv", "--without-pip", home], place)
-    python = home / "bin" / "python"
-    packages = Path(_run([python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], place).strip())
-    (packages / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
-    offline = ["--no-index", "--no-deps", "--no-build-isolation", "--quiet", "--disable-pip-version-check"]
-    _run(
-        [sys.executable, "-m", "pip", "--python", python, "install", "--ignore-installed", *offline, built.resolve()],
-        place,
-    )
-    printed = _run([python, "-c", PLAN], place).strip()
+    python = installed(built, home, offline=True) / "python"
+    printed = run_alone([python, "-c", PLAN], place).strip()
     if str(home.resolve()) not in printed:
         raise subprocess.CalledProcessError(1, [str(python), "-c", PLAN], printed, "another copy was imported")
     return printed.replace(f"{home.resolve()}/", "")
-
-
-def _run(command: Sequence[object], folder: Path) -> str:
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    words = [str(word) for word in command]
-    return subprocess.run(words, cwd=folder, env=environment, check=True, capture_output=True, text=True).stdout
 
 
 def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
