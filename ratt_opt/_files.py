@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["MIXED", "output_directory", "output_file", "write_atomically", "write_json", "write_together"]
 
 MIXED = "incomplete.txt"
-"""In a folder only while files that belong together are renamed, or if a kill ended that."""
+"""Present only while files that belong together are renamed, or after a kill in that moment."""
 _MIXED_TEXT = """A run was stopped while it replaced the files of this folder: some may be of that run, some of an
 earlier one. Run the same command again.
 """

@@ -55,7 +55,7 @@ class Plan(ByValue, Shown):
     """One element per robot; two plans are equal when all their fields are. Iterating gives the elements as ``int``.
 
     ``elements`` : (N,) flat element indices, robot by robot.
-    ``evaluations`` : set-function values the planner asked for.
+    ``evaluations`` : set-function values that the planner computed.
     ``bait`` : robots that RATT gave their individually best element, ascending; empty for other planners.
     ``alpha_cs`` : sensing attacks that RATT took the link attacks to be worth; ``None`` for other planners.
     """

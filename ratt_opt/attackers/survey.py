@@ -42,8 +42,8 @@ def attack_survey(
 
     Parameters
     ----------
-    time_limit : seconds for all of them, nine tenths for the exact attack; unlimited by default. The heuristics ask for
-        the value of each robot alone whatever the limit
+    time_limit : seconds for all of them, nine tenths for the exact attack; unlimited by default. The heuristics
+        compute the value of each robot alone, whatever the limit
     seed : of the random attack
     budget : an outer search's budget: its seconds and interrupts count too
     attackers : attackers of your own by name, ``(problem, elements) -> Attack`` as in missions; what their attacks

@@ -35,7 +35,7 @@ KEPT = "_with_unit_prior"
 TOLERABLE = 1e-9
 """Error of values, as a share of the criterion before any measurement, that is no reason to change coordinates."""
 WORTHWHILE = 0.1
-"""Of the error that has to be left at most."""
+"""Largest share of the error that may remain."""
 KINDS: tuple[Any, ...] = (TraceObjective, MaxEigenvalueObjective)
 """Criteria that may have an output."""
 

@@ -171,7 +171,7 @@ class Restricted(SetFunction):
 
     @property
     def most_total_curvature(self) -> float:
-        """As of the whole function: fewer contexts can only be less curved."""
+        """The bound of the whole function: with fewer contexts the curvature is no larger."""
         return self.f.most_total_curvature
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

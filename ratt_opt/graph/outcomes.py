@@ -63,7 +63,7 @@ def non_dominated_outcomes(threat: Threat) -> Iterator[Outcome]:
 def count_outcomes(threat: Threat, *, enough: float = inf) -> int:
     """Return how many outcomes ``non_dominated_outcomes`` yields on a complete graph, without enumerating them.
 
-    ``enough`` : counts no further once there are more, as of hundreds of robots even their sizes are too many to list
+    ``enough`` : stop counting above this number; for hundreds of robots even the sizes are too many to list
 
     Raises
     ------

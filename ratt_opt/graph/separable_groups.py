@@ -78,7 +78,7 @@ def separable_groups(threat: Threat, most: int, budget: Budget | None = None) ->
 LONGEST_LIST = 1_000_000
 """Groups listed at most: eight megabytes."""
 STEPS = 20_000
-"""Of the enumeration between two looks at the clock: some hundredths of a second."""
+"""Nodes of the enumeration between two looks at the clock: some hundredths of a second."""
 
 
 @lru_cache(maxsize=4)

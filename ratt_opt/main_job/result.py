@@ -31,7 +31,7 @@ __all__ = ["BoundReport", "PlanAssessment"]
 
 
 class PlanAssessment(AssessedPlan):
-    """One planner's plan and its worst case; equal to another that says the same.
+    """One planner's plan and its worst case. Two are equal if all their fields are.
 
     ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
     own elements; ``bait`` : RATT's bait robots, empty for other planners.

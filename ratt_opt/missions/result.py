@@ -64,7 +64,7 @@ class MissionStep(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FlownMission(ByValue):
-    """A mission as it went; equal missions are equal to the bit.
+    """A finished mission; equal missions are equal to the bit.
 
     ``start`` : the poses (N, 3) it began at; ``settings`` : its arguments by name, for people; ``decisions`` : the
     elements and attack of every step, from which it can be replayed.

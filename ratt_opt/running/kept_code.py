@@ -46,7 +46,7 @@ def _imported(path: Path) -> Iterator[Path]:
 
 @cache
 def fingerprint(path: Path) -> str:
-    """Of all sources that machine code of the module in this file may contain."""
+    """Fingerprint of all sources that machine code of the module in this file may contain."""
     reached, unread = {path}, [path]
     while unread:
         new = set(_imported(unread.pop())) - reached
@@ -83,7 +83,7 @@ class SourcesLocator:
         return str(self._inner.get_cache_path())
 
     def get_source_stamp(self) -> Any:
-        """Of the function's own file."""
+        """Time of the function's own file."""
         return self._inner.get_source_stamp()
 
     def get_disambiguator(self) -> str:

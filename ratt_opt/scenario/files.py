@@ -71,7 +71,7 @@ def load_input(path: str | Path) -> Scenario | InformationInput:
 
 
 def save_scenario(scenario: Scenario | InformationInput, path: str | Path) -> None:
-    """Write a file that :func:`load_scenario` (:func:`load_input` for matrices) reads back equal, whole or not at all.
+    """Write a scenario (:func:`load_scenario` reads it) or matrices (:func:`load_input`), whole or not at all.
 
     Raises
     ------

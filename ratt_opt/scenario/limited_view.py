@@ -51,7 +51,7 @@ def limited_view_scenario(
     prior_std: float = 3.0,
     process_std: float = 0.5,
 ) -> Scenario:
-    """Draw a team whose robots see only a part of what is around them, so that each must choose what to look at.
+    """Draw a team with limited views: each robot must choose what to look at.
 
     A control is a speed, 0 or 2 m/s, and one of ``headings`` equal turns of the full circle; the robot drives along
     its old heading and looks along the new one. Robots and slow targets stand uniformly in a square: 60 m for up to 10

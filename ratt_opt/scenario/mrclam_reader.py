@@ -36,7 +36,7 @@ class MrclamData:
 
     ``landmarks`` : subject -> (x, y) [m]; ``subject_of`` : barcode -> subject, after corrections;
     ``corrections`` : those applied; ``inapplicable`` : those that name a subject this set does not have;
-    ``labels`` : in one line which labelling is used, who decided that, and how many sightings fit;
+    ``labels`` : one line: which labelling is used, who decided that, and how many sightings fit;
     ``poses`` : per robot (K, 4) time [s], x [m], y [m], heading [rad];
     ``measurements`` : per robot (L, 4) time [s], barcode, range [m], bearing [rad]; ``pose_files`` : names read.
     """

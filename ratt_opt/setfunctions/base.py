@@ -59,7 +59,7 @@ class SetFunction(ABC):
 
     A subclass gives ``n`` and :meth:`evaluate`; the other methods have correct,
     slower defaults that a subclass may override with the same meaning.
-    Two functions are equal only if they are the same object: nobody compares tables of 2**26 values by accident.
+    Two functions are equal only if they are the same object: a comparison of tables of 2**26 values would take long.
     """
 
     __slots__ = ()

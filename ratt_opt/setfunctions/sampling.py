@@ -70,9 +70,9 @@ class Violation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotFound:
-    """No violation found in ``trials`` pairs of sets; not a proof. False.
+    """No violation found in ``trials`` pairs of sets. It is not a proof; its truth value is False.
 
-    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` if all pairs asked for were tried.
+    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` if all ``trials`` pairs were tried.
     """
 
     rule: str

@@ -52,7 +52,7 @@ PATIENCE = 200
 class RefinedPlan(Plan):
     """A plan and its worst-case value: at least ``lower``, at most ``upper`` (by ``worst_case``).
 
-    ``unattacked`` : its value when nobody attacks; ``kicks`` : how often it was tried to leave the best plan
+    ``unattacked`` : its value when nobody attacks; ``kicks`` : perturbations of the best plan that were tried
     """
 
     lower: float

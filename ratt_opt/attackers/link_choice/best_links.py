@@ -89,10 +89,10 @@ def links_to_protect(
 ) -> BestLinks:
     """Choose the k links whose protection raises the worst case of a plan most.
 
-    A protected link cannot be cut. Attacks are gathered until no k links spoil all of those that leave less than the
-    best choice keeps: exact as far as the exact attacker closes (up to 20 robots always), a bracket otherwise. Relies
-    on a non-decreasing objective (not checked). The plan, the robots' sensors and the adversary's budgets stay as they
-    are: ``alpha_c`` counts links, however many are protected.
+    A protected link cannot be cut. The search collects attacks until no k links prevent all attacks that are worse
+    than the best choice's. The answer is exact if the exact attacker closes (up to 20 robots always), and a bracket
+    otherwise. Relies on a non-decreasing objective (not checked). The plan, the robots' sensors and the adversary's
+    budgets stay as they are: ``alpha_c`` counts links, also if some are protected.
 
     Parameters
     ----------
@@ -127,10 +127,9 @@ def links_to_add(
 ) -> BestLinks:
     """Choose the k links whose addition raises the worst case of a plan most.
 
-    A new link lets its ends pool what they see, and can be cut like any other: it spoils an attack only if the
-    adversary cannot afford to cut it too. The plan and the robots' sensors stay as they are, and so does ``alpha_c``,
-    however many links there are: a budget that is a share of the links is the caller's to scale. Otherwise as
-    :func:`links_to_protect`.
+    A new link lets its ends pool what they see, and can be cut like any other. So it prevents an attack only if the
+    adversary cannot cut it too. The plan, the robots' sensors and ``alpha_c`` stay as they are; if the budget is a
+    share of the links, scale it yourself. Otherwise as :func:`links_to_protect`.
 
     Parameters
     ----------

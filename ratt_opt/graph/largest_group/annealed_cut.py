@@ -24,7 +24,8 @@ __all__ = ["annealed_cut"]
 HOT, COLD, OVERSIZE = 3.0, 0.15, 2.0
 """Temperatures and the price of a robot too many in a group, in links."""
 MOVES, MOVES_AT_ONCE = 1_500, 20_000
-"""Of a cooling for each robot, and between two looks at the clock. At 50 to 200 robots more find nothing better."""
+"""Moves for each robot in a cooling, and moves between two looks at the clock. At 50 to 200 robots more find no better
+cut."""
 MISSES = 4
 """Sizes in a row that are not met before annealing gives up."""
 SPARE_GROUPS = (0.0, 0.05, 0.15, 0.3, 0.6, 1.0)

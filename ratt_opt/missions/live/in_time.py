@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["InTime", "Planned"]
 
 SEARCH_SHARE = 0.7
-"""Of a step's time left, for a search: it looks at the clock between nodes, which take a while themselves."""
+"""Share of a step's remaining time for a search. It looks at the clock between nodes, and a node takes a while."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -48,15 +48,16 @@ class Tracker:
     Parameters
     ----------
     scenario : the team as it starts, what is believed of the targets, and the adversary's budgets
-    planner : as in :func:`run_mission`; a callable's work goes on in a thread when it is late, and is thrown away
+    planner : as in :func:`run_mission`; if a callable is late, its work goes on in a thread and is discarded
     horizon : steps that a plan looks ahead
-    time_limit : seconds for a step; ``None`` waits for the planner. If the planner is late, that counts in ``missed``,
-        and RATT's plan is used, which is made first and takes some milliseconds.
+    time_limit : seconds for a step; ``None`` waits for the planner. If the planner is late, ``missed`` counts it, and
+        RATT's plan is used; that one is made first and takes some milliseconds.
     model : motions, sensors and filter, as in :func:`run_mission`
     state : where to go on; the scenario's start by default
     lag : seconds that a measurement may come late; ten sampling periods by default
 
-    ``state`` : all it knows; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot executes next.
+    ``state`` : the tracker's whole state; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot
+    executes next.
     ``scenario`` : the team with its present targets; needed to go on from ``state``.
 
     Raises

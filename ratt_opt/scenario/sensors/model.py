@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["SensorModel"]
 
 POSE_STEP = 1e-5
-"""Of a pose [m], [rad], for central differences: errors of 1e-10 of the curvature, and 1e-11 of rounding."""
+"""Step of a pose [m], [rad], for central differences: errors of 1e-10 of the curvature, and 1e-11 of rounding."""
 
 
 POINT_STEP, BEND_STEP = 6e-6, 1e-3
