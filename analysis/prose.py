@@ -92,7 +92,9 @@ def findings(files: Iterable[Path]) -> Iterator[Finding]:
     for file in files:
         shown = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
         whole = " ".join(file.read_text(encoding="utf-8").split())
-        unexplained = [(word, f"say what it means: {say}") for word, say in explained if not re.search(say, whole)]
+        unexplained = [
+            (word, f"say what it means: {say}") for word, say in explained if not re.search(say, whole, re.IGNORECASE)
+        ]
         words = instead + (unexplained if file.suffix == ".md" else [])
         for passage in passages(file):
             yield from _in_words(passage, shown, words)
