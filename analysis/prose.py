@@ -105,7 +105,9 @@ def findings(files: Iterable[Path]) -> Iterator[Finding]:
 def read_words(part: str, file: Path = ROOT / "analysis" / "words.toml") -> list[tuple[re.Pattern[str], str]]:
     """Return a part of the word list: patterns, and what to write instead, or what an explanation holds."""
     listed = tomllib.loads(file.read_text(encoding="utf-8"))[part]
-    return [(re.compile(rf"(?<!\w)(?:{pattern})\b", re.IGNORECASE), advice) for pattern, advice in listed.items()]
+    return [
+        (re.compile(rf"(?:(?<!\w)|(?=,))(?:{pattern})\b", re.IGNORECASE), advice) for pattern, advice in listed.items()
+    ]
 
 
 def passages(file: Path) -> Iterator[Passage]:

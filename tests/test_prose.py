@@ -33,6 +33,7 @@ def test_nothing_is_left_to_say_plainly() -> None:
         "The whole belief, whose belief lives on, is used.",
         "So many robots as there are links.",
         "A value, where none is known, is left out.",
+        "It is large, where such words help.",
         "It is None where there is none.",
         "What the plan keeps is shown.",
         "No planner keeps more than that.",

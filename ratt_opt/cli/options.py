@@ -42,6 +42,6 @@ ObjectiveOption = Annotated[Objective, typer.Option("--objective", help="Criteri
 
 
 def check_output(*, as_json: bool, as_latex: bool) -> None:
-    """InputError : more than one kind of output is asked for."""
+    """InputError : more than one kind of output is wanted."""
     if as_json and as_latex:
         raise InputError("--latex", "must come without --json", "both")

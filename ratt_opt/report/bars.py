@@ -18,7 +18,7 @@ __all__ = ["bar_ends", "draw_bars"]
 CLOSE = 0.5
 """From this share of the bound on, what is missing is drawn, not what is kept: one per cent stays visible."""
 ROOM = 2.5
-"""The axis ends at so many times the longest bar, so that the numbers beside the bars have room."""
+"""The axis ends at this many times the longest bar, so that the numbers beside the bars have room."""
 
 
 NOTHING = 1e-9
@@ -61,6 +61,6 @@ def draw_bars(axes: Axes, report: Findings) -> None:
     axes.invert_yaxis()
     axes.set_xlim(0, ROOM * longest)
     unit = f"[{report.unit}] " if report.unit else ""
-    what = "shortfall from the best possible" if missing else "value kept"
+    what = "shortfall from the best possible" if missing else "value"
     axes.set_xlabel(f"{report.objective}: {what} under the worst attack\n{unit}(whiskers: not decided)")
     axes.spines[["top", "right"]].set_visible(False)

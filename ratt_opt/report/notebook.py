@@ -54,7 +54,9 @@ def report_view(report: Findings) -> str:
         )
         for plan in report.plans
     ]
-    table = html_table("what each planner keeps", ("planner", "worst-case value", "share of the best possible"), rows)
+    table = html_table(
+        "planners under their worst attacks", ("planner", "worst-case value", "share of the best possible"), rows
+    )
     drawing = io.StringIO()
     plan_figure(report, picture_of(report.source, report)).savefig(drawing, format="svg", metadata={"Date": None})
     svg = drawing.getvalue()

@@ -26,8 +26,8 @@ class Picture:
     ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty if none.
     ``targets`` : (M, 2) predicted means; ``target_names`` and ``weights`` : (M,); ``prior``, ``posterior`` :
     (M, 2, 2) covariances of the positions, the latter with the best surviving group's measurements.
-    ``views`` : (N,) fields of view after the controls, where a sensor is limited; ``watched`` : (N, M) whether a robot
-    measures a target, where not every robot measures all.
+    ``views`` : (N,) fields of view after the controls, if a sensor is limited; ``watched`` : (N, M) whether a robot
+    measures a target, if not every robot measures all.
     ``groups`` : connected groups left by the attack; ``best`` : the one that performs best.
     """
 

@@ -158,7 +158,7 @@ def _link(link: tuple[int, int], names: Sequence[str]) -> str:
 def _planners(report: Findings) -> Table:
     unit = f" [{report.unit}]" if report.unit else ""
     value = f"worst-case value{unit}"
-    table = _table("what each planner keeps", "planner", value, "share of the best possible", "evaluations")
+    table = _table("planners under their worst attacks", "planner", value, "share of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(plan.worst_case.lower, report.upper)
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name

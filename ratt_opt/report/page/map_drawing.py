@@ -215,9 +215,9 @@ def _robots(picture: Picture, at: list[tuple[float, float]], report: Findings, v
 
 
 def _words(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> Iterator[str]:
-    """The names of robots and targets, each where it covers least.
+    """The names of robots and targets, each at the place at which it covers least.
 
-    A name that would cover others is left out (it is told to whoever points there), but for a target's number.
+    A name that would cover others is left out; the page shows it to a reader who points there. A target's number stays.
     """
     targets = [] if picture.targets is None else [place(x) for x in picture.targets]
     words: list[tuple[tuple[str, ...], tuple[float, float]]]

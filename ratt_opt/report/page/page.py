@@ -58,10 +58,10 @@ def _sections(report: Findings) -> Iterator[str]:
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
     share = share_text(plan.worst_case.lower, report.upper)
     yield (
-        f"<p>This plan keeps <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}) under the worst "
-        f"attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
+        f"<p>This plan has a worst-case value of <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}), "
+        f"under the worst attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
         f"{counted(report.problem.alpha_c, 'link')}. {escape(_share_sentence(share))} "
-        f"No plan keeps more than {up(report.upper, 10)}.</p>"
+        f"No plan has more than {up(report.upper, 10)}.</p>"
     )
     yield from _map_section(report)
     yield from _planner_section(report)
@@ -76,7 +76,7 @@ def _sections(report: Findings) -> Iterator[str]:
 def _share_sentence(share: str) -> str:
     if share.startswith("optimal"):
         return f"It is {share}."
-    return f"That is {share} of what any plan could keep."
+    return f"That is {share} of the best possible."
 
 
 def _map_section(report: Findings) -> Iterator[str]:
@@ -112,8 +112,9 @@ def _caption(name: str, view: AssessedPlan, report: Findings) -> str:
 def _planner_section(report: Findings) -> Iterator[str]:
     """A bar a planner: filled as far as it is sure, half-tone as far as it is not decided."""
     missing, brackets, longest = bar_ends(report)
-    what = "shortfall from the best possible" if missing else "kept"
-    yield '<section aria-labelledby="planners"><h2 id="planners">What each planner keeps</h2><div class="wide"><table>'
+    what = "shortfall from the best possible" if missing else "worst-case value"
+    yield '<section aria-labelledby="planners"><h2 id="planners">Planners under their worst attacks</h2>'
+    yield '<div class="wide"><table>'
     unit = escape(f" [{report.unit}]" if report.unit else "")
     looks = looks_of([plan.name for plan in report.plans])
     yield f'<thead><tr><th scope="col">planner</th><th scope="col">worst-case value{unit}</th>'
