@@ -2,17 +2,18 @@
 
 It prints one line a finding, ``FILE:LINE: what to write instead``, and returns 1 if there are any. The word list is
 ``analysis/words.toml``. Besides, it counts words and conditions: a sentence has at most 40 words and two conditions.
-Without arguments it reads every page, and every Python file of the package and of the studies. In the families that the
-engine issues rewrite it reads what users meet: messages, and the docstrings of public names.
+Without arguments it reads every page and notebook, and every Python file of the package and of the studies. In
+families that the engine issues rewrite it reads what users meet: messages, and the docstrings of public names.
 """
 
 from __future__ import annotations
 
 import ast
+import json
 import re
 import sys
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -77,11 +78,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def readable_files() -> Iterator[Path]:
-    """Yield every page and every Python file that is checked."""
+    """Yield every page, notebook and Python file that is checked."""
     for name in PAGES:
         place = ROOT / name
         pages = sorted(place.rglob("*.md")) if place.is_dir() else [place]
         yield from (page for page in pages if not set(page.relative_to(ROOT).parts[1:-1]) & set(MADE))
+    yield from sorted((ROOT / "notebooks").glob("*.ipynb"))
     for name in CODE:
         yield from sorted((ROOT / name).rglob("*.py"))
 
@@ -111,9 +113,21 @@ def read_words(part: str, file: Path = ROOT / "analysis" / "words.toml") -> list
 
 
 def passages(file: Path) -> Iterator[Passage]:
-    """Yield the prose of a page or of a Python file."""
+    """Yield the prose of a page, of a notebook or of a Python file."""
     text = file.read_text(encoding="utf-8")
-    yield from _of_page(file, text) if file.suffix == ".md" else _of_code(file, text)
+    if file.suffix == ".ipynb":
+        yield from _of_notebook(file, text)
+    else:
+        yield from _of_page(file, text) if file.suffix == ".md" else _of_code(file, text)
+
+
+def _of_notebook(file: Path, text: str) -> Iterator[Passage]:
+    """The cells of text; the line is that of the cell in the file."""
+    for cell in json.loads(text)["cells"]:
+        if cell["cell_type"] == "markdown":
+            first = text.count("\n", 0, text.find(json.dumps(cell["source"][0], ensure_ascii=False))) + 1
+            for passage in _of_page(file, "".join(cell["source"])):
+                yield replace(passage, line=first + passage.line - 1)
 
 
 def _of_page(file: Path, text: str) -> Iterator[Passage]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import pytest
@@ -100,3 +101,15 @@ def test_the_command_prints_places_and_fails(tmp_path: Path, capsys: pytest.Capt
     assert 'page.md:1: "So many"' in capsys.readouterr().out
     (tmp_path / "page.md").write_text("Many.\n", encoding="utf-8")
     assert prose.main([str(tmp_path / "page.md")]) == 0
+
+
+def test_cells_of_text_in_a_notebook_are_read(tmp_path: Path) -> None:
+    cells = [
+        {"cell_type": "code", "source": ["x = 'so many'\n"]},
+        {"cell_type": "markdown", "source": ["# Title\n", "\n", "So many words.\n"]},
+    ]
+    (tmp_path / "a.ipynb").write_text(json.dumps({"cells": cells}, indent=1), encoding="utf-8")
+    (found,) = prose.findings([tmp_path / "a.ipynb"])
+    assert found.advice.startswith('"So many"')
+    text = (tmp_path / "a.ipynb").read_text(encoding="utf-8").split("\n")
+    assert "So many words" in text[found.line - 1]
