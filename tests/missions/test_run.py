@@ -352,7 +352,7 @@ def test_bad_models_and_journals(tmp_path) -> None:
         MissionModel(robot_motion="sideways")
     with pytest.raises(InputError, match="planner must return a plan"):
         run_mission(scenario_of(), steps=1, planner=lambda _: 3)
-    with pytest.raises(InputError, match="objective must be trace or maxeig where"):
+    with pytest.raises(InputError, match="objective must be trace or maxeig if"):
         run_mission(scenario_of(), steps=1, horizon=2, model=MissionModel(objective="logdet"))
     with pytest.raises(InputError, match="hold must be"):
         PersistentAttacks(hold=0)
