@@ -92,7 +92,7 @@ def test_the_group_size_of_a_large_graph_is_achieved():
 
 
 def separated(graph, cut, blinded):
-    """Unblinded robots of the largest group that a cut leaves."""
+    """Seeing robots of the largest group that a cut leaves."""
     left = nx.Graph(graph)
     left.remove_edges_from(cut)
     return max(len(group - blinded) for group in nx.connected_components(left))
@@ -100,7 +100,7 @@ def separated(graph, cut, blinded):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_annealed_groups_are_achieved_and_never_larger_than_by_cheapest_cuts(seed, monkeypatch):
-    """The cut itself is looked at: within the links, no protected one, groups of that many unblinded robots."""
+    """The cut itself is looked at: within the links, no protected one, groups of that many seeing robots."""
     objective = ro.random_scenario(24, 2, alpha_s=0, alpha_c=0, seed=seed).problem().objective
     graph = nx.random_geometric_graph(24, 0.32, seed=seed)
     links = sorted((min(e), max(e)) for e in graph.edges)
