@@ -27,7 +27,7 @@ LONGEST = 40
 """Words of a sentence."""
 CONDITIONS = 2
 """Conditions of a sentence; one of them may be its subject's."""
-LATER = ("ratt_opt/attackers", "ratt_opt/certificates", "ratt_opt/solvers")
+LATER = ("ratt_opt/attackers", "ratt_opt/certificates")
 """Families that the engine issues rewrite."""
 PAGES = ("README.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs", "paper")
 MADE = ("api", "gallery", "notebooks", "schemas")

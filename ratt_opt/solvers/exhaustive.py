@@ -96,7 +96,7 @@ def exhaustive_optimum(
 def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:
     """Value of one group's robots for each joint choice of theirs.
 
-    The array has one axis per robot of the team that has a choice: its number of elements where the robot
+    The array has one axis per robot of the team that has a choice: its number of elements if the robot
     belongs to ``group``, 1 elsewhere, so that arrays of different groups broadcast.
     """
     members = sorted(group)

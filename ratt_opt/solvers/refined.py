@@ -39,7 +39,8 @@ __all__ = ["RefinedPlan", "refined"]
 
 SECONDS = 1.0
 PROOF_SHARE, PROOF_SHARE_OF_ALL = 0.4, 0.05
-"""Of the time left, kept for proving what the best plan keeps; less if all attacks that matter are known."""
+"""Share of the remaining time for proving the worst case of the best plan; less if all attacks that matter are
+known."""
 BEST_SHARE = 0.7
 """Of that, for the best plan; the rest is for an attack on RATT's plan that leaves it no more."""
 PROOF_NODES = 500_000
@@ -150,7 +151,7 @@ def _walked(incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most
 def _best(  # noqa: PLR0917
     problem: Problem, few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int, stop: Stop
 ) -> RefinedPlan:
-    """The plan of which most is proved, if that is no less than RATT's plan can keep; that one otherwise.
+    """The plan with the best proved worst case, if that is no less than RATT's; RATT's plan otherwise.
 
     Elements of RATT's plan that are dominated were exchanged before.
     """

@@ -25,7 +25,7 @@ __all__ = ["MaxMinResult", "NonrobustPlan", "posterior_gap"]
 
 
 def posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
-    """``upper - lower`` as a share of the posterior criterion that ``lower`` leaves, where the criterion is a size."""
+    """``upper - lower`` as a share of the posterior criterion that ``lower`` leaves, if the criterion is a size."""
     before = problem.information_objective.prior_criterion
     return None if before is None or before <= lower else float((upper - lower) / (before - lower))
 

@@ -150,7 +150,7 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
 def _first_plans(
     problem: Problem, first: IntArray, warm: WarmStart, pairs: PairOutcomes | None, budget: Budget
 ) -> list[IntArray]:
-    """RATT's plan, and one that was best a step before; the plans of other planners where there is none."""
+    """RATT's plan, and one that was best a step before; the plans of other planners if there is none."""
     if warm.plan is not None:
         return [first, warm.plan]
     plans = [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
@@ -245,9 +245,9 @@ def nonrobust_optimum(
 def nonrobust_search(
     problem: Problem, *, time_limit: float | None = None, budget: Budget | None = None
 ) -> MaxMinResult:
-    """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan where few.
+    """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan if few.
 
-    ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
+    ``time_limit`` : seconds; the plan is proved best if ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
     ``budget`` : an outer search's budget: its seconds and interrupts count too
     """
     unattacked = replace(check_problem(problem), alpha_s=0, alpha_c=0)
