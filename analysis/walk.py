@@ -123,7 +123,10 @@ def _drones_are_planned(folder: Path) -> str | None:
     report = json.loads((folder / "drones" / "report.json").read_text(encoding="utf-8"))
     bracket = report["optimum"]
     is_proved = (folder / "drones" / "certificate.json").exists() and 0 < bracket["lower"] <= bracket["upper"]
-    return None if report["n_robots"] == 6 and is_proved else "no plan with a certificate for six drones"
+    if report["n_robots"] != 6 or not is_proved:
+        return "no plan with a certificate for six drones"
+    mission = json.loads((folder / "flight" / "mission.json").read_text(encoding="utf-8"))
+    return None if mission["n_robots"] == 6 else "no mission of six drones"
 
 
 def _planner_is_compared(folder: Path) -> str | None:
