@@ -1,7 +1,8 @@
-"""Draw the house from its own code: ``python -m analysis.architecture --out docs`` writes ``architecture.png``.
+"""Draw the architecture from the code: ``python -m analysis.architecture --out docs/contributors``.
 
-Layers come from the import contract in ``pyproject.toml``, sentences from the packages' docstrings, arrows from the
-import statements. Nothing in the picture is typed by hand but the flow along its top.
+It writes ``architecture.png``. Layers come from the import contract in ``pyproject.toml``, sentences from the
+packages' docstrings, arrows from the import statements. Nothing in the picture is typed by hand but the flow along its
+top.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ def _draw(axes: Axes, layers: Sequence[Room]) -> None:
             axes.annotate(
                 "", (x - 0.62, height + 1.25), (x - 1.0, height + 1.25), arrowprops={"arrowstyle": "->", "color": FLOWS}
             )
-    axes.set_xlim(-0.1, 10.0)
+    axes.set_xlim(-0.1, 10.7)
     axes.set_ylim(0.3, height + 1.8)
     axes.axis("off")
 

@@ -1,7 +1,8 @@
-"""Write the page on what the audit settles: ``python -m analysis.audit_page --ledger DIR --out docs/audit.md``.
+"""Write the page on what the audit settles, ``docs/researchers/audit.md``.
 
-``DIR`` is the folder of ``ratt-opt audit --out DIR``. Every verdict and number of the page is read from its
-``audit.json`` or computed here as an exact worst-case ratio; ``--figure FILE`` names a picture beside the page.
+Run as ``python -m analysis.audit_page --ledger DIR --out PAGE``. ``DIR`` is the folder of ``ratt-opt audit --out
+DIR``. Every verdict and number of the page is read from its ``audit.json`` or computed here as an exact worst-case
+ratio; ``--figure FILE`` names a picture beside the page.
 """
 
 from __future__ import annotations
@@ -71,8 +72,8 @@ This page is written by commands:
 <!-- slow -->
 ```bash
 ratt-opt audit --out ledger
-python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/
-python -m analysis.audit_page --ledger ledger --figure worst_ratio.png --out docs/audit.md
+python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/researchers/
+python -m analysis.audit_page --ledger ledger --figure worst_ratio.png --out docs/researchers/audit.md
 ```
 """
 

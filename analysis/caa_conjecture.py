@@ -1,9 +1,9 @@
 """Is the attack that minimises the largest group also the worst attack? And how good are simple attackers?
 
-CAA conjectures that it is. On RATT's plan for the paper's scenarios, for a grid of budgets at ten robots, and on
-graphs of limited communication range this study compares the exact worst case with the best attack among those
+CAA conjectures that it is. This study compares the exact worst case of RATT's plan with the best attack among those
 that leave no group larger than ``n_max`` (up to ten robots), and with the bounded-rational, greedy and random
-attackers. Values are shares of the exact one: 1 is as bad for the team.
+attackers. It does so for the paper's scenarios, for a grid of budgets at ten robots, and on graphs of limited
+communication range. Values are shares of the exact one: 1 is as bad for the team.
 
 Run as ``python -m analysis.caa_conjecture --out DIR [--seeds K] [--grid-seeds K] [--large-seeds K]``.
 """
@@ -68,7 +68,7 @@ def evenly_split_value(problem: Problem, plan: np.ndarray) -> float:
 def one_run(
     setting: tuple[int, int, int, int], objective: str, seed: int, degree: float | None = None
 ) -> dict[str, object]:
-    """All attackers on RATT's plan for one scenario; on a graph of this mean degree where one is given."""
+    """All attackers on RATT's plan for one scenario; on a graph of this mean degree if one is given."""
     n_robots, n_targets, alpha_s, alpha_c = setting
     scenario = random_scenario(n_robots, n_targets, alpha_s=alpha_s, alpha_c=0, seed=seed)
     if degree is not None:
@@ -92,7 +92,7 @@ def one_run(
 
 
 def range_of(scenario: Scenario, degree: float) -> float:
-    """Communication range [m] that gives robots so many links on average."""
+    """Communication range [m] that gives robots that many links on average."""
     position = np.array([(robot.x, robot.y) for robot in scenario.robots])
     distance = np.linalg.norm(position[:, None] - position, axis=-1)
     pairs = np.sort(distance[np.triu_indices(len(position), 1)])

@@ -89,7 +89,7 @@ def lower_bounds(project: Path = ROOT / "pyproject.toml") -> list[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the environments and return the exit code: 1 where one fails or, without ``--available``, is missing."""
+    """Run the environments and return the exit code: 1 if one fails or, without ``--available``, is missing."""
     options = _parse(arguments)
     rows: list[tuple[str, str, str]] = []
     with tempfile.TemporaryDirectory(prefix="ratt-opt-pythons-") as folder:

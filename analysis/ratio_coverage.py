@@ -1,9 +1,9 @@
-"""Print a table of ``docs/ratios.md``, on RATT's exact worst ratio: ``python -m analysis.ratio_coverage TABLE``.
+"""Print a table of ``docs/researchers/ratios.md``, on RATT's exact worst ratio.
 
-TABLE is ``coverage`` (budgets settled by proof and by computation), ``values`` (their ratios beside the formulas),
-``others`` (values that no conjecture was made from), ``threes`` (submodular, three robots left), ``large`` (submodular,
-six and seven robots), ``planners`` (the best of three planners, bracketed) or ``best`` (exactly). Minutes each; with
-``--quick`` the first rows only.
+Run as ``python -m analysis.ratio_coverage TABLE``. TABLE is ``coverage`` (budgets settled by proof and by
+computation); ``values`` (their ratios beside the formulas); ``others`` (values that no conjecture was made from);
+``threes`` (submodular, three robots left); ``large`` (submodular, six and seven robots); ``planners`` (the best of
+three planners, bracketed); or ``best`` (exactly). Minutes each; with ``--quick`` the first rows only.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def budgets(n_robots: int) -> list[Budget]:
 
 
 def row_of(family: str, budget: Budget, curvature: Fraction = CURVATURE) -> Row:
-    """What is known of one set of budgets; computed where no written proof settles it."""
+    """What is known of one set of budgets; computed if no written proof settles it."""
     alpha_s, alpha_c = budget.members[0]
     known = known_ratio(_question(family, budget.n_robots, alpha_s, alpha_c, curvature))
     found = None

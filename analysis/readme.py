@@ -24,7 +24,13 @@ __all__ = ["main", "refreshed"]
 ROOT = Path(__file__).parents[1]
 OUTPUT = re.compile(r"<!-- output(?: of the last (?P<last>\d+) lines)?: (?P<command>.*?) -->\n```text\n.*?```\n", re.S)
 TABLE = re.compile(r"<!-- table: (?P<command>.*?) -->\n(?:\|.*\n)*")
-PAGES = ("docs/guides/reading_a_report.md", "docs/commands.md", "docs/evaluation.md", "docs/ratios.md", "README.md")
+PAGES = (
+    "docs/guides/reading_a_report.md",
+    "docs/commands.md",
+    "docs/researchers/evaluation.md",
+    "docs/researchers/ratios.md",
+    "README.md",
+)
 """In this order, and in one folder: a page may show what an earlier one's commands have written."""
 FIGURE = re.compile(r"<!-- figure: (?P<file>\S+) -->\n!\[.*?\]\((?P<path>\S+?)\)", re.S)
 

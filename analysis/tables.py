@@ -31,7 +31,7 @@ def write_csv(path: str | Path, rows: Sequence[Mapping[str, object]]) -> None:
 
 
 def append_csv(path: str | Path, row: Mapping[str, object]) -> None:
-    """Add one row, with a first line of names where the file is new: what a long study has so far is never lost."""
+    """Add one row, with a first line of names if the file is new: what a long study has so far is never lost."""
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
     with target.open("a", newline="", encoding="utf-8") as file:

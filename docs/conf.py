@@ -13,11 +13,14 @@ release = ratt_opt.__version__
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery", "ratt_pages"]
 exclude_patterns = ["_build", "_extension", "examples", "gallery/*.ipynb", "gallery/*.py"]
 html_theme = "pydata_sphinx_theme"
+html_title = "ratt-opt"  # short, so that it fits beside the search on a phone
 html_theme_options = {
     "show_toc_level": 2,
     "navigation_with_keys": False,
     "show_prev_next": False,
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 7,
+    "navbar_align": "left",
+    "navbar_persistent": ["search-button"],
 }
 html_sidebars = {"**": ["sidebar-nav-bs"]}
 html_static_path = ["_static"]

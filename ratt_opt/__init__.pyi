@@ -5,6 +5,7 @@ from ._version import __version__ as __version__
 
 # == The main job
 from .main_job.bound import bound as bound
+from .main_job.warm_up import warm_up as warm_up
 from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
 from .budget import Stop as Stop
 
@@ -17,6 +18,7 @@ from .coordinates.changed import ChangedProblem as ChangedProblem
 from .scenario.generator import random_scenario as random_scenario
 from .scenario.model import Scenario as Scenario, Robot as Robot, Target as Target
 from .scenario.sensor import Sensor as Sensor
+from .scenario.sensors.kinds import register_sensor as register_sensor, sensor_kinds as sensor_kinds
 from .scenario.information_input import InformationInput as InformationInput
 from .scenario.files import (
     load_input as load_input,
@@ -66,13 +68,13 @@ from .missions.players.attack_models import (
     PersistentAttacks as PersistentAttacks,
 )
 from .missions.belief import Belief as Belief
-from .missions.models.sensor_model import SensorModel as SensorModel
-from .missions.models.range_bearing import (
+from .scenario.sensors.model import SensorModel as SensorModel
+from .scenario.sensors.range_bearing import (
     BearingOnly as BearingOnly,
     RangeBearing as RangeBearing,
     RangeOnly as RangeOnly,
 )
-from .missions.models.sensors import PositionSensor as PositionSensor
+from .scenario.sensors.position import PositionSensor as PositionSensor
 from .missions.models.targets import (
     ConstantVelocity as ConstantVelocity,
     CoordinatedTurn as CoordinatedTurn,
@@ -96,6 +98,9 @@ from .missions.run import run_mission as run_mission
 from .missions.live.tracker import Tracker as Tracker
 from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
+
+# == Studies
+from . import studies as studies
 
 # == Guarantees and bounds
 from .bounds.guarantees import (

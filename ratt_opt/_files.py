@@ -1,4 +1,4 @@
-"""Files are written whole or not at all, and only where a regular file is or may come to be."""
+"""Files are written whole or not at all, and only if a regular file is or may come to be."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["MIXED", "output_directory", "output_file", "write_atomically", "write_json", "write_together"]
 
 MIXED = "incomplete.txt"
-"""In a folder only while files that belong together are renamed, or where a kill ended that."""
+"""Present only while files that belong together are renamed, or after a kill in that moment."""
 _MIXED_TEXT = """A run was stopped while it replaced the files of this folder: some may be of that run, some of an
 earlier one. Run the same command again.
 """
@@ -109,7 +109,7 @@ def write_together(
 ) -> list[Path]:
     """Write files that belong together: all are made aside, then renamed into the folder one after the other.
 
-    ``outdated`` : files of an earlier set that are removed with it, where they are there.
+    ``outdated`` : files of an earlier set that are removed with it, if they are there.
 
     A kill between two renames leaves ``MIXED`` in the folder, whose text says what that means.
 

@@ -1,7 +1,7 @@
 """Numbers as text, rounded outward: what is printed of a bracket holds the bracket, of a gap is not less than it.
 
 The one place where ends of brackets, shares, gaps and guarantees become text. Exact: a float or fraction is rounded
-once, in decimal arithmetic, in the direction that is asked for.
+once, in decimal arithmetic, in the direction that the function names.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ AT_LEAST, AT_MOST = {"lower", "proved", "share", "guarantee"}, {"upper", "gap"}
 
 
 def down(value: float | Fraction, digits: int) -> str:
-    """The largest decimal of so many significant digits that is at most ``value``."""
+    """The largest decimal of that many significant digits that is at most ``value``."""
     return _text(value, digits, ROUND_FLOOR)
 
 
 def up(value: float | Fraction, digits: int) -> str:
-    """The smallest decimal of so many significant digits that is at least ``value``."""
+    """The smallest decimal of that many significant digits that is at least ``value``."""
     return _text(value, digits, ROUND_CEILING)
 
 
 def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
-    """The bracket as text: both ends, outward, or the digits that both begin with where these are ``digits`` many.
+    """The bracket as text: both ends, outward, or the digits that both begin with if these are ``digits`` many.
 
-    The value to ``digits`` digits where both ends are one float.
+    The value to ``digits`` digits if both ends are one float.
     """
     if lower == upper:
         return f"{upper:.{digits}g}"
@@ -43,12 +43,12 @@ def bracket_text(lower: float, upper: float, *, digits: int = 10) -> str:
 
 
 def gap_text(lower: float, upper: float, digits: int) -> str:
-    """``(upper - lower) / upper``, rounded up once; ``0`` where ``upper`` is 0."""
+    """``(upper - lower) / upper``, rounded up once; ``0`` if ``upper`` is 0."""
     return up(_gap(lower, upper), digits)
 
 
 def relative_gap(lower: float, upper: float) -> float:
-    """``(upper - lower) / upper`` as the smallest float that is no smaller; 0 where ``upper`` is 0."""
+    """``(upper - lower) / upper`` as the smallest float that is no smaller; 0 if ``upper`` is 0."""
     exact = _gap(lower, upper)
     try:
         near = float(exact)

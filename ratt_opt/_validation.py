@@ -71,7 +71,7 @@ def whole(value: object) -> object:
 
 
 def integer_array(value: ArrayLike) -> NDArray[Any]:
-    """Return ``value`` as an array, of objects where an entry is no integer: NumPy reads ``[True, 2]`` as ``[1, 2]``.
+    """Return ``value`` as an array, of objects if an entry is no integer: NumPy reads ``[True, 2]`` as ``[1, 2]``.
 
     2.0 counts as 2.
     Rows of different shapes give an array without entries.

@@ -62,15 +62,15 @@ class Budget:
     """Seconds, nodes and evaluations that a search may spend, and whether the user interrupted it.
 
     A search passes its budget down and asks it in every loop that can be long. Inner searches get a
-    :meth:`part` of it. Whoever catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
+    :meth:`part` of it. Code that catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
     that every search around it stops too instead of taking the inner result for a finished one.
 
     Parameters
     ----------
     time_limit : seconds from now; ``None`` is unlimited, 0 is spent at once
     max_nodes : nodes; ``None`` is unlimited
-    max_evaluations : values of a set function, here and in all parts; ``None`` is unlimited. Counted, and kept, where
-        values are asked for through :class:`ratt_opt.setfunctions.metered.Metered`
+    max_evaluations : values of a set function, here and in all parts; ``None`` is unlimited. Counted, and kept, if
+        values are computed through :class:`ratt_opt.setfunctions.metered.Metered`
 
     Raises
     ------
@@ -103,7 +103,7 @@ class Budget:
         max_nodes: int | None = None,
         max_evaluations: int | None = None,
     ) -> Budget:
-        """These limits, and the seconds, evaluations and interrupts of ``outer`` where one is given.
+        """These limits, and the seconds, evaluations and interrupts of ``outer`` if one is given.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class Budget:
         self.nodes += nodes
 
     def part(self, share: float = 1.0, *, max_nodes: int | None = None, at_least: float = 0.0) -> Budget:
-        """A budget of its own nodes with ``share`` of the seconds and evaluations left (``at_least`` so many seconds).
+        """A budget of its own nodes with ``share`` of the seconds and evaluations left (at least ``at_least`` seconds).
 
         An interrupt of either is an interrupt of both.
         """
@@ -195,7 +195,7 @@ class Budget:
 
         Raises
         ------
-        OutOfBudget : nothing is left before it; afterwards where the time is up here too or the user interrupted.
+        OutOfBudget : nothing is left before it; afterwards if the time is up here too or the user interrupted.
         """
         most = inf if max_nodes is None else max_nodes
         if self.max_nodes is not None:
@@ -215,7 +215,7 @@ class Budget:
 
 
 def uninterrupted(found: T) -> T:
-    """What a search found; ``KeyboardInterrupt`` where the user interrupted it.
+    """What a search found; ``KeyboardInterrupt`` if the user interrupted it.
 
     For callers that keep no bracket of their own: to them it would pass for what a whole search finds.
     """

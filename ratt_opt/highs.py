@@ -58,8 +58,8 @@ def rows_of(entries: Sequence[tuple[Sequence[int], Sequence[float]]], lower: Arr
 class ClaimedSolution:
     """What HiGHS says; nothing here is proved.
 
-    ``is_optimal`` : it claims an optimum. ``x`` (columns,) and ``duals`` (rows,) : what it has; empty where nothing.
-    ``bound`` : claimed bound of an integer program (minus infinity where there is none); ``nodes`` it explored.
+    ``is_optimal`` : it claims an optimum. ``x`` (columns,) and ``duals`` (rows,) : what it has; empty if nothing.
+    ``bound`` : claimed bound of an integer program (minus infinity if there is none); ``nodes`` it explored.
     """
 
     is_optimal: bool
@@ -162,9 +162,9 @@ class LinearProgram:
         self._highs.clearSolver()
 
     def solve(self, seconds: float = inf, *, is_long: bool = False) -> ClaimedSolution:
-        """Run HiGHS for at most so many seconds and return what it claims.
+        """Run HiGHS for at most that many seconds and return what it claims.
 
-        ``is_long`` : end it where the user interrupts, which otherwise is answered once it has run
+        ``is_long`` : end it if the user interrupts, which otherwise is answered once it has run
         """
         if seconds < inf:
             # HiGHS counts the time of all its runs.
@@ -183,7 +183,7 @@ class LinearProgram:
         )
 
     def _run_unless_interrupted(self) -> None:
-        """HiGHS asks between its steps whether to end; what is raised where it asks could not pass through it."""
+        """HiGHS asks between its steps whether to end; what is raised if it asks could not pass through it."""
         highs = self._highs
         asked = (highs.cbMipInterrupt, highs.cbSimplexInterrupt, highs.cbIpmInterrupt)
         with interrupts_afterwards() as met:

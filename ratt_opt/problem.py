@@ -55,7 +55,7 @@ class Plan(ByValue, Shown):
     """One element per robot; two plans are equal when all their fields are. Iterating gives the elements as ``int``.
 
     ``elements`` : (N,) flat element indices, robot by robot.
-    ``evaluations`` : set-function values the planner asked for.
+    ``evaluations`` : set-function values that the planner computed.
     ``bait`` : robots that RATT gave their individually best element, ascending; empty for other planners.
     ``alpha_cs`` : sensing attacks that RATT took the link attacks to be worth; ``None`` for other planners.
     """
@@ -69,7 +69,7 @@ class Plan(ByValue, Shown):
         return iter(self.elements.tolist())
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        """Its elements: a plan can be given wherever elements are asked for."""
+        """Its elements: functions that take elements take a plan, too."""
         return np.array(self.elements, dtype=dtype, copy=copy)
 
 
@@ -170,14 +170,14 @@ class Problem:
 
     @property
     def communication(self) -> CommunicationGraph:
-        """The communication graph; complete where ``graph`` is ``None``."""
+        """The communication graph; complete if ``graph`` is ``None``."""
         return self.threat.graph
 
     @cached_property
     def evaluation_error(self) -> float:
         """No value of a plan's robots is computed further from the exact one, of the matrices given.
 
-        0 where nothing is known of that: set functions and criteria of your own count as exact.
+        0 if nothing is known of that: set functions and criteria of your own count as exact.
         """
         if not isinstance(self.objective, InformationObjective):
             return 0.0
@@ -186,7 +186,7 @@ class Problem:
     def outward(self, lower: float, upper: float) -> tuple[float, float]:
         """Ends of a worst case's bracket as computed, moved apart by the :attr:`evaluation_error`.
 
-        Relies on a non-decreasing objective: no team is worth less than none. Where all robots that tell anything can
+        Relies on a non-decreasing objective: no team is worth less than none. If all robots that tell anything can
         be blinded, a worst case of 0 is exact.
         """
         error = self.evaluation_error
@@ -266,7 +266,7 @@ class Problem:
         return max(self.groups_left(attack), key=lambda group: self.objective(plan[sorted(group)]))
 
     def groups_left(self, attack: Attack) -> list[frozenset[int]]:
-        """Non-blinded robots of every group, by the group's lowest robot; empty where all of one are blinded."""
+        """Non-blinded robots of every group, by the group's lowest robot; empty if all of one are blinded."""
         return [group - attack.sensing for group in self.communication.groups(attack.links)]
 
 

@@ -25,7 +25,6 @@ OTHER_FOLDERS = {
     "analysis": "analysis",
     "formal": "formal",
     "ratt_audit": "ratt_audit",
-    "studies": "analysis/studies",
     "golden": "analysis/golden",
 }
 """Folders of tests that mirror none of ratt_opt."""

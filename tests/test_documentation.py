@@ -70,7 +70,7 @@ def run_block(block: Block, names: dict[str, object], folder: Path) -> None:
         assert done.returncode == 0, f"{block.code}\n{done.stdout}\n{done.stderr}"
     else:
         assert block.language == "python", block
-        exec(compile(block.code, "a block", "exec"), names)
+        exec(compile(block.code, "a block", "exec", dont_inherit=True), names)
         check_results(block.code, names)
 
 
@@ -128,7 +128,7 @@ def test_a_newcomer_s_first_hour(folder: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("page", pages_with_blocks(), ids=lambda page: page.name)
 def test_slow_blocks_run(page: Path, folder: Path) -> None:
-    (folder / "docs").mkdir()
+    (folder / "docs" / "researchers").mkdir(parents=True)
     for block in blocks(page):
         if block.mark == "slow":
             run_block(Block(block.language, block.code, ""), {}, folder)
@@ -195,7 +195,7 @@ def test_commands_in_the_text_exist_with_their_options(page: str, command: str) 
             return
         module = words[2] if (ROOT / f"{words[2].replace('.', '/')}.py").exists() else f"{words[2]}.__main__"
         known = (ROOT / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
-        known += (ROOT / "analysis" / "studies" / "command.py").read_text(encoding="utf-8")
+        known += (ROOT / "ratt_opt" / "studies" / "command.py").read_text(encoding="utf-8")
     assert [option for option in options if option not in known] == []
 
 
@@ -234,6 +234,6 @@ def test_examples_run(path: Path, folder: Path) -> None:
     from matplotlib.figure import Figure
 
     names: dict[str, object] = {"__name__": "__main__"}
-    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
+    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec", dont_inherit=True), names)
     assert any(isinstance(value, Figure) for value in names.values())
     assert not list(folder.glob("[!.]*"))  # an example leaves nothing behind

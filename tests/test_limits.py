@@ -97,6 +97,7 @@ NO_SEARCH = {
     "ratt",
     "read_mrclam",
     "realise",
+    "register_sensor",
     "reference",
     "remark1_bound",
     "replay_mrclam",
@@ -104,10 +105,12 @@ NO_SEARCH = {
     "save_scenario",
     "scenario_schema",
     "sensing_only_bound",
+    "sensor_kinds",
     "simulate_tracking",
     "survivor_bound",
     "theorem1_bound",
     "undominated",
+    "warm_up",
 }
 """Formulas, files, planners and heuristics of polynomial time, flights and fits as long as their arguments say, and
 generators that their caller may leave."""

@@ -1,4 +1,4 @@
-"""The recipes of docs/architecture.md, done: a criterion, an attacker, a guarantee and a sensor of one's own."""
+"""The recipes of docs/contributors/recipes.md, done: a criterion, attacker, guarantee and sensor of one's own."""
 
 from __future__ import annotations
 

@@ -15,6 +15,7 @@ import ratt_opt as ro
 from ratt_audit.appendix.printed import printed_lines
 from ratt_opt.report.schemas import OUTPUTS
 from tests.documents import ROOT
+from tests.report.browser import opened
 
 NEEDED = ("sphinx", "pydata_sphinx_theme", "myst_nb", "sphinx_gallery", "latex2mathml")
 
@@ -109,3 +110,37 @@ def test_formulas_are_typeset(site):
     typeset = {name: sum(t.count("<math") for path, t in texts if path.stem == name) for name in FORMULAS}
     assert typeset == FORMULAS
     assert not [path for path, text in texts if "$\\" in text]
+
+
+PHONE = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+OVERLAPS = """
+const inside = [...document.querySelectorAll('.bd-header a, .bd-header button')]
+    .map(e => e.getBoundingClientRect()).filter(r => r.width && r.height);
+const touching = inside.flatMap((a, i) => inside.slice(i + 1).filter(b =>
+    a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)
+    .filter(b => !(a.left <= b.left && a.right >= b.right) && !(b.left <= a.left && b.right >= a.right)));
+return [document.documentElement.scrollWidth, touching.length, inside.length];
+"""
+
+
+@pytest.mark.parametrize(
+    "page", ["index", "first_hour", "researchers/benchmarks", "guides/reading_a_report", "commands"]
+)
+def test_on_a_phone_nothing_overlaps_and_no_page_is_wider_than_the_screen(site, page, tmp_path) -> None:
+    (root,) = {path.parent for path in site if path.name == "genindex.html"}
+    with opened(root / f"{page}.html", tmp_path) as browser:
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", PHONE)
+        browser.refresh()
+        width, touching, inside = browser.execute_script(OVERLAPS)
+    assert width == PHONE["width"]
+    assert inside >= 3
+    assert touching == 0
+
+
+def test_the_home_has_installation_one_picture_and_one_example(site) -> None:
+    (home,) = {path for path in site if path.name == "index.html" and (path.parent / "genindex.html").exists()}
+    text = home.read_text(encoding="utf-8")
+    assert [text.count(f"<h2>{title}") for title in ("Install", "One example", "Where to go")] == [1, 1, 1]
+    assert sum("demo.png" in address for address in site[home].loaded) == 1
+    for storey in ("first_hour", "contributors/index", "researchers/index"):
+        assert f"{storey}.html" in site[home].links

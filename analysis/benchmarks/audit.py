@@ -2,7 +2,7 @@
 
 Worst-case ratios at N = 3 and 4 against one plain integer program an attack (every class row, every attack, no
 symmetry, no theorem to start from); ``--five`` and ``--six`` add N = 5 and 6, which start from the theorem, and the
-plain program at N = 5 where no links are cut; ``--ledger`` times the whole proof ledger. Processor seconds.
+plain program at N = 5 if no links are cut; ``--ledger`` times the whole proof ledger. Processor seconds.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Run as ``python -m analysis.benchmarks.budgets [attack maxmin] [--robots 10 20 30] [--objectives trace logdet maxeig]
 [--draw grid random] [--seconds S] [--processor] [--patience S] [--every K] [--seed S] [--log FILE] [--details]``.
 ``grid`` takes ``alpha_s`` from 0 to N - 2 and ``alpha_c`` from 5 % to 95 % of the links, in 8 steps each; ``random``
-draws 64 budgets. Every case is one call with a time limit, in a process of its own, which is ended where the call does
+draws 64 budgets. Every case is one call with a time limit, in a process of its own, which is ended if the call does
 not come back within ``--patience`` seconds after its limit. Uses public names only, to measure any edition with.
 """
 
@@ -34,7 +34,7 @@ STEPS = 8
 CLOSED = {"attack": 1e-6, "maxmin": 1e-4}
 """Relative width that counts as closed."""
 GAP = 5e-5
-"""That a max-min search is asked for."""
+"""Names a max-min search."""
 BUSY = 10
 """Wall seconds that a processor second may take on a busy machine before a call counts as lost."""
 SMALL = 13
@@ -72,7 +72,7 @@ def budgets(draw: str, robots: int, seed: int) -> list[tuple[int, int]]:
 
 
 def budget_grid(robots: int, steps: int) -> list[tuple[int, int]]:
-    """So many numbers of blinded robots, from none to all but two, by as many of cut links, from 5 % to 95 %."""
+    """``steps`` numbers of blinded robots, from none to all but two, by ``steps`` of cut links, from 5 to 95 %."""
     links = robots * (robots - 1) // 2
     blinded = np.round(np.linspace(0, robots - 2, steps)).astype(int).tolist()
     cut = np.round(np.linspace(0.05, 0.95, steps) * links).astype(int).tolist()
@@ -80,13 +80,13 @@ def budget_grid(robots: int, steps: int) -> list[tuple[int, int]]:
 
 
 def prepare(case: Case) -> tuple[Problem, Any]:
-    """What comes before the clock starts: the problem, and RATT's plan where that is attacked."""
+    """What comes before the clock starts: the problem, and RATT's plan if that is attacked."""
     problem = case.problem()
     return problem, ro.ratt(problem).elements if case.what == "attack" else None
 
 
 def measure(problem: Problem, plan: Any, seconds: float) -> dict[str, Any]:
-    """Bracket, wall and processor time of one call: an attack on the plan, or a max-min search where there is none."""
+    """Bracket, wall and processor time of one call: an attack on the plan, or a max-min search if there is none."""
     began, spent = time.monotonic(), time.process_time()
     if plan is not None:
         attack = ro.worst_case_attack(problem, plan, time_limit=seconds)
@@ -114,7 +114,7 @@ def work(connection: Connection, seconds: float, processor: bool) -> None:
 
 
 class Worker:
-    """A process that measures cases, replaced by a new one where a call does not come back."""
+    """A process that measures cases, replaced by a new one if a call does not come back."""
 
     def __init__(self, seconds: float, patience: float, *, processor: bool) -> None:
         self.seconds, self.processor = seconds, processor

@@ -89,7 +89,7 @@ def _run_scip(data: dict[str, Any], seconds: float) -> ConicAnswer:
 def _group_values(
     problem: Problem, objective: InformationObjective, groups: list[frozenset[int]], chosen: Any
 ) -> tuple[Any, Any]:
-    """(G,) concave expressions that are each group's value where the second, a constraint, is tight."""
+    """(G,) concave expressions that are each group's value if the second, a constraint, is tight."""
     import cvxpy as cp
 
     inside = np.array([np.isin(problem.robot, sorted(group)) for group in groups])

@@ -42,10 +42,10 @@ def earlier_bracket(
     gap: float = 0.0,
     processor: bool = False,
 ) -> dict[str, Any]:
-    """``lower``, ``upper``, ``stop`` and ``seconds`` of the edition in ``tree``; ``stop`` "none" where nothing came.
+    """``lower``, ``upper``, ``stop`` and ``seconds`` of the edition in ``tree``; ``stop`` "none" if nothing came.
 
     ``plan`` : attacked; without one the best plan is searched for
-    ``gap`` : that a search for the best plan is asked for
+    ``gap`` : present for a search for the best plan
     ``processor`` : count seconds of the processor
     """
     patience = BUSY * seconds + SPARE if processor else seconds + SPARE

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 KINDS = ["trace", "logdet", "maxeig"]
-"""Criteria that are asked for; ``--kinds`` names some of them."""
+"""Criteria that are measured; ``--kinds`` names some of them."""
 PAPER = {
     10: (15, ((3, 11), (5, 15), (6, 22))),
     20: (20, ((6, 47), (10, 63), (13, 95))),
@@ -156,7 +156,7 @@ def seconds_of(row: str) -> float:
 
 
 def seconds_in(folder: Path, row: str) -> float | None:
-    """The same in a process of the edition in ``folder``; ``None`` where it fails."""
+    """The same in a process of the edition in ``folder``; ``None`` if it fails."""
     environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     command = [sys.executable, str(Path(__file__).resolve()), "--child", row, *KINDS]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=folder)
@@ -174,7 +174,7 @@ def compared(earlier: Path, row: str, rounds: int) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Print the table; exit 1 where a row is slower."""
+    """Print the table; exit 1 if a row is slower."""
     from analysis.tables import print_table
 
     parser = argparse.ArgumentParser(description=__doc__)

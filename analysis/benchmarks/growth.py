@@ -5,7 +5,7 @@ With ``--earlier FOLDER`` RATT of the edition in FOLDER beside it, to the first 
 
 Complete graph, 12 controls, 0.3 targets a robot, a tenth of the robots blinded, a twentieth of the links cut. RATT
 (processor seconds) beside the ``O(N^2)`` evaluations of Theorem 2; then the bracket of its worst case, and of the
-optimum, after so many seconds, and the memory of the process. ``--out`` writes the growth as a figure; with
+optimum, after that many seconds, and the memory of the process. ``--out`` writes the growth as a figure; with
 ``--processor`` limits are of the processor, which other work on the machine does not stretch.
 """
 
@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING, Any
 
 import ratt_opt as ro
 from analysis.benchmarks.timing import count_processor_time
-from analysis.studies.plots import IN_TURN, new_figure
 from analysis.tables import print_table
 from ratt_opt._rounding import relative_gap
+from ratt_opt.studies.plots import IN_TURN, new_figure
 
 if TYPE_CHECKING:
     from ratt_opt import Problem
@@ -120,7 +120,7 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
 
 
 def main() -> None:
-    """Print the table; draw the figure where asked."""
+    """Print the table; draw the figure if asked."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", type=int, nargs="*", default=list(SIZES))
     parser.add_argument("--objectives", nargs="*", default=list(OBJECTIVES), choices=OBJECTIVES)

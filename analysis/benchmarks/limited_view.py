@@ -2,7 +2,7 @@
 
 Run as ``python -m analysis.benchmarks.limited_view [--rows 6,8 10,10 20,20 50,50] [--networks complete disk]
 [--objectives trace logdet] [--seeds 10] [--log FILE]``. Each row is searched to 1e-4 within the limit of its size.
-Seconds are of the processor. Where a row of 6 or 10 robots closes, its certificate is written and verified with
+Seconds are of the processor. If a row of 6 or 10 robots closes, its certificate is written and verified with
 ``--certify``. Teams are those of ``limited_view_scenario`` with a view of 57 degrees: 16 controls; on a disk network
 robots within 45 m are linked.
 """
@@ -45,7 +45,7 @@ def team(robots: int, targets: int, network: str, seed: int) -> Any:
 
 
 def measure(problem: Problem, seconds: float, *, certified: bool) -> dict[str, Any]:
-    """How much stays open, the seconds, and what RATT's plan keeps of the best one."""
+    """How much stays open, the seconds, and RATT's worst case as a share of the best one."""
     began = process_time()
     found = solve_maxmin(problem, gap=CLOSED, time_limit=seconds)
     row: dict[str, Any] = {
@@ -124,7 +124,9 @@ def main() -> None:
         print(*(f"{value:.4g}" if isinstance(value, float) else value for value in row.values()), flush=True)
         if args.log is not None:
             append_csv(args.log, row)
-    print_table("Open of the best plan's bracket, processor seconds, and what RATT's plan keeps of it", summary(rows))
+    print_table(
+        "Open of the best plan's bracket, processor seconds, and RATT's worst case as a share of it", summary(rows)
+    )
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
-"""Proofs that RATT's plan keeps what the exact attacker says, on the networks that radio teams have.
+"""Proofs of the worst case of RATT's plan that the exact attacker finds, on the networks that radio teams have.
 
 Run as ``python -m analysis.benchmarks.network_certificates [--robots 24 30] [--families disk-6 ...] [--seeds K]
-[--seconds S]``. For each team under three pairs of budgets (a fifth of the robots and 15 % of the links, a third and
-30 %, random ones): the attacker's bracket within the limit, the kind of proof found for its lower end within as much
-again, or for how much less than it one is found within as much once more, and what building and checking it takes in
-seconds of processor time.
+[--seconds S]``. For each team there are three pairs of budgets (a fifth of the robots and 15 % of the links, a third
+and 30 %, random ones). A row has the attacker's bracket within the limit and the kind of proof found for its lower end
+within as much again. If there is none, it has the largest lower value that is proved within as much once more. Then
+come the seconds of the processor for building and checking the proof.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def main() -> None:
         row = {"robots": n_robots, "family": family, "seed": seed} | measured(problem, options.seconds)
         rows.append(row)
         print(row, flush=True)
-    print_table("Proofs of what plans keep on networks", rows)
+    print_table("Proofs of worst cases on networks", rows)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The tables of ``docs/benchmarks.md`` that logs of ``analysis.benchmarks.networks`` fill.
+"""The tables of ``docs/researchers/benchmarks.md`` that logs of ``analysis.benchmarks.networks`` fill.
 
 Run as ``python -m analysis.benchmarks.network_tables LOG ... [--within 0.02]``: for each number of robots a Markdown
 table, families by seeds, three budgets each, and what is closed, what is within the target and what is not. A later row
@@ -22,7 +22,7 @@ __all__ = ["network_table", "read_rows", "summary"]
 
 Row = dict[str, str]
 DONE = {"closed", "gap"}
-"""Stops of searches that proved all that they were asked for."""
+"""Stops of searches that proved all that they should."""
 
 
 def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
@@ -36,7 +36,7 @@ def read_rows(logs: Iterable[Path]) -> dict[int, list[Row]]:
 
 
 def network_table(rows: list[Row]) -> str:
-    """Families by seeds: seconds of the processor where all was proved that was asked for, else what is left."""
+    """Families by seeds: seconds of the processor if all was proved, else what is left."""
     cells: dict[str, dict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
         cells[row["family"]][int(row["seed"])].append(_cell(row))
@@ -49,12 +49,12 @@ def network_table(rows: list[Row]) -> str:
 
 
 def summary(rows: list[Row], within: float) -> str:
-    """How many rows are closed, how many within the target; each of the others; plain annealing where it was run."""
+    """How many rows are closed, how many within the target; each of the others; plain annealing if it was run."""
     open_rows = [row for row in rows if row["stop"] not in DONE]
     over = [row for row in open_rows if float(row["gap"]) > within]
     text = f"{len(rows) - len(open_rows)} of {len(rows)} closed, {len(rows) - len(over)} within {100 * within:g} %"
     if over:
-        text += "; beyond: " + ", ".join(
+        text += "; beyond: " + "; ".join(
             f"{row['family']} ({row['alpha_s']}, {row['alpha_c']}) seed {row['seed']} {_cell(row)}" for row in over
         )
     compared = [float(row["plain_over_exact"]) for row in rows if row.get("plain_over_exact")]

@@ -34,7 +34,7 @@ TARGETS = {24: 25, 30: 25, 50: 30, 100: 100}
 SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
 """Of the robots blinded and of the links cut; ``None`` draws both up to twice a third of them."""
 GAP = 1e-6
-"""That a max-min search is asked for."""
+"""Names a max-min search."""
 WARM, WARM_LARGE = 24, 64
 """Robots of the first problems of each objective, not counted: what is compiled is loaded then. Large teams are asked
 who is inside first (``attackers/by_prices/paying_groups.py``)."""
@@ -56,7 +56,7 @@ def network_problem(family: str, robots: int, budgets: str, seed: int, objective
 
 
 def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:
-    """The exact attacker's bracket, what plain annealing finds, and the bracket of an earlier edition where asked."""
+    """The exact attacker's bracket, what plain annealing finds, and the bracket of an earlier edition if asked."""
     plan = ro.ratt(problem).elements
     began, worked = time.perf_counter(), time.process_time()
     exact = ro.worst_case_attack(problem, plan, time_limit=options.seconds)
@@ -85,7 +85,7 @@ def planned(problem: Problem, options: argparse.Namespace) -> dict[str, object]:
 def earlier_edition(
     problem: Problem, options: argparse.Namespace, plan: IntArray | None = None, gap: float = 0.0
 ) -> dict[str, object]:
-    """The bracket of an earlier edition, of an attack on the plan or of the best plan; nothing where none is named."""
+    """The bracket of an earlier edition, of an attack on the plan or of the best plan; nothing if none is named."""
     if options.earlier is None:
         return {}
     limits = {"seconds": options.seconds, "gap": gap, "processor": options.processor}
@@ -119,7 +119,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one call")
     parser.add_argument("--processor", action="store_true", help="count seconds of the processor, on a busy machine")
-    parser.add_argument("--plain-seconds", type=float, help="of plain annealing; as the attack's where absent")
+    parser.add_argument("--plain-seconds", type=float, help="of plain annealing; as the attack's if absent")
     parser.add_argument("--earlier", type=Path, help="source tree of an earlier edition that is asked the same")
     parser.add_argument("--objective", default="trace", choices=("trace", "logdet", "maxeig"))
     parser.add_argument("--log", type=Path, help="CSV file to which every row is appended as it ends")

@@ -67,7 +67,7 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
 
 
 def plain_annealing(problem: Problem, plan: IntArray, seconds: float, seed: int) -> float:
-    """Worst value that annealing from the whole team finds, cooled again and again for so many seconds."""
+    """Worst value that annealing from the whole team finds, cooled again and again for that many seconds."""
     team, links, rng = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), np.random.default_rng(seed)
     assert team is not None
     n_robots, whole, best = problem.n_robots, problem.objective(plan), np.inf

@@ -1,4 +1,4 @@
-"""Refined plans where robots must choose what to look at: how near to the best plan known, after how long.
+"""Refined plans of robots that must choose what to look at: how near to the best plan known, after how long.
 
 Run as ``python -m analysis.benchmarks.refined [--robots 6 10 20] [--networks complete disk] [--objectives trace logdet]
 [--seeds 10] [--limits 0.1 1 2] [--search 20]``. Each plan is attacked exactly afterwards; its worst case stands as a

@@ -1,7 +1,7 @@
 """Set functions: ``python -m analysis.benchmarks.setfunctions [--tables] [--brackets]`` (both by default).
 
 Tables: submodularity and total curvature of a table of 2**20 and 2**24 values, each in a process of its own whose
-peak memory is measured, against n plain NumPy passes over the same table (one difference and its smallest entry an
+peak memory is measured; against n plain NumPy passes over the same table (one difference and its smallest entry an
 element); and the table of a trace objective of 25 targets against one flat NumPy call of the same closed forms.
 
 Brackets: total curvature over feasible sets (log-det: curvature) of Section VI scenarios until

@@ -1,7 +1,7 @@
 """Is verifying as fast as in another version of the package? Both in turns on the same certificates.
 
-Run as ``python -m analysis.benchmarks.verification --against FOLDER [--robots 4 10 20 30] [--seeds K] [--repeats R]``,
-where FOLDER holds the other version's source. Certificates are made here (and must be ones that the other version
+Run as ``python -m analysis.benchmarks.verification --against FOLDER [--robots 4 10 20 30] [--seeds K] [--repeats R]``:
+FOLDER holds the other version's source. Certificates are made here (and must be ones that the other version
 reads), or are those of ``--files``. Processor time of ``ratt-opt verify`` as a whole process, and of
 ``verify_certificate`` alone, each the least of R runs taken in turns; a ratio is this version over the other one.
 """
@@ -93,7 +93,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--against", type=Path, required=True, help="folder with the other version's source")
-    parser.add_argument("--files", type=Path, nargs="+", help="certificates; made here where absent")
+    parser.add_argument("--files", type=Path, nargs="+", help="certificates; made here if absent")
     parser.add_argument("--robots", type=int, nargs="+", default=[4, 10, 20, 30])
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of each search")

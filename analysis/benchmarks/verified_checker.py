@@ -2,7 +2,7 @@
 
 Run as ``python -m analysis.benchmarks.verified_checker [--robots 10 20 30] [--objectives trace logdet maxeig]
 [--networks complete small-world] [--budgets 0] [--seeds K] [--seconds S]``. The program is found as
-``ratt-opt verify --verified`` finds it. Where the two decide differently the command ends with an error.
+``ratt-opt verify --verified`` finds it. If the two decide differently the command ends with an error.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def measure(scenario: Scenario, name: str, steps: int, gap: float) -> dict[str, 
 
 
 def leaves_that_close(problem: Problem, proof: UpperProof, level: float, gap: float) -> FloatArray:
-    """How far, relative to ``level``, each leaf of an earlier proof is from closing: at most ``gap`` where it does.
+    """How far, relative to ``level``, each leaf of an earlier proof is from closing: at most ``gap`` if it does.
 
     The cuts touch where they did, and leaves keep their weights.
     """

@@ -6,7 +6,7 @@ import sys
 
 from analysis.extended import budgets, exact_attack, graphs, guarantees, objectives, sensitivity
 from analysis.extended.claims import write_claims
-from analysis.studies.command import main
+from ratt_opt.studies.command import main
 
 if __name__ == "__main__":
     ENTRIES = [exact_attack.ENTRY, guarantees.ENTRY, objectives.ENTRY, graphs.ENTRY, budgets.ENTRY, sensitivity.ENTRY]

@@ -9,20 +9,20 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from analysis.studies.command import Entry, main
-from analysis.studies.instance import Instance
-from analysis.studies.plots import LABELS, LOOKS, bands, new_figure, save
-from analysis.studies.statistics import column, estimate, select
-from analysis.studies.study import Case, Cell, Seeds, Study
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.report.palette import look_of
 from ratt_opt.solvers.ratt import greedy, ratt
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.instance import Instance
+from ratt_opt.studies.plots import LABELS, LOOKS, bands, new_figure, save
+from ratt_opt.studies.statistics import column, estimate, select
+from ratt_opt.studies.study import Case, Cell, Seeds, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from analysis.studies.statistics import Estimate
+    from ratt_opt.studies.statistics import Estimate
 
 LEVELS = 10
 """Actual attacks blind 0, 1, ..., 9 robots and cut links in proportion to the budget planned for."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from analysis import claims
+from analysis.claims import Claim
 from analysis.extended import budgets, guarantees
 from analysis.paper.claims import CLOSE, LABELS
-from analysis.studies import claims
-from analysis.studies.claims import Claim
-from analysis.studies.statistics import Verdict, select
-from analysis.studies.store import read_table
 from ratt_opt._rounding import down
+from ratt_opt.studies.statistics import Verdict, select
+from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

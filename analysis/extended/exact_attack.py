@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from analysis.paper.large_scale import SIZES
 from analysis.paper.large_scale import STUDY as PAPER
-from analysis.studies.command import Entry, main
-from analysis.studies.plots import bars, new_figure, save
-from analysis.studies.statistics import column, estimate, select
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.plots import bars, new_figure, save
+from ratt_opt.studies.statistics import column, estimate, players, select
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -32,13 +32,14 @@ STUDY = replace(
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """Above: trace under the exact attack. Below: how far that is, at most, above the best possible, per cent."""
     figure = new_figure(11, 6.2)
+    planners = players(rows, "trace")["exact"]
     axes = figure.subplots(2, len(SIZES), sharey="row")
     for across, (n, m) in enumerate(SIZES):
         cases = [case for case in STUDY.cases if case.n_robots == n]
         kept = [select(rows, case=case.name) for case in cases]
         groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]
-        traces = {p: [column(k, f"{p}/exact/trace") for k in kept] for p in STUDY.planner_names}
-        bars(axes[0, across], groups, {p: [estimate(values) for values in traces[p]] for p in STUDY.planner_names})
+        traces = {p: [column(k, f"{p}/exact/trace") for k in kept] for p in planners}
+        bars(axes[0, across], groups, {p: [estimate(values) for values in traces[p]] for p in planners})
         bounds = [column(k, "optimum/trace_bound") for k in kept]
         excess = {
             p: [estimate(100 * (t / bound - 1)) for t, bound in zip(traces[p], bounds, strict=True)]

@@ -9,8 +9,8 @@ import sys
 from typing import TYPE_CHECKING
 
 from analysis.extended.ratio_figure import draw_ratios
-from analysis.studies.command import Entry, main
-from analysis.studies.study import Case, Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         f"$\\alpha_s$={s}, $\\alpha_c$={c}": {k.graph: k for k in STUDY.cases if (k.alpha_s, k.alpha_c) == (s, c)}
         for s, c in dict.fromkeys((case.alpha_s, case.alpha_c) for case in STUDY.cases)
     }
-    draw_ratios(rows, folder, name=STUDY.name, panels=panels, planners=STUDY.planner_names)
+    draw_ratios(rows, folder, name=STUDY.name, panels=panels)
 
 
 ENTRY = Entry(STUDY, draw)

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.command import Entry, main
-from analysis.studies.plots import LOOKS, new_figure, save
-from analysis.studies.statistics import column, select
-from analysis.studies.study import Case, Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.plots import LOOKS, new_figure, save
+from ratt_opt.studies.statistics import column, select
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,7 +46,7 @@ SHOWN = {
 
 
 def shares(rows: Sequence[Mapping[str, str]]) -> dict[str, FloatArray]:
-    """(T,) each kind of guarantee: a share of the optimum that RATT's plan keeps under any attack."""
+    """(T,) each kind of guarantee: RATT's least share of the optimum under any attack."""
     certified = column(rows, "ratt/exact/proved") / column(rows, "optimum/upper")
     return {name: certified if name == "certified" else column(rows, name) for name in SHOWN}
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from analysis.extended.ratio_figure import draw_ratios
 from analysis.paper.large_scale import budgets
-from analysis.studies.command import Entry, main
-from analysis.studies.study import Case, Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,7 +38,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         label: {f"$\\alpha_s$={c.alpha_s}\n$\\alpha_c$={c.alpha_c}": c for c in STUDY.cases if c.objective == objective}
         for objective, label in OBJECTIVES.items()
     }
-    draw_ratios(rows, folder, name=STUDY.name, panels=panels, planners=STUDY.planner_names, one_scale=False)
+    draw_ratios(rows, folder, name=STUDY.name, panels=panels, one_scale=False)
 
 
 ENTRY = Entry(STUDY, draw)

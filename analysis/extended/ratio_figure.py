@@ -1,17 +1,17 @@
-"""The share of the certified optimum that planners keep under the exact attack."""
+"""Worst cases of planners as shares of the certified optimum."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from analysis.studies.plots import new_figure, points, save
-from analysis.studies.statistics import column, estimate, select
+from ratt_opt.studies.plots import new_figure, points, save
+from ratt_opt.studies.statistics import column, estimate, players, select
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from analysis.studies.study import Case
+    from ratt_opt.studies.study import Case
 
 __all__ = ["draw_ratios"]
 
@@ -22,7 +22,6 @@ def draw_ratios(
     *,
     name: str,
     panels: Mapping[str, Mapping[str, Case]],
-    planners: Sequence[str],
     one_scale: bool = True,
 ) -> None:
     """Draw one panel per entry of ``panels`` with one group of points per case, labelled by the inner key.
@@ -31,6 +30,7 @@ def draw_ratios(
     optimum's own point is its lower bound over its upper bound: what is missing to 100 % is not decided.
     ``one_scale`` : all panels have the same vertical axis.
     """
+    planners = players(rows, "proved")["exact"]
     groups = max(map(len, panels.values()))
     figure = new_figure(1.6 + max(3.2, 0.85 * groups) * len(panels), 3.9)
     axes = figure.subplots(1, len(panels), squeeze=False, sharey=one_scale)[0]
@@ -46,6 +46,6 @@ def draw_ratios(
         panel.set_title(title)
     axes[0].set_ylabel("certified share of the optimum [%]")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(planners) + 1, frameon=False)
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 5), frameon=False)
     figure.supxlabel(f"exact attack; mean of {len(kept[0])} paired trials with 95 % interval", fontsize="small")
     save(figure, folder, name)

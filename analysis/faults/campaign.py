@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import ratt_opt as ro
-from analysis.studies.store import open_journal
-from analysis.studies.study import Case, Seeds, Study, run_trial
 from ratt_opt._files import write_json
 from ratt_opt.cli import run
+from ratt_opt.studies.store import open_journal
+from ratt_opt.studies.study import Case, Seeds, Study, run_trial
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -18,8 +18,8 @@ from analysis.faults.campaign import LONGEST, MISSION, STUDY, Campaign, command,
 from analysis.faults.damage import ODD, damaged
 from analysis.faults.results import check_results, earlier_results
 from analysis.faults.truth import truth
-from analysis.studies.store import open_journal
 from ratt_opt.cli import run
+from ratt_opt.studies.store import open_journal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from analysis.faults.campaign import LONGEST, SWEEP, Campaign, command, start_clock
 from analysis.faults.results import check_results, earlier_results
-from analysis.studies.command import Entry, main
-from analysis.studies.store import open_journal, read_table
-from analysis.studies.study import run_trial
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.store import open_journal, read_table
+from ratt_opt.studies.study import run_trial
 
 if TYPE_CHECKING:
     import numpy as np

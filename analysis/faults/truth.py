@@ -48,7 +48,7 @@ def _best(values: Iterable[arb]) -> arb:
 
 
 def _outcomes(record: Any, n_robots: int) -> Iterator[frozenset[frozenset[int]]]:
-    """The seeing robots of each group, for every attack within the budgets."""
+    """The unblinded robots of each group, for every attack within the budgets."""
     links = [tuple(link) for link in record["links"]]
     safe = [tuple(link) for link in record["protected_links"]]
     sensing = _subsets([i for i in range(n_robots) if i not in record["protected_robots"]], record["alpha_s"])

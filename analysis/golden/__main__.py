@@ -4,8 +4,8 @@ Run as ``python -m analysis.golden record|compare [--parts networks complete pla
 [--workers K] [--folder DIR]``. ``record`` measures the cases that the folder's files have not (``tests/golden`` by
 default), on all cores, row by row: run it again to go on. ``compare`` measures into its folder (``build/golden``) in
 the same way, and prints what both have: rows closed then and now, geometric means of gaps, processor seconds, proof
-sizes and verification now over then, and how many runs that are limited by nodes gave the same. It ends with 1 where
-two brackets have no value in common, and with ``--strict`` where a row was lost or a limited run differs. Seconds, and
+sizes and verification now over then, and how many runs that are limited by nodes gave the same. It ends with 1 if
+two brackets have no value in common, and with ``--strict`` if a row was lost or a limited run differs. Seconds, and
 limits, are of the processor. ``--sample S``: cases whose record took S seconds in all.
 """
 
@@ -35,7 +35,7 @@ def main() -> int:
     parser.add_argument("--sample", type=float, default=None, help="seconds that the record of the chosen cases took")
     parser.add_argument("--workers", type=int, default=None, help="processes; one for each core by default")
     parser.add_argument("--folder", type=Path, default=None, help="of the files that are written")
-    parser.add_argument("--strict", action="store_true", help="fail where a row is lost or a limited run differs")
+    parser.add_argument("--strict", action="store_true", help="fail if a row is lost or a limited run differs")
     options = parser.parse_args()
     folder = options.folder or (RECORDED if options.what == "record" else COMPARED)
     recorded = read_rows(RECORDED, PARTS)

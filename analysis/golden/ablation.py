@@ -1,11 +1,11 @@
 """What each stage and each bound of the engine is worth: a part of the corpus without one of them after the other.
 
 Run as ``python -m analysis.golden.ablation [--seconds 4] [--cases 16] [--only NAME ...] [--workers K] [--twice]
-[--folder build/ablation]``. From networks, complete graphs and best plans so many cases each are taken that took long,
-evenly over their names; each is asked with everything, and without each part, for so many seconds of the processor.
-Printed in Markdown: rows closed with everything and without, lost and gained, geometric means of gaps and seconds,
-without over with. Rows are appended as they end: run it again to go on. Compile before (any attack does it): what is
-compiled within a row's limit is missing there. ``--twice`` measures a second time.
+[--folder build/ablation]``. From networks, complete graphs and best plans that many cases each are taken that took
+long, evenly over their names; each is asked with everything, and without each part, for that many seconds of the
+processor. Printed in Markdown: rows closed with everything and without, lost and gained, geometric means of gaps and
+seconds, without over with. Rows are appended as they end: run it again to go on. Compile before (any attack does it):
+what is compiled within a row's limit is missing there. ``--twice`` measures a second time.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def measured_without(name: str, part: str, case: str, turn: int, seconds: float)
 
 
 def chosen(parts: list[str], count: int, rows: Rows) -> list[tuple[str, str]]:
-    """So many cases of each part, evenly over those that took long."""
+    """That many cases of each part, evenly over those that took long."""
     keys: list[tuple[str, str]] = []
     for part in parts:
         long = [key for key, row in rows.items() if key[0] == part and float(row["cpu_s"]) >= LONG]
@@ -58,7 +58,7 @@ def main() -> int:
     parser.add_argument("--cases", type=int, default=16, help="of each part of the corpus")
     parser.add_argument("--only", nargs="+", default=None, help="names of what is left out")
     parser.add_argument("--workers", type=int, default=None, help="processes; one for each core by default")
-    parser.add_argument("--twice", action="store_true", help="a second time, where rows differ by chance")
+    parser.add_argument("--twice", action="store_true", help="a second time, if rows differ by chance")
     parser.add_argument("--folder", type=Path, default=Path("build/ablation"))
     options = parser.parse_args()
     from analysis.golden.comparison import apart, compared, read_rows

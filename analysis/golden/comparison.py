@@ -97,7 +97,7 @@ def _number(text: str) -> float:
 
 
 def _ratio(pairs: Sequence[tuple[Row, Row]], value: Callable[[Row], float]) -> float | str:
-    """Geometric mean of now over then, of the pairs of which both are known; empty where none is."""
+    """Geometric mean of now over then, of the pairs of which both are known; empty if none is."""
     logs = np.log([value(now) / value(then) for then, now in pairs])
     known = logs[np.isfinite(logs)]
     return float(np.exp(known.mean())) if known.size else ""

@@ -1,4 +1,4 @@
-"""The cases of the corpus: what is asked of which problem, within which limits. Names never change their meaning."""
+"""The cases of the corpus: which problem, which search, which limits. Names never change their meaning."""
 
 from __future__ import annotations
 

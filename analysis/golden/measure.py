@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["GAP", "measured", "measured_by_name", "warm"]
 
 GAP = 1e-4
-"""That a search for the best plan is asked for."""
+"""Names a search for the best plan."""
 BRIEF = 2.0
 """Seconds below which a run is made again and the second counts: the first may have loaded compiled code."""
 WARM = 40
@@ -72,7 +72,7 @@ def _timed(run: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def _named(elements: IntArray) -> str:
-    """A short name of a plan: two attacks are of the same plan where it is the same."""
+    """A short name of a plan: two attacks are of the same plan if it is the same."""
     return f"{crc32(np.asarray(elements, dtype=np.int64).tobytes()):08x}"
 
 

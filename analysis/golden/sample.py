@@ -1,4 +1,4 @@
-"""A part of the corpus that takes so many seconds."""
+"""A part of the corpus that takes a given number of seconds."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEAST = 0.05
 def sample(
     names: Iterable[tuple[str, str]], recorded: Mapping[tuple[str, str], Mapping[str, str]], seconds: float
 ) -> list[tuple[str, str]]:
-    """Recorded cases that took so many seconds in all, no more than a thirtieth of them each; the same each time.
+    """Recorded cases that took that many seconds in all, no more than a thirtieth of them each; the same each time.
 
     Parts take turns, and within a part the order is that of the names' checksums.
     """

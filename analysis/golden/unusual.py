@@ -79,7 +79,7 @@ def _rank_one(rng: np.random.Generator) -> Problem:
 
 
 def _large_numbers(rng: np.random.Generator) -> Problem:
-    """Information of 1e6 beside 1e-6, and priors of which nothing is known."""
+    """Information of 1e6 beside 1e-6, and priors without knowledge."""
     data = _team(rng)
     data["information"] *= rng.choice([1e-6, 1.0, 1e3, 1e6], (len(data["owners"]), 1, 1, 1))
     data["prior"] *= 10.0 ** rng.integers(-3, 5)

@@ -21,7 +21,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 def in_workers(
     function: Callable[..., dict[str, Any]], asked: Iterable[tuple[Any, ...]], workers: int | None
 ) -> Iterator[dict[str, Any]]:
-    """Yield ``function(*arguments)`` for all ``asked`` as they end; where one is interrupted, the rest is left out.
+    """Yield ``function(*arguments)`` for all ``asked`` as they end; if one is interrupted, the rest is left out.
 
     A main module that uses this must not load the package before: its workers import it again, and limits count
     processor seconds only if they do from the start.

@@ -6,7 +6,7 @@ import sys
 
 from analysis.limited_views import flights, one_step
 from analysis.limited_views.page import write_page
-from analysis.studies.command import main
+from ratt_opt.studies.command import main
 
 if __name__ == "__main__":
     ENTRIES = [*flights.ENTRIES, one_step.ENTRY]

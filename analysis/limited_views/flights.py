@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.command import Entry
-from analysis.studies.study import Case, Study
 from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.scenario.limited_view import SENSORS, limited_view_scenario
 from ratt_opt.scenario.sensor import Sensor, measure
+from ratt_opt.studies.command import Entry
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
-    from analysis.studies.study import Cell, Seeds
     from ratt_opt._validation import BoolArray
     from ratt_opt.missions.mission import Mission
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.model import Scenario
+    from ratt_opt.studies.study import Cell, Seeds
 
 __all__ = ["ENTRIES", "MAIN", "METRICS", "PLANNERS", "STEPS", "STUDIES", "VARIED", "case_of", "scenario_of", "sighted"]
 
@@ -76,13 +76,13 @@ def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     """One mission for each planner and attacker: ``planner/attacker/metric``."""
     scenario = scenario_of(case, seeds)
     row: dict[str, Cell] = {}
-    for planner in study.planner_names:
-        for attacker in study.attacker_names:
+    for planner, chosen in study.named_planners.items():
+        for attacker, striking in study.named_attackers.items():
             mission = run_mission(
                 scenario,
                 steps=STEPS,
-                planner=SEARCHED.get(planner, planner),
-                attacker=attacker,
+                planner=SEARCHED.get(planner, chosen),
+                attacker=striking,
                 attacks=str(dict(case.options)["attacks"]),
                 seed=seeds.simulation,
             )

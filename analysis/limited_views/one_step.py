@@ -1,18 +1,18 @@
-"""Single plans under the exact worst attack, against what any plan could keep: by view and network."""
+"""Single plans under the exact worst attack, beside the best possible value: by view and network."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from analysis.limited_views.flights import PLANNERS, case_of, scenario_of
-from analysis.studies.command import Entry
-from analysis.studies.study import Study
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.missions.players.planners import elements_of, planner_called
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
+from ratt_opt.studies.command import Entry
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
-    from analysis.studies.study import Case, Cell, Seeds
+    from ratt_opt.studies.study import Case, Cell, Seeds
 
 __all__ = ["ENTRY", "STUDY", "measured"]
 
@@ -21,11 +21,11 @@ GAP, NODES = 1e-3, 3_000
 
 
 def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
-    """What each plan keeps in the first step of the mission, and the bracket of what any could keep."""
+    """The worst case of each plan in the first step of the mission, and the bracket of the best possible one."""
     problem = scenario_of(case, seeds).problem(case.objective)
     row: dict[str, Cell] = {}
-    for planner in study.planner_names:
-        plan = elements_of(planner_called(planner)(problem), problem)
+    for planner, chosen in study.named_planners.items():
+        plan = elements_of(planner_called(chosen)(problem), problem)
         row[f"{planner}/worst/value"] = worst_case_attack(problem, plan).lower
     best = solve_maxmin(problem, gap=GAP, max_nodes=NODES)
     return row | {"optimum/lower": best.lower, "optimum/upper": best.upper, "optimum/stop": best.stop.value}

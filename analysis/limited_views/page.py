@@ -15,15 +15,15 @@ import numpy as np
 from analysis.limited_views.flights import MAIN, PLANNERS, STEPS, STUDIES
 from analysis.limited_views.one_step import STUDY as ONE_STEP
 from analysis.limited_views.verdicts import Outcome, outcome, relative_change
-from analysis.studies.statistics import Estimate, column, estimate, select
-from analysis.studies.store import read_table
 from ratt_opt._files import write_atomically
 from ratt_opt.errors import InputError
+from ratt_opt.studies.statistics import Estimate, column, estimate, select
+from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from analysis.studies.study import Study
+    from ratt_opt.studies.study import Study
 
     Row = Mapping[str, str]
 
@@ -40,12 +40,12 @@ commands fly everything, 60 trials of the main cases, 20 of the varied ones, and
 ```bash
 python -m analysis.limited_views --trials 20 --only limited_views_varied --out results
 python -m analysis.limited_views --trials 60 --only limited_views_main limited_views_one_step --out results
-python -m analysis.limited_views.page results > docs/limited_views.md
+python -m analysis.limited_views.page results > docs/researchers/limited_views.md
 ```
 
 Every trial draws another team, other targets and other noise, and all planners fly it: trials share nothing, and
 differences are paired. A cell shows the change of a mean against that of the greedy planner [%] with its 95 % interval.
-It *pays* where the interval is below zero and *costs* where it is above; where neither is said, no difference is seen.
+It *pays* if the interval is below zero and *costs* if it is above; if neither is said, no difference is seen.
 One interval in twenty misses by chance. Missions have {steps} steps, and their two windows, the first and the last
 half, share no step. Max-min plans are searched for ten nodes a step and refined ones take twenty kicks, so that every
 machine flies the same missions. The
@@ -112,9 +112,9 @@ def _particular(row: Row) -> str:
 
 
 def _one_step(rows: Sequence[Row]) -> Iterator[str]:
-    """How much more of the best possible an exact plan keeps, in one step."""
+    """How much nearer to the best possible an exact plan is, in one step."""
     yield "## One step\n"
-    yield "Share of the best possible worst-case value that each plan keeps (trace, mean over the teams), and what an"
+    yield "Worst-case value of each plan as a share of the best possible (trace, mean over the teams), and what an"
     yield "exact plan adds to that of RATT. Shares are of the proved upper end, so they are at least as stated. Open:"
     yield "teams whose search ended with more than 0.1 % undecided.\n"
     planners = [planner for planner in ONE_STEP.planner_names if f"{planner}/worst/value" in rows[0]]

@@ -1,4 +1,4 @@
-"""Paired intervals as words: what pays, what costs, and where no difference is seen."""
+"""Paired intervals as words: what pays, what costs, and what makes no visible difference."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.statistics import Estimate, estimate
+from ratt_opt.studies.statistics import Estimate, estimate
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -16,7 +16,7 @@ __all__ = ["Outcome", "outcome", "relative_change"]
 
 
 class Outcome(Enum):
-    """What a 95 % interval of a change says, where less is better."""
+    """What a 95 % interval of a change says, if less is better."""
 
     PAYS = "pays"
     COSTS = "costs"

@@ -6,7 +6,7 @@ import sys
 
 from analysis.missions import consistency, exact_flights, flights
 from analysis.missions.claims import write_claims
-from analysis.studies.command import main
+from ratt_opt.studies.command import main
 
 if __name__ == "__main__":
     ENTRIES = [*flights.ENTRIES, *exact_flights.ENTRIES, consistency.ENTRY]

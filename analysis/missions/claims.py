@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from analysis import claims
+from analysis.claims import Claim
 from analysis.missions import exact_flights, flights
 from analysis.missions.consistency import LINEARISATIONS, ratios
-from analysis.studies import claims
-from analysis.studies.claims import Claim
-from analysis.studies.statistics import Verdict
-from analysis.studies.store import read_table
+from ratt_opt.studies.statistics import Verdict
+from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from analysis.studies.study import Study
+    from ratt_opt.studies.study import Study
 
 __all__ = ["CLAIMS", "write_claims"]
 

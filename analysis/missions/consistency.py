@@ -12,10 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.paper.large_scale import STUDY as PAPER
-from analysis.studies.command import Entry, main
-from analysis.studies.plots import IN_TURN, new_figure, save
-from analysis.studies.statistics import column, estimate, select
-from analysis.studies.study import Study
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
@@ -23,13 +19,17 @@ from ratt_opt.missions.world import Linearisation, MissionModel, World
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.solvers.ratt import ratt
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.plots import IN_TURN, new_figure, save
+from ratt_opt.studies.statistics import column, estimate, select
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from analysis.studies.study import Case, Cell, Seeds
     from ratt_opt._validation import FloatArray
+    from ratt_opt.studies.study import Case, Cell, Seeds
 
 LINEARISATIONS: tuple[Linearisation, ...] = ("first order", "second order", "iterated")
 DRAWS = 40

@@ -9,12 +9,12 @@ import sys
 from functools import partial
 
 from analysis.missions.flights import MODELS, SIZES, cases, draw_study, measure
-from analysis.studies.command import Entry, main
-from analysis.studies.study import Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.study import Study
 
 
 def study_of(n_robots: int, n_targets: int) -> Study:
-    """Missions of teams of one size under the worst attacks, where max-min plans are affordable."""
+    """Missions of teams of one size under the worst attacks, if max-min plans are affordable."""
     return Study(
         name=f"exact_flights_{n_robots}",
         cases=cases([(n_robots, n_targets)], (MODELS[0], MODELS[2])),

@@ -12,23 +12,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.studies.command import Entry, main
-from analysis.studies.plots import new_figure, points, save
-from analysis.studies.statistics import column, estimate, select
-from analysis.studies.study import Case, Study
 from ratt_opt.missions.players.planners import MaxMinPlanner, RandomPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.plots import new_figure, points, save
+from ratt_opt.studies.statistics import column, estimate, players, select
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from analysis.studies.study import Cell, Seeds
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
+    from ratt_opt.studies.study import Cell, Seeds
 
 STEPS = 50
 SIZES = ((5, 8), (10, 15), (20, 20))
@@ -46,7 +46,7 @@ MAXMIN = MaxMinPlanner(gap=1e-3, max_nodes=10)
 
 
 def nonrobust(problem: Problem) -> MaxMinResult:
-    """The best plan where nobody attacks, searched as :data:`MAXMIN` searches."""
+    """The best plan if nobody attacks, searched as :data:`MAXMIN` searches."""
     return MAXMIN(replace(problem, alpha_s=0, alpha_c=0))
 
 
@@ -75,15 +75,15 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     scenario = random_scenario(
         case.n_robots, case.n_targets, alpha_s=case.alpha_s, alpha_c=case.alpha_c, seed=seeds.scenario
     )
-    players: dict[str, Planner] = {"maxmin": MAXMIN, "nonrobust": nonrobust, "random": RandomPlanner(seeds.planner)}
+    searched: dict[str, Planner] = {"maxmin": MAXMIN, "nonrobust": nonrobust, "random": RandomPlanner(seeds.planner)}
     row: dict[str, Cell] = {}
-    for planner in study.planner_names:
-        for attacker in study.attacker_names:
+    for planner, chosen in study.named_planners.items():
+        for attacker, striking in study.named_attackers.items():
             mission = run_mission(
                 scenario,
                 steps=STEPS,
-                planner=players.get(planner) or planner,
-                attacker=attacker,
+                planner=searched.get(planner) or chosen,
+                attacker=striking,
                 attacks=str(options["attacks"]),
                 sharing=str(options["sharing"]),
                 seed=seeds.simulation,
@@ -119,7 +119,7 @@ MILD = Study(
     metrics=("rmse", "trace", "nees"),
     measure=measure,
 )
-"""What planning for the worst costs where nobody attacks, or somebody who does not see what hurts most."""
+"""What planning for the worst costs if nobody attacks, or somebody who does not see what hurts most."""
 NAMES = {"maxmin": "optimum", "nonrobust": "nonrobust_optimum"}
 """Planners whose look in figures goes by another name."""
 
@@ -128,15 +128,13 @@ def draw_study(study: Study, rows: Sequence[Mapping[str, str]], folder: Path) ->
     """RMSE of every planner, by attack model, under every attacker."""
     sizes = list(dict.fromkeys(case.n_robots for case in study.cases))
     figure = new_figure(11, 3.4 * len(sizes))
-    axes = figure.subplots(len(sizes), len(study.attacker_names), squeeze=False)
+    met = players(rows, "rmse")
+    axes = figure.subplots(len(sizes), len(met), squeeze=False)
     for down, n in enumerate(sizes):
         kept = [(case, select(rows, case=case.name)) for case in study.cases if case.n_robots == n]
         groups = [f"{dict(case.options)['attacks']}\n{dict(case.options)['sharing']}" for case, _ in kept]
-        for across, attacker in enumerate(study.attacker_names):
-            series = {
-                NAMES.get(p, p): [estimate(column(k, f"{p}/{attacker}/rmse")) for _, k in kept]
-                for p in study.planner_names
-            }
+        for across, (attacker, planners) in enumerate(met.items()):
+            series = {NAMES.get(p, p): [estimate(column(k, f"{p}/{attacker}/rmse")) for _, k in kept] for p in planners}
             points(axes[down, across], groups, series)
             axes[down, across].set_title(f"N={n}, attacker: {attacker}")
         axes[down, 0].set_ylabel("RMSE [m]")

@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.studies.statistics import estimate
 from ratt_opt.missions.replay.cameras import CAMERA_PLANNERS
 from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor, mrclam_residuals
 from ratt_opt.missions.replay.replay import Replay, ReplaySettings, replay_mrclam
 from ratt_opt.scenario.mrclam_reader import read_mrclam
+from ratt_opt.studies.statistics import estimate
 
 STEPS = 30
 APART = 60.0

@@ -6,7 +6,7 @@ import sys
 
 from analysis.paper import caa, large_scale, qualitative, small_scale
 from analysis.paper.claims import write_claims
-from analysis.studies.command import main
+from ratt_opt.studies.command import main
 
 if __name__ == "__main__":
     ENTRIES = [caa.ENTRY, qualitative.ENTRY, small_scale.ENTRY, large_scale.ENTRY]

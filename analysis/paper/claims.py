@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from analysis.studies import claims
-from analysis.studies.claims import Claim
-from analysis.studies.statistics import Verdict, column, select
-from analysis.studies.store import read_table
+from analysis import claims
+from analysis.claims import Claim
+from ratt_opt.studies.statistics import Verdict, column, select
+from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -9,8 +9,8 @@ import sys
 from typing import TYPE_CHECKING
 
 from analysis.paper.comparison_figure import draw_comparison
-from analysis.studies.command import Entry, main
-from analysis.studies.study import Case, Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -41,9 +41,7 @@ STUDY = Study(
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One panel per team size with its three budget pairs; trace above, mean squared error below."""
     panels = [[case for case in STUDY.cases if case.n_robots == n] for n, _ in SIZES]
-    draw_comparison(
-        rows, folder, name="large_scale", panels=panels, planners=STUDY.planner_names, attacker="bounded_rational"
-    )
+    draw_comparison(rows, folder, name="large_scale", panels=panels)
 
 
 ENTRY = Entry(STUDY, draw)

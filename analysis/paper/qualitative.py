@@ -10,19 +10,19 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from analysis.paper.qualitative_figure import common_limits, draw_scene, legend, squared_error
-from analysis.studies.command import Entry, main
-from analysis.studies.comparison import DRAWS
-from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
-from analysis.studies.plots import LABELS, new_figure, save
-from analysis.studies.statistics import select
-from analysis.studies.study import Case, Cell, Seeds, Study
-from ratt_opt.problem import Attack
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.comparison import DRAWS
+from ratt_opt.studies.instance import Instance
+from ratt_opt.studies.plots import LABELS, new_figure, save
+from ratt_opt.studies.statistics import select
+from ratt_opt.studies.study import Case, Cell, Seeds, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.problem import Attack
 
 STUDY = Study(
     name="qualitative",
@@ -43,11 +43,10 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     """Return the metrics, and everything that is drawn, as JSON in one cell per picture."""
     instance = Instance.of(case, seeds)
     row: dict[str, Cell] = {"scenario": instance.digest}
-    for planner in study.planner_names:
-        plan = PLANNERS[planner](instance)
-        for attacker in study.attacker_names:
-            result = ATTACKERS[attacker](instance, plan)
-            attack = Attack() if result is None else result.attack
+    for planner, chosen in study.named_planners.items():
+        plan = instance.plan(chosen)
+        for attacker, striking in study.named_attackers.items():
+            attack, _ = instance.strike(striking, plan)
             name = f"{planner}/{attacker}"
             row[f"{name}/value"] = instance.problem.team_value(plan, attack)
             row[f"{name}/trace"] = instance.trace(plan, attack)

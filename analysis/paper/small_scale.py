@@ -9,8 +9,8 @@ import sys
 from typing import TYPE_CHECKING
 
 from analysis.paper.comparison_figure import draw_comparison
-from analysis.studies.command import Entry, main
-from analysis.studies.study import Case, Study
+from ratt_opt.studies.command import Entry, main
+from ratt_opt.studies.study import Case, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,9 +29,7 @@ STUDY = Study(
 
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One group of bars a budget pair; trace above, mean squared error below, as in the paper."""
-    draw_comparison(
-        rows, folder, name="small_scale", panels=[STUDY.cases], planners=STUDY.planner_names, attacker="exact"
-    )
+    draw_comparison(rows, folder, name="small_scale", panels=[STUDY.cases])
 
 
 ENTRY = Entry(STUDY, draw)

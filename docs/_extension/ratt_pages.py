@@ -83,7 +83,13 @@ def _write(page: Path, text: str) -> None:
 
 
 def _entry(name: str) -> str:
-    found = getattr(ratt_opt, name)
+    found = ratt_opt
+    for part in name.split("."):
+        found = getattr(found, part)
+    if inspect.ismodule(found):
+        # Its names too; the mark is what links to the module lead to.
+        inner = "\n".join(_entry(f"{name}.{one}") for one in found.__all__)
+        return f'<span id="ratt_opt.{name}"></span>\n\n{inspect.getdoc(found)}\n\n{inner}'
     if inspect.isclass(found):
         return f"```{{eval-rst}}\n.. autoclass:: ratt_opt.{name}\n   :members:\n```\n"
     if callable(found):

@@ -2,7 +2,7 @@
 The same team on six communication graphs
 =========================================
 
-Links cost nothing to plan with and much to lose. The value that the best plan keeps under one blinded robot and two
+Links cost nothing to plan with and much to lose. The worst-case value of the best plan under one blinded robot and two
 cut links, for one scenario on six graphs.
 """
 

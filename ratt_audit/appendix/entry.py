@@ -62,8 +62,8 @@ class EntryName:
 class Entry:
     """A statement of the paper (or ours).
 
-    ``label`` : the paper's without ``eq:``; ours where it has none.
-    ``reading`` : in which sense the text is read, where it admits several.
+    ``label`` : the paper's without ``eq:``; ours if it has none.
+    ``reading`` : in which sense the text is read, if it admits several.
     ``survives_by`` : the entry that shows the conclusion without this step.
     ``serves_by`` : the entry of a weaker statement that the proof could use in its place.
     """
@@ -126,9 +126,9 @@ STEP, AS_WRITTEN, CUMULATIVE = EntryKind.STEP, EntryKind.AS_WRITTEN, EntryKind.C
 class Line:
     """One line of a chain: ``previous (relation) expression / denominator``.
 
-    ``readings`` : name -> extra premises, where the text admits several.
-    ``as_written`` : the same for a printed ``=``, where its readings differ from those of the step.
-    ``cited`` : the only premises the stated reason uses, where they are fewer than all roles. The step itself is
+    ``readings`` : name -> extra premises, if the text admits several.
+    ``as_written`` : the same for a printed ``=``, if its readings differ from those of the step.
+    ``cited`` : the only premises the stated reason uses, if they are fewer than all roles. The step itself is
     judged with all of RATT's choices, as every line is.
     """
 
@@ -143,7 +143,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One size of a chain in words: the roles, where the chain starts, its lines, and what holds beside the roles."""
+    """One size of a chain in words: the roles, its first line, its lines, and what holds beside the roles."""
 
     size: str
     team: Team
@@ -166,12 +166,12 @@ class Chain:
         return self.cases[0].lines
 
     def label(self, number: int) -> str:
-        """The paper's label of a line, counted from 0 (from the end where negative)."""
+        """The paper's label of a line, counted from 0 (from the end if negative)."""
         return self.name if len(self.lines) == 1 else f"{self.name}_{number % len(self.lines) + 1}"
 
 
 def entries_of(chain: Chain) -> Iterator[ClaimEntry]:
-    """Yield the entries of a chain, line by line: step, step as equality (where written ``=``), cumulative.
+    """Yield the entries of a chain, line by line: step, step as equality (if written ``=``), cumulative.
 
     A stated reason that uses less than RATT's choices is an entry of its own, a claim.
     """

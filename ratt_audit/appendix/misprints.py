@@ -11,7 +11,7 @@ __all__ = ["MISPRINTS", "Misprint"]
 class Misprint:
     """One place: what is printed there and what is meant.
 
-    ``label`` : the entry that decides it as printed, where that is a statement; ``repaired`` : as meant.
+    ``label`` : the entry that decides it as printed, if that is a statement; ``repaired`` : as meant.
     """
 
     where: str

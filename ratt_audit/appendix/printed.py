@@ -6,7 +6,7 @@ import json
 from functools import cache
 from importlib.resources import files
 
-__all__ = ["Formula", "printed_line", "printed_lines"]
+__all__ = ["Formula", "equation_number", "numbered", "printed_line", "printed_lines"]
 
 
 class Formula(str):
@@ -26,3 +26,23 @@ def printed_lines() -> dict[str, str]:
     """All of them, by label."""
     text = (files(__package__) / "printed.json").read_text(encoding="utf-8")
     return {str(label): str(line) for label, line in json.loads(text).items()}
+
+
+def equation_number(label: str) -> int | None:
+    """The number that the paper prints beside the equation with this label (without ``eq:``); ``None`` if it has none.
+
+    ``numbers.json`` counts the numbered lines of ratt.tex in the order of the document, as LaTeX does.
+    """
+    return _numbers().get(label)
+
+
+def numbered(label: str) -> str:
+    """A label with the number that the paper prints: "nd_p1d1v1_8 (19)"."""
+    number = equation_number(label)
+    return label if number is None else f"{label} ({number})"
+
+
+@cache
+def _numbers() -> dict[str, int]:
+    text = (files(__package__) / "numbers.json").read_text(encoding="utf-8")
+    return {str(label): int(number) for label, number in json.loads(text).items()}

@@ -1,6 +1,6 @@
 """Lines that the text admits several readings of: whose worst attack A* is, which robots a set holds, who is replaced.
 
-Here the readings differ in the statement itself; where they differ in a premise only, they stand with their line.
+Here the readings differ in the statement itself; if they differ in a premise only, they stand with their line.
 
 The dominance claim of Pattern 2 (Distributions 2 and 3, ii) says that baits of V1 beat greedy survivors of V2. With
 its stated reason only, it is one linear claim. "A* is the worst attack" adds one disjunction
@@ -83,7 +83,7 @@ _reading = partial(ClaimEntry, chain="readings", hypotheses="RATT's choices", su
 
 
 def _left() -> Iterator[SizedClaim]:
-    """The value under A* is the best group's, of which one is left here: both ways, by definition."""
+    """The value under A* is the best group's. One group is left here, so both ways agree, by definition."""
     team, under = team_of(1, 1), Linear.of("value")
     for attacked in attacks_on(team.robots, 1):
         best = team.chosen(set(team.robots) - set(attacked))

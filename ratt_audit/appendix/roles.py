@@ -33,7 +33,7 @@ __all__ = ["CUBED", "KEPT", "KEPT_OVER_ONE_PLUS_K", "ONE_PLUS_K", "SQUARED", "T2
 class SizedClaim:
     """One linear claim of an entry: a size and who is attacked in words, robots in play, the question.
 
-    ``team`` : the roles, where the elements have any.
+    ``team`` : the roles, if the elements have any.
     """
 
     size: str
@@ -225,7 +225,7 @@ KEPT_OVER_ONE_PLUS_K = Factor(T, ONE_PLUS_K)
 
 
 def every_surviving_set(*, largest: int) -> Iterator[tuple[Team, Robots]]:
-    """Every set S of surviving robots, with those that play a part in what S is worth, up to so many in all.
+    """Every set S of surviving robots, with those that play a part in what S is worth, up to that many in all.
 
     S has any baits and any of the greedy robots; greedy robots outside S were still chosen before
     some in S. Baits outside S and greedy robots chosen later play no part.

@@ -42,7 +42,7 @@ def size_theorems() -> Iterator[ClaimEntry]:
         ("survivors_sub", SUB, lambda s: Factor(ONE + constant(s - 1) * T2, constant(s)), SUB_SURVIVORS),
         ("survivors_nd", ND, lambda s: Factor(T + constant(s - 1) * T2, T + constant(s - 1)), ND_SURVIVORS),
     ):
-        text = f"RATT keeps {share} of the optimum where attacks leave groups of at most s seeing robots"
+        text = f"RATT keeps {share} of the optimum if attacks leave groups of at most s unblinded robots"
         given = "the class and RATT's choices; S with a bait or the first greedy robot, else as many baits elsewhere"
         yield _theorem(label, text, (*_with_a_best(kind, factor), *_beside_baits(kind, factor)), given)
 

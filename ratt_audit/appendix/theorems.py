@@ -161,7 +161,7 @@ def lemmas() -> Iterator[ClaimEntry]:
 
 def _about_the_class() -> Iterator[ClaimEntry]:
     parts = "f(X) + f(Y) >= {}f(X and Y) for disjoint X, Y"
-    weak = f"{parts.format('(1-c) ')}: what is left of the subadditivity used"
+    weak = f"{parts.format('(1-c) ')}: the rest of the subadditivity used"
     rows: tuple[tuple[str, FunctionClass, str, Callable[[_Values], Linear]], ...] = (
         ("tzoumas2018_lemma4", ND, "f(S) >= (1-c) sum of f(s)", lambda f: f.whole - f.alone * T),
         ("tzoumas2018_corollary1", ND, "sum of f(s) >= (1-c) f(S)", lambda f: f.alone - f.whole * T),

@@ -136,7 +136,7 @@ class Inequality:
 class Claim:
     """For every function of the class on ``ground`` that satisfies ``premises``: ``conclusion >= 0``.
 
-    ``sides`` : (left, right) where the claim is ``left >= right`` and the best factor on the right makes sense.
+    ``sides`` : (left, right) if the claim is ``left >= right`` and the best factor on the right makes sense.
     Claims are equal when they are the same question: neither reasons nor sides count.
     """
 
@@ -170,8 +170,8 @@ class Claim:
 class Elementary:
     """Name of an elementary inequality: a rule, one or two elements, and the set they are added to.
 
-    Rules: ``monotone`` f(S+x) >= f(S); ``low`` f(S+x) - f(S) >= (1-c) m(x); ``high`` f(S+x) - f(S) <= m(x), where
-    m(x) is the largest marginal of x; ``diminishing`` f(S+x) + f(S+y) >= f(S+x+y) + f(S);
+    Rules: ``monotone`` f(S+x) >= f(S); ``low`` f(S+x) - f(S) >= (1-c) m(x); ``high`` f(S+x) - f(S) <= m(x),
+    the largest marginal of x; ``diminishing`` f(S+x) + f(S+y) >= f(S+x+y) + f(S);
     ``curvature`` f(S+x) - f(S) >= (1-k) f(x).
     """
 
@@ -194,7 +194,7 @@ def largest_marginal(ground: Ground, element: int) -> str:
 
 
 def elementary(function_class: FunctionClass, ground: Ground, key: Elementary) -> Inequality:
-    """Rebuild the inequality that ``key`` names; raises ``ProofError`` where it names none of this class."""
+    """Rebuild the inequality that ``key`` names; raises ``ProofError`` if it names none of this class."""
     x = key.elements[0]
     added = sum(1 << e for e in key.elements)
     is_repeated = key.base & added or len(set(key.elements)) != len(key.elements)

@@ -1,4 +1,4 @@
-"""Decide one claim: checked proof, checked counterexample or open question; and what is left of a refuted one."""
+"""Decide one claim: checked proof, checked counterexample or open question; and the rest of a refuted one."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["CURVATURE_GRID", "BestFactor", "Decision", "Verdict", "best_factors", "decide"]
 
 CURVATURE_GRID = tuple(Fraction(i, 4) for i in (2, 1, 3))
-"""Curvatures tried for counterexamples, and for proofs where none covers all values at once."""
+"""Curvatures tried for counterexamples, and for proofs if none covers all values at once."""
 
 
 class Verdict(Enum):
@@ -61,7 +61,7 @@ class Decision:
 
 
 def curvatures_tried(claim: Claim) -> tuple[Fraction | None, ...]:
-    """The grid, or the one ``None`` where the class has no curvature."""
+    """The grid, or the one ``None`` if the class has no curvature."""
     return CURVATURE_GRID if claim.function_class.is_parametric else (None,)
 
 

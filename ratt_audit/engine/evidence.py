@@ -50,7 +50,7 @@ class Proof:
 
 
 def step_inequality(claim: Claim, step: ProofStep) -> Inequality:
-    """The inequality that a step multiplies; raises ``ProofError`` where it names none."""
+    """The inequality that a step multiplies; raises ``ProofError`` if it names none."""
     if isinstance(step.source, int):
         if not 0 <= step.source < len(claim.premises):
             raise ProofError(f"premise {step.source} does not exist")

@@ -1,4 +1,4 @@
-"""How long a question of the audit may take: the budget of the run, asked where programs are solved.
+"""How long a question of the audit may take: the budget of the run, asked if programs are solved.
 
 A context variable, as questions are answered once and remembered, whatever the time there was.
 """
@@ -33,7 +33,7 @@ def paced(budget: Budget) -> Iterator[None]:
 
 
 def program_seconds() -> float:
-    """Seconds that the next program may take; raises ``OutOfBudget`` where none are left."""
+    """Seconds that the next program may take; raises ``OutOfBudget`` if none are left."""
     budget = _CURRENT.get() or Budget()
     budget.check()
     return min(SECONDS, budget.seconds_left)

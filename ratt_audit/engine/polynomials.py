@@ -82,7 +82,7 @@ class Polynomial:
         return fraction(self._inner(rational(t)))
 
     def form(self, degree: int) -> tuple[Fraction, ...]:
-        """Coefficients of ``t^a s^(degree-a)``, a = 0..degree, where ``s = 1 - t``.
+        """Coefficients of ``t^a s^(degree-a)``, a = 0..degree, with ``s = 1 - t``.
 
         Each ``t^j`` is ``t^j (t+s)^(degree-j)``. ``degree`` is at least the polynomial's.
         """
@@ -106,7 +106,7 @@ class Polynomial:
     def form_text(self, symbol: str) -> str:
         """Like ``text``, as a form whose terms show that it is not negative on [0, 1]: ``c*(1-c) + (1-c)^2``.
 
-        Falls back on ``text`` where no form of degree at most ``LARGEST_FORM`` has non-negative coefficients.
+        Falls back on ``text`` if no form of degree at most ``LARGEST_FORM`` has non-negative coefficients.
         """
         for degree in range(self.degree, max(self.degree, LARGEST_FORM) + 1):
             form = self.form(degree)

@@ -65,7 +65,7 @@ class _Cone:
         return {self.index[k]: c(self.t) for k, c in expression.terms.items()}
 
     def minimise(self, objective: Row, unit: Row | None = None) -> FloatArray | None:
-        """Claimed minimiser within the unit box, or on ``unit = 1`` where one is given."""
+        """Claimed minimiser within the unit box, or on ``unit = 1`` if one is given."""
         cost = np.zeros(len(self.index))
         cost[list(objective)] = [float(value) for value in objective.values()]
         marginals = {largest_marginal(self.claim.ground, x) for x in range(self.claim.ground.n)}

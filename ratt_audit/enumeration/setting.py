@@ -40,7 +40,7 @@ class Setting:
 
     @property
     def n_greedy(self) -> int:
-        """Number of greedy robots; negative where there are more attacks than robots."""
+        """Number of greedy robots; negative if there are more attacks than robots."""
         return self.n_robots - self.alpha
 
     @property

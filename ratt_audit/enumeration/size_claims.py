@@ -113,7 +113,7 @@ def _blinded_balance(s: Setting) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Spread:
-    """Counts of Pattern 1, Distribution 3, where A* blinds ``part`` robots of V1, baits only of V1b2.
+    """Counts of Pattern 1, Distribution 3, if A* blinds ``part`` robots of V1, baits only of V1b2.
 
     ``safe`` : |V1b1|, the baits of V1 beyond V1b2; ``left`` : |V1b2 minus A*|; ``hit`` : blinded greedy robots.
     """
@@ -148,7 +148,7 @@ def _safe_baits_repaired(s: Setting) -> str:
 
 
 def _wrong_balance(s: Setting) -> str:
-    """The reason of nd_p1d3v1_4 as printed, with V1b1, of which none is blinded."""
+    """The reason of nd_p1d3v1_4 as printed, with V1b1 not blinded."""
     wrong = (one for one in _spreads(s) if one.safe != one.hit)
     return next(
         (f"alpha_s^1 = {one.part}: |V1b1\\A*| = {one.safe}, greedy robots blinded: {one.hit}" for one in wrong), ""

@@ -1,7 +1,7 @@
 """What the bounds are worth: Theorem 1's are attained by no instance; what the pattern-free and size bounds are.
 
 The paper leaves the tightness of ``(1-c)^3`` open. It is not tight: ``(1-c)^2`` always holds. Over all teams nothing
-larger does: ``1-k`` and ``(1-c)^2`` are infima, the first attained where ties go against RATT, both approached without.
+larger does: ``1-k`` and ``(1-c)^2`` are infima, the first attained if ties go against RATT, both approached without.
 For given budgets the survivor and group-size bounds say more.
 """
 
@@ -50,7 +50,7 @@ def tightness_entries() -> Iterator[EnumeratedEntry]:
     text = "some instance with 0 < k < 1 attains Theorem 1's bound min[(1-k)/(1+k), (1-k)/alpha_cs]"
     run = partial(_exceeded, FunctionClass.CURVATURE, KEPT, KEPT_OVER_ONE_PLUS_K)
     yield _claim(label="theorem1_sub_tight", statement=text, enumerate_cases=run, serves_by=SUB_TIGHT)
-    text = "for every k < 1 some team has worst ratio 1-k exactly where ties go against RATT (N = 3m, m >= 1/(1-k))"
+    text = "for every k < 1 some team has worst ratio 1-k exactly if ties go against RATT (N = 3m, m >= 1/(1-k))"
     yield _claim(label=SUB_TIGHT.label, statement=text, enumerate_cases=_attained_by_family)
     text = "without ties RATT's ratio comes as close to 1-k as wanted: at most 1-k + 3/2 epsilon"
     yield _claim(label=f"{SUB_TIGHT.label}_no_ties", statement=text, enumerate_cases=_attained_without_ties)
@@ -79,7 +79,7 @@ def _exceeded(function_class: FunctionClass, proved: Factor, printed: Factor) ->
     form = gap.form(gap.degree)
     exceeded = holds and min(form) >= 0 and max(form) > 0
     symbol = function_class.symbol
-    keeps = f"RATT keeps at least {proved.above.text(symbol)} of the optimum"
+    keeps = f"RATT has at least {proved.above.text(symbol)} of the optimum"
     text = f"{keeps}, more than Theorem 1 says for 0 < {symbol} < 1"
     return Counted(
         verdict=Verdict.REFUTED if exceeded else Verdict.UNDECIDED,

@@ -73,7 +73,7 @@ class RealSearch:
     """What trying the claims of one entry found.
 
     ``applied``, ``broken`` : cases of Section VI to which a claim applies, and those that break it
-    ``worst`` : the largest violation, after moves; ``None`` where no claim ever applied
+    ``worst`` : the largest violation, after moves; ``None`` if no claim ever applied
     ``violated_exactly`` : whether ``worst`` breaks its claim without rounding
     """
 
@@ -90,7 +90,7 @@ def objective_for(function_class: FunctionClass) -> str:
 
 
 def search_real_objectives(claims: Sequence[SizedClaim], *, refuted: bool) -> RealSearch | None:
-    """Try the claims of one entry; ``None`` where none can be cast in the roles of an instance.
+    """Try the claims of one entry; ``None`` if none can be cast in the roles of an instance.
 
     ``refuted`` claims are known to fail for some function: look harder for a geometry that breaks them.
     """
@@ -134,7 +134,7 @@ def _stage_vi(origin: Origin, objective: str) -> Stage:
 
 
 def _trials(sized: SizedClaim, stage: Stage, scenario: Scenario, origin: Origin) -> Iterator[Trial]:
-    """The relative violation, negative where the claim holds, for each naming of the baits that meets the premises."""
+    """The relative violation, negative if the claim holds, for each naming of the baits that meets the premises."""
     claim = sized.claim
     for cast in stage.casts(_team(sized)):
         if any(cast.evaluate(p.expression, 1.0) < -FOOTING * cast.scale(p.expression) for p in claim.premises):
@@ -185,7 +185,7 @@ def _moved(scenario: Scenario, rng: np.random.Generator, spread: float) -> Scena
 def exact_violation(trial: Trial) -> Any:
     """Replay without rounding: minus the conclusion, as a rational (trace) or a ball (log-det).
 
-    ``None`` where a premise is not met exactly.
+    ``None`` if a premise is not met exactly.
     """
     claim = trial.sized.claim
     problem = trial.scenario.problem(objective_for(claim.function_class))

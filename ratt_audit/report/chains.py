@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_audit.appendix.entry import EntryKind
-from ratt_audit.appendix.printed import printed_line
+from ratt_audit.appendix.printed import numbered, printed_line
 from ratt_audit.report.findings import Finding
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def chain_lines(document: LedgerDocument) -> tuple[Finding, ...]:
 
 def _rows(lines: dict[str, EntryRecord], written: set[str]) -> list[tuple[str, ...]]:
     return [
-        (label, printed_line(label) or "-", _states(record, equal=label in written), _read(record))
+        (numbered(label), printed_line(label) or "-", _states(record, equal=label in written), _read(record))
         for label, record in lines.items()
     ]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_audit.appendix.entry import EntryKind, EntryName
 from ratt_audit.appendix.misprints import MISPRINTS
+from ratt_audit.appendix.printed import numbered
 from ratt_audit.appendix.readings import LEFT_SIDE
 from ratt_audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEOREM1, THEOREM1_SUB
 
@@ -34,7 +35,7 @@ class Finding:
 def title(record: EntryHead) -> str:
     """Label, kind and reading of an entry."""
     reading = f" ({record['reading']})" if record["reading"] else ""
-    return f"{record['label']}, {record['kind']}{reading}"
+    return f"{numbered(record['label'])}, {record['kind']}{reading}"
 
 
 def findings(document: LedgerDocument) -> tuple[Finding, ...]:
@@ -61,14 +62,14 @@ def _theorems(records: list[EntryRecord]) -> Finding:
     if _all_proved([r for r in rows if r["label"] in (PATTERN_FREE_ND.label, PATTERN_FREE_SUB.label)]):
         sentences.append(
             "They are not the best: the pattern-free bounds 1-k and (1-c)^2 are proved as well, and are larger for "
-            "every curvature strictly between 0 and 1; the survivor bounds are at least as large; where attacks can "
-            "keep every group to one seeing robot RATT is optimal. The machine decides teams up to the size shown; "
+            "every curvature strictly between 0 and 1; the survivor bounds are at least as large; if attacks can "
+            "keep every group to one unblinded robot RATT is optimal. The machine decides teams up to the size shown; "
             "written proofs for any number of robots are in the documentation of pattern_free_bound, group_size_bound "
             "and survivor_bound. What Theorem 1 needs is RATT's choices, one robot at a time: no pattern, no "
             "distribution of attacks, no A*."
         )
     table = [("entry", "statement", "verdict", "for which sizes")]
-    table += [(r["label"], r["statement"], r["verdict"], r["sizes"]) for r in rows]
+    table += [(numbered(r["label"]), r["statement"], r["verdict"], r["sizes"]) for r in rows]
     return Finding(heading="Does the theorem survive?", sentences=tuple(sentences), table=tuple(table))
 
 
@@ -97,7 +98,9 @@ def _lines(records: list[EntryRecord]) -> Finding:
     lost = [label for label, group in cumulative.items() if all(r["verdict"] == REFUTED for r in group)]
     table = [("numbered lines whose step ...", "how many", "which")]
     for name, labels in outcome.items():
-        table.append((name, str(len(labels)), "all others" if name == HOLDS else ", ".join(labels) or "none"))
+        table.append(
+            (name, str(len(labels)), "all others" if name == HOLDS else ", ".join(map(numbered, labels)) or "none")
+        )
     some, none = _equalities(records)
     table.append(("is printed with =, which holds in some reading only", str(len(some)), ", ".join(some) or "none"))
     table.append(("is printed with =, but holds with >= only", str(len(none)), ", ".join(none) or "none"))
@@ -122,13 +125,13 @@ def _equalities(records: Sequence[EntryRecord]) -> tuple[list[str], list[str]]:
 
 
 def _misprints(records: list[EntryRecord]) -> Finding:
-    """Places that are judged as meant, and what the ledger says of both where they are statements."""
+    """Places that are judged as meant, and what the ledger says of both if they are statements."""
     verdicts = {r["label"]: r["verdict"] for r in records}
     table = [("where", "printed", "meant", "as printed", "as meant")]
     for one in MISPRINTS:
         found = (verdicts.get(one.label, "-"), verdicts.get(one.repaired, "-"))
         table.append((one.where, one.printed, one.meant, *found))
-    text = "Misprints are no failures: these places are judged by what they mean, and where that matters in both ways."
+    text = "Misprints are no failures: these places are judged by what they mean, and if that matters in both ways."
     return Finding(heading="Misprints", sentences=(text,), table=tuple(table))
 
 
@@ -139,7 +142,7 @@ def _readings(records: list[EntryRecord]) -> Finding:
     for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
         found = {who: r["verdict"] for r in group if (who := _whose(r["reading"]))}
         if len(found) > 1:
-            table.append((label, *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
+            table.append((numbered(label), *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
             for who, labels in fails.items():
                 labels.extend([label] * (found.get(who) == REFUTED))
     sentences = []
@@ -163,7 +166,9 @@ def _whose(reading: str) -> str | None:
 
 
 def _repairs(records: list[EntryRecord]) -> Finding:
-    table = [("refuted", "smallest counterexample", "what is left of it, or serves instead", "conclusion without it")]
+    table = [
+        ("refuted", "smallest counterexample", "what still holds of it, or serves instead", "conclusion without it")
+    ]
     for record in records:
         if record["verdict"] == REFUTED and record["chain"] != "tightness" and record["kind"] != EntryKind.CUMULATIVE:
             survival = record.get("conclusion_without_it")
@@ -207,7 +212,7 @@ def _own_claims(records: list[EntryRecord]) -> Finding:
     for r in records:
         if r["chain"] == "tightness":
             cases = r.get("counterexamples") or [r["detail"]]
-            table.append((r["label"], r["statement"], r["verdict"], cases[0]))
+            table.append((numbered(r["label"]), r["statement"], r["verdict"], cases[0]))
     return Finding(heading="How tight are the bounds?", sentences=(), table=tuple(table))
 
 

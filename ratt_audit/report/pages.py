@@ -182,7 +182,7 @@ def shown_claim(record: EntryRecord) -> ClaimRecord | None:
 
 
 def evidence(record: EntryRecord) -> list[str]:
-    """Counterexample or enumeration, what is left of the step, and whether the conclusion survives."""
+    """Counterexample or enumeration, the rest of the step, and whether the conclusion survives."""
     claim = shown_claim(record)
     is_refuted = claim is not None and claim["witness"] is not None
     lines = [f"{record['sizes']}: {record['detail']}"] if "detail" in record else []

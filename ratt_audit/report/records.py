@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NotRequired, TypedDict, cast
 
+from ratt_audit.appendix.printed import equation_number
 from ratt_audit.engine.evidence import step_inequality
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class WitnessRecord(TypedDict):
     """A function that breaks a claim: its values on all subsets, by bit mask over ``elements``.
 
     ``ratt_chooses_the_roles`` : whether RATT itself, run on the function with this many baits,
-    picks the elements named as its choices (``None`` where the elements have no roles).
+    picks the elements named as its choices (``None`` if the elements have no roles).
     """
 
     elements: list[str]
@@ -88,16 +89,17 @@ class RealRecord(TypedDict):
 
 
 class OtherEntry(TypedDict):
-    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` where readings differ)."""
+    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` if readings differ)."""
 
     entry: str
     verdict: str | None
 
 
 class EntryHead(TypedDict):
-    """What an entry states, and how it was decided."""
+    """What an entry states, and how it was decided. ``equation`` : its number in the paper; older files lack it."""
 
     label: str
+    equation: NotRequired[int | None]
     kind: str
     chain: str
     reading: str
@@ -111,7 +113,7 @@ class EntryRecord(EntryHead):
     """One entry with its evidence.
 
     ``detail``, ``counterexamples`` : of entries decided by enumeration; ``function_class``, ``curvature`` : of the
-    others, and, where they were looked for, ``best_factors``, ``realistic`` and ``follows_from``.
+    others, and, if they were looked for, ``best_factors``, ``realistic`` and ``follows_from``.
     """
 
     sizes: str
@@ -144,6 +146,7 @@ def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:
     """A record without its evidence, which the caller adds in the order of the file."""
     head: EntryHead = {
         "label": entry.label,
+        "equation": equation_number(entry.label),
         "kind": entry.kind.value,
         "chain": entry.chain,
         "reading": entry.reading,

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["Partition", "Starts"]
 
 MOVES, LONGER, LONGEST = 10_000, 16, 4
-"""Moves per robot of the first starts, which double after so many starts, up to so many times as many. At 24 robots a
-start of 240,000 moves takes 0.02 s and finds the best known attack in half of the starts or more, but for one case in
-ten; at 100 robots starts that are twice as long are as good after one second and better after three."""
+"""Moves per robot of the first starts; they double after each ``LONGER`` starts, up to ``LONGEST`` times as many. At 24
+robots a start of 240,000 moves takes 0.02 s and finds the best known attack in half of the starts, but one case in ten;
+at 100 robots starts that are twice as long are as good after one second and better after three."""
 
 PART = 500_000
 """Moves between two looks at the clock, times targets: some thousandths of a second."""
@@ -38,7 +38,7 @@ WARM = HOT / 5
 """First temperature where a start is a good attack."""
 
 AGAIN = 4
-"""One of so many starts is the best attack so far; the others are the team without a cut."""
+"""Every fourth start begins with the best attack so far, the others with the team without a cut."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +70,7 @@ class AnnealRecord(Structure):
 
 
 class Starts:
-    """Annealed attacks of so many moves a robot, one start after the other; deterministic for a seed.
+    """Annealed attacks, one start after the other; deterministic for a seed.
 
     ``source`` : a team, or (2**N,) the values of all sets of robots
     ``best`` : the best partition so far, ``None`` before the first
@@ -91,7 +91,7 @@ class Starts:
         self.best: Partition | None = None
 
     def next(self, budget: Budget) -> Partition | None:
-        """The outcome of one more start; ``None`` where it left no attack within the budget.
+        """The outcome of one more start; ``None`` if it left no attack within the budget.
 
         Raises
         ------
@@ -138,7 +138,7 @@ class Starts:
     def _go_on(
         self, arrays: tuple[IntArray | BoolArray, ...], part: tuple[int, int, int], hot: float, least: c_double
     ) -> None:
-        """From a first step to a last one of so many; ``arrays`` : group, the best, blind, the best."""
+        """Anneal a part of the steps (first, last, all); ``arrays`` : group, the best, blind, the best."""
         links, scale = self._links, self._scale
         team = None if not isinstance(self._source, Team) else cast(byref(self._source.record), c_void_p)
         graph = (address(one) for one in (links.start, links.robot, links.fixed, links.seeing))

@@ -44,7 +44,7 @@ class ExactCover:
         self._depth, self._nodes = c_int64(0), c_int64(0)
 
     def next(self, budget: Budget, steps: int) -> list[int] | bool | None:
-        """The groups of a cover; ``False`` where there is none, ``None`` after so many columns looked at.
+        """The groups of a cover; ``False`` if there is none, ``None`` once ``steps`` columns were looked at.
 
         Raises
         ------

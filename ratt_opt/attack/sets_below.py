@@ -33,8 +33,8 @@ class SetsBelow:
 
     ``source`` : a :class:`Team`, whose sets are worth no less than those inside them, or (2**N,) the values of all sets
     ``protected`` : robots that cannot be blinded, and so are in every set inside
-    ``groups`` : bit masks, where only sets matter that blinding at most ``n_blinded`` robots leaves of one of them
-    ``sizes`` : (2**N,) these sizes, plus one; 0 where there is no such set, or it does not matter
+    ``groups`` : bit masks; only sets matter that blinding at most ``n_blinded`` robots leaves of one of them
+    ``sizes`` : (2**N,) these sizes, plus one; 0 for none, or if it does not matter
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class SetsBelow:
         self._n_blinded = n_blinded
 
     def mark(self, threshold: float, budget: Budget) -> int | None:
-        """Set ``sizes``; the set of least value among those that are not below, ``None`` where all are.
+        """Set ``sizes``; the set of least value among those that are not below, ``None`` if all are.
 
         Raises
         ------

@@ -69,7 +69,7 @@ class Team:
 
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
-        """The plan's, or ``None`` where the loops do not have the objective."""
+        """The plan's, or ``None`` if the loops do not have the objective."""
         if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
             return None
         if objective.dimension > LARGEST_DIMENSION:

@@ -27,10 +27,10 @@ MOST_COLUMNS = 2_000_000
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Whether the threshold is reachable, ``None`` where that is left open.
+    """Whether the threshold is reachable, ``None`` if that is left open.
 
-    ``following`` : where it is not, bit mask of the set of least value that an attack can leave
-    ``groups``, ``blinded`` : where it is, bit masks of the groups, and of the blinded robots
+    ``following`` : if it is not, bit mask of the set of least value that an attack can leave
+    ``groups``, ``blinded`` : if it is, bit masks of the groups, and of the blinded robots
     """
 
     is_reachable: bool | None

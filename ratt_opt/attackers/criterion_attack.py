@@ -64,7 +64,7 @@ class CriterionAttack(TeamAttack):
         self._is_brief = is_inner and isinf(task.budget.seconds_left)
         self._groups: SeparableGroups | None = None
         self._sure = 0
-        """Seeing robots that some group is forced to keep."""
+        """Unblinded robots that every attack leaves in some group."""
         self._sizes = PossibleGroups(None, 0)
 
     # -- what the schedule asks ----------------------------------------------------------------------------------
@@ -180,7 +180,7 @@ class CriterionAttack(TeamAttack):
         self.task.offer(greedy_attack(self.task.problem, self._plan, budget=self.task.budget).attack)
 
     def list_groups(self) -> None:
-        """The groups an attack may leave, where they are few enough, and soon listed."""
+        """The groups an attack may leave, if they are few enough, and soon listed."""
         from ratt_opt.graph.separable_groups import separable_groups  # compiles
 
         self._groups = separable_groups(self._threat, MANY_GROUPS, self.task.budget.part())
@@ -212,7 +212,7 @@ class CriterionAttack(TeamAttack):
         return last_stage(self.task, CoverSearch(self.task, self._team, self._groups))
 
     def anneal_among_groups(self) -> None:
-        """Annealed attacks, few where partitions are searched."""
+        """Annealed attacks, few if partitions are searched."""
         assert self._prices is not None
         self._prices.task = self.task
         self._prices.anneal(self._starts if self._has_many_groups and not self._is_brief else INNER_STARTS)
@@ -224,7 +224,7 @@ class CriterionAttack(TeamAttack):
         self._prices.anneal(INNER_STARTS if self._is_brief else self._starts)
 
     def trees(self) -> None:
-        """Seeing robots that some group is forced to keep, by tree inequalities, and what that is worth."""
+        """Unblinded robots that every attack leaves in some group, by tree inequalities, and what that is worth."""
         if self._is_brief and self.task.budget.max_nodes is None:
             self.task.budget.max_nodes = self.task.budget.nodes + INNER_NODES
         is_about_values = not (self._is_brief or self._has_many_links)
@@ -232,12 +232,12 @@ class CriterionAttack(TeamAttack):
         self._sizes = PossibleGroups(self._team, self._sure)
 
     def possible_sizes_alone(self) -> None:
-        """Groups of possible sizes, whichever robots are in them."""
+        """Groups of possible sizes, with any robots in them."""
         self._sizes = PossibleGroups(self._team, self._sure)
         self._sizes.bound(self.task, lists_sets=False)
 
     def possible_sizes(self) -> None:
-        """Groups of possible sizes, whichever robots are in them; lists the weak sets of these, where they are few."""
+        """Groups of possible sizes, with any robots in them; lists the weak sets of these, if they are few."""
         self._sizes = PossibleGroups(self._team, self._sure)
         self._sizes.bound(self.task)
 

@@ -36,8 +36,8 @@ ATTACK_SHARE = 0.1
 class Criticality:
     """One robot or link of a plan [values in the unit of the objective].
 
-    ``loss`` : team value lost when it alone is attacked and nothing else is. ``gain_lower``, ``gain_upper`` : bracket
-    on the worst-case value gained when it alone is protected (equal up to rounding where the exact attacker closes).
+    ``loss`` : team value lost under an attack on it alone. ``gain_lower``, ``gain_upper`` : bracket on the worst-case
+    value gained by protecting it alone (equal up to rounding if the exact attacker closes).
     """
 
     target: int | Link
@@ -58,17 +58,17 @@ def criticality_ranking(
 ) -> tuple[Criticality, ...]:
     """Rank robots and links: largest certain gain from protection first, then largest loss, then robots by index.
 
-    What the attack in hand does not use is not searched for: that attack stays possible, so the gain is at most what is
-    open between it and the worst one, and 0 once it is proved worst.
+    Robots and links that the best known attack does not use need no search: that attack stays possible. So their gain
+    is at most the open part of its bracket, and 0 if it is proved worst.
 
     Parameters
     ----------
     links : links to rank; all by default
     max_nodes : for each exact attack
     time_limit : seconds for all of it; unlimited by default. The value of the team without each robot, and at each
-        bridge, is asked for whatever the limit
-    budget : an outer search's budget: its seconds and interrupts count too. Once it is spent, or the user interrupts,
-        the gains left are bounded without a search
+        bridge, is computed whatever the limit
+    budget : an outer search's budget: its seconds and interrupts count too. After it, or after an interrupt, the other
+        gains are bounded without a search
 
     Raises
     ------
@@ -123,8 +123,8 @@ def _protected(problem: Problem, target: int | Link) -> Problem:
 class BreakingBudget:
     """``attack`` blinds ``alpha_s`` robots and cuts ``alpha_c`` links at most and leaves ``value``.
 
-    ``is_proved`` says that with one link fewer (and as many robots) the value demanded cannot be reached;
-    otherwise the attacker's bracket did not decide that within its budget.
+    ``is_proved``: with one link fewer, and the same number of robots, no attack reaches the value. Otherwise the
+    attacker did not decide that within its budget.
     """
 
     alpha_s: int
@@ -160,7 +160,7 @@ def breaking_budgets(
     time_limit: float | None = None,
     budget: Budget | None = None,
 ) -> BreakingBudgets:
-    """Smallest attack budgets that push a plan strictly below ``value``: none in the list contains another.
+    """Smallest attack budgets that push a plan strictly below ``value``; none of them contains another.
 
     For each number of blinded robots, ascending, the fewest cut links are found by doubling and bisection (a
     larger budget never helps the team); the problem's own budgets are not used. Empty when even blinding all
@@ -170,8 +170,8 @@ def breaking_budgets(
     ----------
     value : [unit of the objective]
     max_nodes, time_limit, budget : as for :func:`criticality_ranking`; once time is up no further number of robots is
-        looked at. ``stop`` of the result says so, or why an attack on some number of robots was left open; a budget
-        found of which the fewest links are not proved has ``is_proved`` False
+        looked at. ``stop`` of the result says so, or why an attack on some number of robots was left open; if the
+        fewest links of a budget are not proved, its ``is_proved`` is False
 
     Raises
     ------

@@ -60,9 +60,9 @@ def worst_case_attack(
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
-    Stages run one after the other until the bracket is closed or the budget is spent. ``docs/engine.md`` lists them,
-    their conditions and shares of the budget; ``stages`` of the result says which ran. What a node is depends on the
-    stage: a threshold, a branch, a set of robots.
+    Stages run one after the other until the bracket is closed or the budget is spent. The page
+    ``docs/contributors/engine.md`` lists them, their conditions and shares of the budget; ``stages`` of the result
+    says which ran. What a node is depends on the stage: a threshold, a branch, a set of robots.
 
     - Up to 24 robots (20 for functions of your own, and where targets are not in the plane) all sets of robots are
       looked at. That closes any network within seconds. For a function of your own it relies on nothing, once all
@@ -82,7 +82,7 @@ def worst_case_attack(
     problem : N robots, E elements
     elements : (N,) element chosen for each robot
     max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
-    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
+    max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
     aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
     known : an attack to begin with; the one found is no better for the team

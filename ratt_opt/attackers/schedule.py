@@ -31,7 +31,7 @@ SIZES_SHARE, SIZES_NODES = 0.2, 3_000_000
 them: at 50 robots of a dense graph, 10 blinded and 128 links cut, 2 million nodes and six seconds."""
 
 FIRST_ASKED, ASKED_SHARE = 0.1, 0.5
-"""Of the seconds left to ask of each weak set, where they are few, whether an attack can leave it: slow and sure. The
+"""Of the seconds left to ask of each weak set, if they are few, whether an attack can leave it: slow and sure. The
 second on dense graphs after partitions, or where these are not searched. Two dense graphs, of 24 and 30 robots, were
 left open by 0.1 % where sizes and sets had a fifth together; with a half at first, a disk of mean degree 12 that
 partitions close in two seconds waited for 15."""

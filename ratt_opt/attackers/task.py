@@ -91,8 +91,8 @@ class StageRecord(Shown):
 class AttackResult(Shown):
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
-    ``attack`` leaves no more than ``upper``, and less only by what computing its value may have rounded. ``lower`` is
-    proved when ``stop`` is ``EXHAUSTED`` or ``CLOSED``, by computations whose error it makes up for; it is 0 (the value
+    ``attack`` leaves ``upper``, up to the rounding of its value. ``lower`` is
+    proved when ``stop`` is ``EXHAUSTED`` or ``CLOSED``, with a margin for rounding errors; it is 0 (the value
     of no measurement) for a heuristic. Results are equal when all their fields but ``stages`` are.
     """
 

@@ -85,7 +85,7 @@ class TeamAttack:
         return try_every_attack(self.task)
 
     def tree_for_later(self) -> Stop:
-        """Nothing now: whoever asks again, with its memory, wants to know."""
+        """Nothing in the first call; the memory goes on in the next."""
         self.task.budget.check()
         self.task.memory.search = AttackTree(self.task)
         return self.task.budget.stop() or Stop.HEURISTIC

@@ -40,7 +40,7 @@ keeps 18 is known after two seconds, 17 after one, and bounds of sizes say 97.2 
 
 
 def bound_by_trees(task: AttackTask, objective: InformationObjective, *, is_about_values: bool) -> int:
-    """Seeing robots that some group is forced to keep, by tree inequalities; the bracket knows what that is worth.
+    """Unblinded robots that every attack leaves in a group, by tree inequalities; the bracket has their value.
 
     ``is_about_values`` : also ask for trees weighted by what robots are worth
 

@@ -1,4 +1,4 @@
-"""What no plan can exceed, and what RATT's plan keeps at least, known before or without a search.
+"""Upper bounds on every plan, and guarantees for RATT's plan, known before or without a search.
 
 Open ``guarantees.py`` first: one function per theorem, with its proof. ``group_size.py`` has one from how few robots an
 attack leaves together, ``survivors.py`` one from how many, ``instance.py`` one for a single plan, and ``applicable.py``

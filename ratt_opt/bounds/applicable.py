@@ -35,7 +35,8 @@ def all_guarantees(
     ----------
     alpha_cs : sensing attacks that RATT took the link attacks to be worth
     k : curvature, for a submodular objective; c : total curvature; over feasible sets, numbers or brackets
-    budget : an outer search's budget: once it is spent, groups are cut less cleverly, which weakens what rests on them
+    budget : an outer search's budget: after it, groups are cut by simpler rules, and guarantees that rest on them are
+        weaker
     """
     missing = inapplicable_guarantees(problem, alpha_cs)
     seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
@@ -61,7 +62,7 @@ def all_guarantees(
 
 
 def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
-    """The published guarantees that say nothing about RATT's plan for one problem: name -> which hypothesis fails."""
+    """Published guarantees that do not apply to RATT's plan for one problem: name -> the hypothesis that fails."""
     alpha = problem.alpha_s + alpha_cs
     found: dict[str, str] = {}
     if problem.alpha_c > 0:

@@ -33,7 +33,7 @@ class GroupCut:
     """``phi(plan on group) <= constant + sum_{i in group} scores[e_i]`` for every plan.
 
     ``group`` : robots, ascending. ``scores`` : (E,), zero for robots outside the group.
-    ``point`` : (M, d, d) posterior information ``Lambda`` where the bound touches, from which a
+    ``point`` : (M, d, d) posterior information ``Lambda`` at which the bound touches, from which a
     checker can derive it again (``Y = Lambda^{-1}`` in its Fenchel form). ``target`` : for the max-eigenvalue
     criterion, the target whose largest eigenvalue the bound is about.
     """
@@ -48,7 +48,7 @@ class GroupCut:
 def tangent_cut(problem: Problem, group: Iterable[int], point: FloatArray, target: int | None = None) -> GroupCut:
     """Bound the value of one group by the tangent at the posterior information ``point`` (M, d, d).
 
-    ``target`` : for the max-eigenvalue criterion, the target to use; the worst one where ``None``.
+    ``target`` : for the max-eigenvalue criterion, the target to use; the worst one if ``None``.
 
     The criterion's own tangent: a Fenchel form that holds for any ``Y`` (``setfunctions/criteria``), so that an
     inexact point costs strength, never validity; for a criterion without one, value and supergradient there.

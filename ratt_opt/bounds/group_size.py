@@ -1,4 +1,4 @@
-"""The guarantee from how few seeing robots an attack can leave in every group."""
+"""The guarantee from how few unblinded robots an attack can leave in every group."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MOST_ANNEALED = 4_000
 """Links up to which annealing takes two or three seconds. Measured on disks of mean degree 6: at 30 robots 5 to 9
 together instead of 15 to 21 in 0.05 s, at 100 robots 9 to 12 instead of 9 to 28 in 0.3 s."""
 ANNEALING_SHARE = 0.1
-"""Of what is left of the budget."""
+"""Share of the remaining budget."""
 LARGEST_EXACT = 12
 """Most robots for which all sets are tabulated on graphs that are not complete: 0.4 s, and four times that for 14."""
 
@@ -36,24 +36,24 @@ LARGEST_EXACT = 12
 def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, baits_survive: bool = True) -> Guarantee:
     """``1/g`` for every submodular function, ``t / (g - 1 + t)`` with ``t = 1 - c`` for every non-decreasing one.
 
-    ``g`` is a number of seeing robots that an attack can keep every group down to while it blinds ``T``, the
+    ``g`` is a number of unblinded robots that an attack can keep every group down to while it blinds ``T``, the
     unprotected robots of the ``alpha_s`` largest individual values (:func:`achievable_group_size`). On complete graphs
-    without protected parts it is the smallest largest group of seeing robots. With ``g <= 1`` RATT is optimal.
+    without protected parts it is the smallest largest group of unblinded robots. With ``g <= 1`` RATT is optimal.
 
     Proof. Let ``v`` be the largest individual value of a robot outside ``T`` and ``r`` the first such robot in RATT's
     order; all before it are in ``T``. RATT takes the ``alpha_s + alpha_cs`` robots of the largest individual values
-    as bait, with their best elements; where ``alpha_cs >= 1`` that includes ``r``. A protected ``r`` always sees.
+    as bait, with their best elements; if ``alpha_cs >= 1`` that includes ``r``. A protected ``r`` always sees.
     Otherwise the bait includes ``T`` and ``r``, one more than can be blinded, all of value at least ``v``. So some
     bait worth ``v`` sees after every attack, and by monotonicity RATT keeps ``v``. The attack above leaves any plan
     ``o`` only groups ``S`` of at most ``g`` robots outside ``T``. Submodular: ``phi(o_S) <= sum_S phi(o_i) <= g v``.
     Non-decreasing with total curvature ``c``: a marginal of ``x`` is at most ``phi(x) / t``, so ``phi(o_S) <= v + (g
     - 1) v / t``.
 
-    Where ``alpha_cs = 0`` (``baits_survive=False``) an attack may blind exactly the bait. No cut then splits the team,
+    If ``alpha_cs = 0`` (``baits_survive=False``) an attack may blind exactly the bait. No cut then splits the team,
     so that leaves all greedy robots in one group, which keeps ``1 / (1 + k)`` of the optimum (submodular; Fisher,
     Nemhauser, Wolsey 1978; Conforti and Cornuejols 1984), respectively ``1 - c`` (their marginals, chosen greedily,
     are at least ``(1 - c)`` times those of any other choice). Any other attack leaves a bait, as before. The bound is
-    then the minimum of both, and 1 where ``g <= 1``: at most one robot is then greedy, and takes its best element.
+    then the minimum of both, and 1 if ``g <= 1``: at most one robot is then greedy, and takes its best element.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     uses_curvature = g > 1 and (kind == "c" or not baits_survive)
     needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
     needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
-    needs += [f"groups of at most {g} seeing robots", "RATT's plan"]
+    needs += [f"groups of at most {g} unblinded robots", "RATT's plan"]
     theorem = IN_COQ[kind] if g > 1 else "paper_optimal" if baits_survive else None
     proof = f"group_size_bound; in Coq {theorem}" if theorem else "group_size_bound"
     return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
@@ -87,11 +87,11 @@ def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:
 
 
 def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int:
-    """Seeing robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
+    """Unblinded robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
     The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
-    on any graph, where it depends on which robots are the strongest. Elsewhere two cuts are tried, one that makes the
-    largest group small and one that makes the most seeing robots few, and the better one is annealed, up to
+    on any graph; it depends on which robots are the strongest. Otherwise two cuts are tried, one that makes the
+    largest group small and one that makes the most unblinded robots few, and the better one is annealed, up to
     ``MOST_ANNEALED`` links: the number returned is achievable, and a larger one only weakens the guarantee, as a spent
     ``budget`` does.
     """

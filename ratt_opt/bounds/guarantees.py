@@ -38,10 +38,10 @@ class HasUpper(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Guarantee(float):
-    """A share of the optimum that is guaranteed, with what it needs, where it comes from and where it is proved.
+    """A share of the optimum that is guaranteed, with its hypotheses, its source and its proof.
 
-    ``proof`` : the function of this library whose documentation has the proof, and the theorem in ``formal/`` where
-    there is one; empty where the source has to be believed. A number wherever one is wanted: equal, as numbers are, to
+    ``proof`` : the function of this library whose documentation has the proof, and the theorem in ``formal/`` if
+    there is one; empty if only the source has the proof. It is a number: equal, as numbers are, to
     what has its ``value``.
     """
 
@@ -80,7 +80,7 @@ IN_COQ = {"k": "ratt_submodular", "c": "ratt_non_decreasing"}
 
 
 def _by_pattern_free(kind: str) -> str:
-    """Where bounds are proved that are no larger than the pattern-free ones."""
+    """If bounds are proved that are no larger than the pattern-free ones."""
     return f"pattern_free_bound; in Coq {IN_COQ[kind]}"
 
 
@@ -101,8 +101,8 @@ def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None,
     ------
     InputError : neither or both curvatures, one outside [0, 1], or a negative ``alpha_cs``.
 
-    Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof there has gaps (``docs/audit.md``);
-    :func:`pattern_free_bound` is at least as large, and proved.
+    Source: ratt.tex, Theorem 1; eq:nd2 and eq:sub2 for all bait. Its proof there has gaps: see
+    ``docs/researchers/audit.md``. :func:`pattern_free_bound` is at least as large, and proved.
     """
     alpha_cs = check_integer("alpha_cs", alpha_cs, low=0)
     kind, value = one_curvature(k, c)

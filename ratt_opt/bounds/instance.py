@@ -39,7 +39,7 @@ def instance_bound(
     time_limit: float | None = SECONDS,
     budget: Budget | None = None,
 ) -> Guarantee:
-    """Share of the optimum that a plan keeps under the worst attack, from this plan's and the instance's own numbers.
+    """Share of the optimum that a plan is worth under the worst attack, from this plan's and this instance's numbers.
 
     Proof, of the larger of two. *By marginals.* Let ``u`` be the plan, ``o`` any plan, and put the robots in any
     order. For every set ``S`` of robots, ``u_S`` is built robot by robot in that order, each adding at least ``l_i``,
@@ -51,9 +51,9 @@ def instance_bound(
     leaving robots out can only raise the others' ``l``.
 
     *By group size* (:func:`group_size_bound` with the numbers themselves). Some robot of the ``alpha_s + 1`` largest
-    ``phi(u_i)`` sees after every attack, so the plan keeps the smallest of these. And the attack that blinds the
-    strongest robots and leaves at most ``g`` of the others in a group leaves any plan at most ``sum_S m_i`` of such a
-    group ``S``, less the largest ``m_i`` minus value of ``S``, as one of its elements can come first.
+    ``phi(u_i)`` sees after every attack, so the plan is worth at least the smallest of these. Take the attack that
+    blinds the strongest robots and leaves at most ``g`` of the others in a group ``S``. It leaves any plan at most
+    ``sum_S m_i``, less the largest ``m_i`` minus value of ``S``, as one of its elements can come first.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def instance_bound(
     InputError : neither or both curvatures, one over another domain, or ``elements`` is no plan.
 
     Source: this library. For RATT's plan never below the pattern-free bound: a greedy element's ``l`` in RATT's own
-    order is its greedy marginal, at least ``(1-k) m_i``, respectively ``(1-c)^2 m_i``; a bait's likewise. Where
+    order is its greedy marginal, at least ``(1-k) m_i``, respectively ``(1-c)^2 m_i``; a bait's likewise. If
     ``alpha_cs >= 1`` nor below the group-size bound.
     """
     if (k is None) == (c is None):
@@ -95,7 +95,7 @@ def instance_bound(
 
 
 def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget: Budget) -> float:
-    """What some robot of the plan keeps for sure, over what no plan exceeds; ``largest`` (N,) marginals."""
+    """Proved value of some robot after any attack over a bound on every plan; ``largest`` (N,) marginals."""
     single = problem.objective.singletons()
     kept = -np.sort(-np.append(single[plan[_free_robots(problem)]], 0.0))[problem.threat.n_blinded]
     safe = max([kept, *(single[plan[i]] for i in problem.protected_robots)])

@@ -51,10 +51,10 @@ def relaxation_bound(
 ) -> RelaxationBound:
     """Bound the optimum by letting every robot mix its elements against the given attacks.
 
-    Of an attack's groups the largest enters the program; the value of the others is bounded by itself, and
-    the result is the larger of the two (the team value is the best group's). Modelled in
-    cvxpy and solved by Clarabel; the bound is *not* the solver's objective but the best convex combination of
-    tangent cuts at the point it returns, so a wrong answer gives a weak bound, never a false one.
+    The largest group of each attack enters the program. The other groups have a bound of their own. The result is the
+    larger of the two, as the team value is the best group's. Modelled in cvxpy and solved by Clarabel; the bound is
+    *not* the solver's objective but the best convex combination of tangent cuts at the point it returns, so a wrong
+    answer gives a weak bound, never a false one.
 
     Parameters
     ----------
@@ -185,9 +185,9 @@ def relaxation_bounds(
 ) -> Iterator[RelaxationBound]:
     """Yield bounds on the optimum as the attack that hurts the relaxed plan most enters, round by round.
 
-    Ends once no attack leaves the relaxed plan less than the program claims, up to ``tolerance`` relative to
-    the claim: the last item then is the bound of the relaxation over all attacks. Every item is a valid bound.
-    A spent ``time_limit``, or ``budget`` (an outer search's), ends them early.
+    It ends if no attack leaves the relaxed plan less than the program claims, up to ``tolerance`` relative to the
+    claim. Then the last item is the bound of the relaxation over all attacks. Every item is a valid bound. A spent
+    ``time_limit``, or ``budget`` (an outer search's), ends them early.
 
     Raises
     ------

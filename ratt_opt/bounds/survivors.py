@@ -1,4 +1,4 @@
-"""The guarantee from how many seeing robots an attack worth making can leave in one group."""
+"""The guarantee from how many unblinded robots an attack worth making can leave in one group."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
     phi(o_i)`` for all ``i`` in ``S``: bait has the largest values of all, and ``g_1`` of those of greedy robots.
     Total curvature: ``m_(u_i) >= t m_(o_i)``, as ``m_(u_i) >= phi(u_i) >= phi(o_i)`` for bait and ``m_(u_i)`` is at
     least ``u_i``'s marginal given ``G_i``, so at least ``o_i``'s, for the others. With ``M`` the sum of ``m_(o_i)``
-    over ``S - r``, ``phi(u_S) >= x + t sum m_(u_i) >= x + t^2 M`` and ``phi(o_S) <= x + M``, where ``M <= (s-1) x/t``.
+    over ``S - r``, ``phi(u_S) >= x + t sum m_(u_i) >= x + t^2 M`` and ``phi(o_S) <= x + M`` with ``M <= (s-1) x/t``.
     The ratio falls with ``M``. Submodular: ``phi(u_i) >= t phi(o_i)`` in the same way, so with ``Y <= (s-1) x`` the sum
     of ``phi(o_i)`` over ``S - r``, ``phi(u_S) >= x + t sum phi(u_i) >= x + t^2 Y`` and ``phi(o_S) <= x + Y``; the
     ratio falls with ``Y``. It is at least ``t`` by the pattern-free bound.
 
-    *S has neither.* RATT counts ``alpha_s + N - n`` bait robots, where every cut leaves a group ``C`` of at least
+    *S has neither.* RATT counts ``alpha_s + N - n`` bait robots, if every cut leaves a group ``C`` of at least
     ``n`` robots, so at most ``n - alpha_s`` are greedy. If ``S`` were what sees in ``C``, at least ``n - alpha_s``
     robots, it would hold all greedy robots, ``g_1`` too. So ``S`` is elsewhere, and of ``C``'s robots at most
     ``n - alpha_s - s`` are greedy and at most ``alpha_s`` blinded: at least ``s`` bait robots see in ``C``. With
@@ -55,8 +55,8 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
     ------
     InputError : neither or both curvatures, one outside [0, 1], or ``size < 0``.
 
-    Source: this library. With ``alpha_c = 0 < alpha_s`` the second is RATT's exact worst ratio where
-    ``s - 1 <= min(alpha_s, s) (1 + 1/t)`` and no other (``docs/ratios.md``); the first is for ``s = 2``.
+    Source: this library. With ``alpha_c = 0 < alpha_s`` the second is RATT's exact worst ratio if
+    ``s - 1 <= min(alpha_s, s) (1 + 1/t)`` and no other (``docs/researchers/ratios.md``); the first is for ``s = 2``.
     """
     size = check_integer("size", size, low=0)
     kind, value = one_curvature(k, c)
@@ -64,7 +64,7 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
     needs = (
         SUBMODULAR if kind == "k" else NON_DECREASING,
         f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
-        f"no group of more than {size} seeing robots",
+        f"no group of more than {size} unblinded robots",
         "RATT's plan",
     )
     by_size = kind == "c" or bound > 1 - value
@@ -81,7 +81,7 @@ def survivor_share(size: int, kept: Share, *, submodular: bool) -> Share:
 
 
 def largest_survivor_group(problem: Problem) -> int:
-    """A number of seeing robots that no group exceeds, whatever attack that no other refines.
+    """A number of unblinded robots that no group exceeds, whatever attack that no other refines.
 
     The smallest such number on complete graphs without protected links; elsewhere the larger groups that an attack
     could still split count too, which only weakens the guarantee.

@@ -21,9 +21,9 @@ CERTIFICATE = "certificate.json"
 class Certificate:
     """A certificate as written and verified.
 
-    ``lower_shaved`` and ``upper_raised`` : how far the claim's ends lie outside the given bracket, because
-    exact arithmetic proves a little less than floating point suggests, or (the lower end) because no cover of all
-    attacks was found but for a lower value [unit of the objective].
+    ``lower_shaved`` and ``upper_raised`` : how far the claim's ends lie outside the given bracket [unit of the
+    objective]. Exact arithmetic proves a little less than floating point suggests; and the lower end is lower if a
+    cover of all attacks was found for a lower value only.
     """
 
     path: Path

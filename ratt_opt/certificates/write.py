@@ -123,9 +123,9 @@ def certify(
     The file is verified under a temporary name first; only then is it renamed to ``path``.
 
     The bracket in the file is the result's, moved outwards by what exact arithmetic cannot prove
-    (``lower_shaved``, ``upper_raised``). Where no cover of all attacks is found within the limits of ``lower.py`` and
+    (``lower_shaved``, ``upper_raised``). If no cover of all attacks is found within the limits of ``lower.py`` and
     two fifths of the time, a value some hundredths lower is tried in two fifths of the rest (``lower_shaved`` says
-    by how much). Where that is not proved either, or not verified in time, the lower end is stated as enumerated in
+    by how much). If that is not proved either, or not verified in time, the lower end is stated as enumerated in
     floating point and ``verified.lower_proved`` is False. An interrupt propagates; no file is left.
 
     Parameters

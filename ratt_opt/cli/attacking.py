@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, ObjectiveOption
+from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, LatexFlag, ObjectiveOption, check_output
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_tables
 from ratt_opt.errors import InputError
 
@@ -45,6 +45,7 @@ def attack(
         bool, typer.Option("--explain", help="Also say which stages of the exact attack ran, and what each proved.")
     ] = False,
     as_json: JsonFlag = False,
+    as_latex: LatexFlag = False,
 ) -> None:
     """Find the exact worst case, and the heuristics' attacks, against your own plan, and what to protect.
 
@@ -54,11 +55,13 @@ def attack(
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
     from ratt_opt.attackers.survey import attack_survey
     from ratt_opt.budget import Budget
+    from ratt_opt.report.description import describe
     from ratt_opt.report.document import attack_document
     from ratt_opt.report.tables import attack_tables
     from ratt_opt.scenario.files import load_input
     from ratt_opt.scenario.plan_file import load_plan
 
+    check_output(as_json=as_json, as_latex=as_latex)
     if below is not None and not math.isfinite(below):
         raise InputError("--below", "must be a finite number", below)
     source = load_input(file)
@@ -79,13 +82,16 @@ def attack(
     if as_json:
         print_json(attack_document(objective, elements, results, critical, budgets, best_links=found, explains=explain))
     else:
-        print_tables(attack_tables(results, critical, budgets, below, best_links=found, explains=explain))
+        known = describe(problem, source)
+        names = [known.robot(i) for i in range(problem.n_robots)]
+        tables = attack_tables(results, critical, budgets, below, best_links=found, explains=explain, names=names)
+        print_tables(tables, latex=as_latex)
     if budget.is_over:
         raise WorkInterrupted("interrupted; printed is what was found until then")
 
 
 def _found(budget: "Budget", search: "Callable[[], T]") -> T | None:
-    """What a search finds, up to an interrupt; ``None`` where the user interrupted before."""
+    """What a search finds, up to an interrupt; ``None`` if the user interrupted before."""
     if budget.is_over:
         return None
     try:

@@ -5,9 +5,21 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criteria.names import CLASSES
 
-__all__ = ["GAP", "TIME_LIMIT", "CertificateFlag", "InputFile", "JsonFlag", "Objective", "ObjectiveOption", "OutFolder"]
+__all__ = [
+    "GAP",
+    "TIME_LIMIT",
+    "CertificateFlag",
+    "InputFile",
+    "JsonFlag",
+    "LatexFlag",
+    "Objective",
+    "ObjectiveOption",
+    "OutFolder",
+    "check_output",
+]
 
 if TYPE_CHECKING:
     Objective = str
@@ -22,7 +34,14 @@ GAP = 1e-9
 InputFile = Annotated[Path, typer.Argument(help="Scenario or information file.", show_default=False)]
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; created if absent.")]
 JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+LatexFlag = Annotated[bool, typer.Option("--latex", help="Print LaTeX tables (package booktabs) instead.")]
 CertificateFlag = Annotated[
     bool, typer.Option(help="Write certificate.json, and verify it before anything is printed.")
 ]
 ObjectiveOption = Annotated[Objective, typer.Option("--objective", help="Criterion of the tracking quality.")]
+
+
+def check_output(*, as_json: bool, as_latex: bool) -> None:
+    """InputError : more than one kind of output is wanted."""
+    if as_json and as_latex:
+        raise InputError("--latex", "must come without --json", "both")

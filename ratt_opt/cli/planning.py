@@ -8,9 +8,19 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ratt_opt.certificates.certification import CERTIFICATE, INTERRUPTED, PENDING, Certification
-from ratt_opt.cli.options import GAP, TIME_LIMIT, CertificateFlag, InputFile, JsonFlag, ObjectiveOption, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
-from ratt_opt.errors import ProofError, printable
+from ratt_opt.cli.options import (
+    GAP,
+    TIME_LIMIT,
+    CertificateFlag,
+    InputFile,
+    JsonFlag,
+    LatexFlag,
+    ObjectiveOption,
+    OutFolder,
+    check_output,
+)
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_tables, written
+from ratt_opt.errors import ProofError
 from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
@@ -35,6 +45,7 @@ def demo(
     ] = False,
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
+    as_latex: LatexFlag = False,
 ) -> None:
     """Plan, attack and bound a team of six turning cameras and six targets, end to end.
 
@@ -48,7 +59,7 @@ def demo(
 
     scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=PAPER_SEED) if paper else demo_scenario()
     save_scenario(scenario, output_directory(out, CERTIFICATE, EARLIER, *FILES) / "scenario.json")
-    _bound(scenario, out, certificate=certificate, as_json=as_json)
+    _bound(scenario, out, certificate=certificate, as_json=as_json, as_latex=as_latex)
 
 
 def bound(
@@ -67,6 +78,7 @@ def bound(
     ] = "quick",
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
+    as_latex: LatexFlag = False,
 ) -> None:
     """Plan, find the worst attack, bracket the best plan; write the report, plan and certificate.
 
@@ -75,7 +87,8 @@ def bound(
     from ratt_opt.scenario.files import load_input
 
     source = load_input(file)
-    _bound(source, out, objective, time_limit, gap, workers, guarantees, certificate=certificate, as_json=as_json)
+    shown = {"as_json": as_json, "as_latex": as_latex}
+    _bound(source, out, objective, time_limit, gap, workers, guarantees, certificate=certificate, **shown)
 
 
 def _bound(
@@ -89,6 +102,7 @@ def _bound(
     *,
     certificate: bool,
     as_json: bool,
+    as_latex: bool,
 ) -> None:
     from ratt_opt._files import output_directory
     from ratt_opt.main_job.bound import CERTIFICATE_SHARE
@@ -97,6 +111,7 @@ def _bound(
     from ratt_opt.report.write import FILES, write_numbers
     from ratt_opt.solvers.maxmin.solve import check_limits
 
+    check_output(as_json=as_json, as_latex=as_latex)
     folder = output_directory(out, CERTIFICATE, EARLIER, *FILES)
     check_limits(gap, time_limit)
     began = monotonic()
@@ -119,8 +134,7 @@ def _bound(
     if as_json:
         print_json(report.to_dict())
     else:
-        print_tables(report_tables(report))
-        print_lines(["written: " + ", ".join(printable(str(file)) for file in files)])
+        print_tables(report_tables(report), [written(files)], latex=as_latex)
     if report.interrupted:
         raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then, {NOT_DRAWN}")
 

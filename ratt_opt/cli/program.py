@@ -45,7 +45,7 @@ class _Group(TyperGroup):
 
 
 def _delivered(option: Any) -> Any:
-    """The option ``--help``, which prints like a command prints its results: where it cannot arrive, that is said."""
+    """The option ``--help``, which prints like a command prints its results: if it cannot arrive, that is said."""
 
     def show_help(ctx: typer.Context, _: object, wanted: bool) -> None:
         if wanted and not ctx.resilient_parsing:
@@ -107,7 +107,7 @@ def run_program(arguments: list[str]) -> int:
 
 
 def _usage_text(error: Any, arguments: list[str]) -> str:
-    """Typer's message, with the value it refused where it does not show it."""
+    """Typer's message, with the value it refused if it does not show it."""
     text = str(error.format_message()).rstrip(".")
     option = re.search(r"Invalid value for '(--[\w-]+)'", text)
     if option and option[1] in arguments[:-1]:

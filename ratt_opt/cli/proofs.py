@@ -8,9 +8,8 @@ import typer
 
 from ratt_opt.certificates.verifier.work import SECONDS
 from ratt_opt.cli.exit_codes import UPPER_ONLY
-from ratt_opt.cli.options import JsonFlag, Objective, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables
-from ratt_opt.errors import printable
+from ratt_opt.cli.options import JsonFlag, LatexFlag, Objective, OutFolder, check_output
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, written
 from ratt_opt.running.progress import Step
 
 __all__ = ["audit", "verify"]
@@ -33,11 +32,11 @@ def verify(
 ) -> int:
     """Check a certificate without trusting what wrote it, and say what it proves.
 
-    With --verified an end counts as proved where ratt-check says so too; that program is looked for on the search path,
+    With --verified an end counts as proved if ratt-check says so too; that program is looked for on the search path,
     or where RATT_CHECK says.
 
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
-    proved; 4: neither proved nor refuted within the limits. None of these where the output cannot be written (74).
+    proved; 4: neither proved nor refuted within the limits. None of these if the output cannot be written (74).
     """
     from ratt_opt.certificates.verifier.verify import verify_certificate
     from ratt_opt.certificates.verifier.work import watched
@@ -79,6 +78,7 @@ def audit(
     out: OutFolder,
     quick: Annotated[bool, typer.Option("--quick", help="Only the sizes that take seconds.")] = False,
     as_json: JsonFlag = False,
+    as_latex: LatexFlag = False,
 ) -> None:
     """Decide the paper's proof line by line; write audit.json, audit.html and audit.md.
 
@@ -87,6 +87,7 @@ def audit(
     from ratt_audit.ledger import FILES, run_audit
     from ratt_opt.report.tables import audit_table
 
+    check_output(as_json=as_json, as_latex=as_latex)
     ledger = run_audit(out, quick=quick)
     files = [str(out / name) for name in FILES]
     if as_json:
@@ -94,8 +95,7 @@ def audit(
         head = {"format": "ratt-opt audit summary", "version": 1}
         print_json({**head, **kept, "entries": len(ledger.records), "files": files})
     else:
-        print_tables([audit_table(ledger.per_chain())])
         found = (f"{part.heading} {' '.join(part.sentences)}" for part in ledger.findings() if part.sentences)
-        print_lines([*found, "written: " + ", ".join(map(printable, files))])
+        print_tables([audit_table(ledger.per_chain())], [*found, written(files)], latex=as_latex)
     if not ledger.complete:
         raise WorkInterrupted(f"interrupted after {len(ledger.records)} entries, which were written")

@@ -36,16 +36,16 @@ def new(
         typer.Option("--view", help="Cameras that turn, with this field of view [degrees]; else all see everything."),
     ] = None,
     reach: Annotated[
-        float | None, typer.Option("--range", help="With --view: how far a camera sees [m]; no limit where absent.")
+        float | None, typer.Option("--range", help="With --view: how far a camera sees [m]; no limit if absent.")
     ] = None,
     headings: Annotated[
         int | None,
-        typer.Option("--headings", help="With --view: directions that a camera can turn to; 8 where absent."),
+        typer.Option("--headings", help="With --view: directions that a camera can turn to; 8 if absent."),
     ] = None,
     sensor: Annotated[str | None, typer.Option("--sensor", help="With --view: camera (the default) or radar.")] = None,
     communication_range: Annotated[
         float | None,
-        typer.Option("--communication-range", help="Link robots within this distance [m]; all where absent."),
+        typer.Option("--communication-range", help="Link robots within this distance [m]; all if absent."),
     ] = None,
     graph: Annotated[
         str | None,
@@ -60,7 +60,7 @@ def new(
         float | None, typer.Option("--time", help="Instant of the dataset: seconds since its start, or Unix time.")
     ] = None,
     label_correction: Annotated[
-        bool, typer.Option(help="Exchange labels where the dataset's sightings say so, or keep all.")
+        bool, typer.Option(help="Exchange labels if the dataset's sightings say so, or keep all.")
     ] = True,
     corrections: Annotated[
         str | None,

@@ -12,7 +12,7 @@ from ratt_opt.errors import printable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rich.console import RenderableType
+    from rich.table import Table
 
 __all__ = [
     "OutputError",
@@ -24,6 +24,7 @@ __all__ = [
     "print_json",
     "print_lines",
     "print_tables",
+    "written",
 ]
 
 
@@ -47,7 +48,7 @@ def encode_anything() -> None:
 
 
 def fail(text: str, code: int) -> int:
-    """Print an error as one line and return its exit code, also where standard error is closed."""
+    """Print an error as one line and return its exit code, also if standard error is closed."""
     _complain(f"error: {printable(text)}")
     return code
 
@@ -58,13 +59,26 @@ def print_json(document: object) -> None:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """Print lines to standard output; raises :class:`OutputError` where they cannot arrive."""
+    """Print lines to standard output; raises :class:`OutputError` if they cannot arrive."""
     with _delivered():
         print("\n".join(lines))
 
 
-def print_tables(tables: Iterable[RenderableType]) -> None:
-    """Print tables; piped, they are plain text as wide as their content needs."""
+def written(files: Iterable[object]) -> str:
+    """The line that names the files that a command wrote."""
+    return "written: " + ", ".join(printable(str(file)) for file in files)
+
+
+def print_tables(tables: Iterable[Table], lines: Iterable[str] = (), *, latex: bool = False) -> None:
+    """Print tables, then lines; piped, tables are plain text as wide as their content needs.
+
+    ``latex`` : as LaTeX instead, the lines as its comments
+    """
+    if latex:
+        from ratt_opt.report.latex import latex_of
+
+        print_lines([*map(latex_of, tables), *(f"% {line}" for line in lines)])
+        return
     from rich.console import Console
 
     with _delivered():
@@ -73,16 +87,18 @@ def print_tables(tables: Iterable[RenderableType]) -> None:
         console.width = max(console.width, NARROWEST)
         for table in tables:
             console.print(table)
+        for line in lines:
+            print(line)
 
 
 def flush() -> None:
-    """Send on what was printed; raises :class:`OutputError` where it cannot arrive."""
+    """Send on what was printed; raises :class:`OutputError` if it cannot arrive."""
     with _delivered():
         pass
 
 
 def abandon_output() -> None:
-    """Send on what was printed where that is still possible; the program ends without another try."""
+    """Send on what was printed if that is still possible; the program ends without another try."""
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             with suppress(OSError, ValueError):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ratt_opt.cli.options import JsonFlag, OutFolder
-from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines
+from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, written
 from ratt_opt.errors import InputError, printable
 from ratt_opt.running.progress import Step
 
@@ -40,7 +40,7 @@ def track(
     ] = "best group",
     horizon: Annotated[int, typer.Option("--horizon", help="Steps that a plan looks ahead.")] = 1,
     beam: Annotated[
-        int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all where absent.")
+        int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all if absent.")
     ] = None,
     objective: Annotated[
         Literal["trace", "logdet", "maxeig"],
@@ -51,9 +51,13 @@ def track(
         typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
     ] = "known velocity",
     sensor: Annotated[
-        Literal["range and bearing", "range", "bearing"],
-        typer.Option("--sensor", help="What of the file's sensors is measured."),
-    ] = "range and bearing",
+        str | None,
+        typer.Option(
+            "--sensor",
+            help="Part of the file's sensors that is measured (range, bearing), or a registered kind; all by default.",
+            show_default=False,
+        ),
+    ] = None,
     linearisation: Annotated[
         Literal["first order", "second order", "iterated"],
         typer.Option("--linearisation", help="First order is the textbook EKF, without the second-order term."),
@@ -114,7 +118,7 @@ def track(
     if as_json:
         print_json(missions[0].to_dict())
     else:
-        print_lines([*_summary(missions), "written: " + ", ".join(printable(str(file)) for file in files)])
+        print_lines([*_summary(missions), written(files)])
 
 
 @contextmanager

@@ -49,7 +49,7 @@ Proved = TypeVar("Proved", bound=WithProof)
 class ChangedProblem(Problem):
     """A problem in coordinates ``basis[j]' x`` of each target: the same elements, plans, attacks and values.
 
-    ``basis`` : (M, d, r), the identity where nothing was changed; ``whole`` : the problem as it was given
+    ``basis`` : (M, d, r), the identity if nothing was changed; ``whole`` : the problem as it was given
     ``change_error`` : no exact value differs by more from the exact one of ``whole``
     The other fields are those of a :class:`Problem`.
     """

@@ -1,7 +1,7 @@
 """Only the coordinates that are measured: a smaller problem of equal values.
 
 If every information matrix of a target is ``U X U'`` with one basis ``U`` (d, r), sensors tell about ``y = U'x`` alone.
-``y`` has the prior ``Q = U'PU`` and the information ``X``. What is left of ``x`` is ``x = K y + rest`` with
+``y`` has the prior ``Q = U'PU`` and the information ``X``. The rest of ``x`` follows: ``x = K y + rest`` with
 ``K = P U Q^{-1}``, and no measurement changes the rest. Hence, before minus after,
 
 - ``logdet P - logdet P+ = logdet Q - logdet Q+`` (determinant of a block matrix);
@@ -10,7 +10,7 @@ If every information matrix of a target is ``U X U'`` with one basis ``U`` (d, r
 - ``C P+ C' = C K Q+ (C K)'`` if the output is a part of ``y`` (``C = C U U'``): so is its largest eigenvalue. The
   largest eigenvalue of other parts depends on the rest: such problems stay as they are.
 
-**Rounding.** What is left of the information beside ``U X U'`` has, in units of the prior, at most the size ``SLACK``
+**Rounding.** The rest of the information, beside ``U X U'`` has, in units of the prior, at most the size ``SLACK``
 over a whole plan, or rounds off with its sums. ``(1 + S)^{-1} - (1 + S')^{-1}`` is at most ``|S - S'|``, so no value
 moves by more than that share of the prior's criterion (log-det: of d and the weights). Otherwise the problem stays
 as it is.
@@ -99,7 +99,7 @@ class _Coordinates:
 
 
 def _measured(problem: Problem) -> _Coordinates | None:
-    """The measured coordinates, in units of the prior's deviations; ``None`` where these are all."""
+    """The measured coordinates, in units of the prior's deviations; ``None`` if these are all."""
     objective = problem.information_objective
     deviations = np.sqrt(np.diagonal(objective.prior, axis1=-2, axis2=-1))
     scaled = objective.information * deviations[:, :, None] * deviations[:, None, :]

@@ -1,4 +1,4 @@
-"""Coordinates in which the prior is the identity, where digits would be lost otherwise.
+"""Coordinates in which the prior is the identity, if digits would be lost otherwise.
 
 With ``P = R R'`` and ``y = R^{-1} x`` a target has the prior 1 and the information ``R'XR``. However ill-conditioned
 ``P`` is, sums ``1 + R'XR`` are as well conditioned as what is measured allows: clock seconds and the bias of a
@@ -35,7 +35,7 @@ KEPT = "_with_unit_prior"
 TOLERABLE = 1e-9
 """Error of values, as a share of the criterion before any measurement, that is no reason to change coordinates."""
 WORTHWHILE = 0.1
-"""Of the error that has to be left at most."""
+"""Largest share of the error that may remain."""
 KINDS: tuple[Any, ...] = (TraceObjective, MaxEigenvalueObjective)
 """Criteria that may have an output."""
 

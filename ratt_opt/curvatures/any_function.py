@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 __all__ = ["any_marginals"]
 
 CONTEXTS = 30
-"""Random sets of the domain from which every element's context is taken, where time does not end it before."""
+"""Random sets of the domain from which every element's context is taken, if time does not end it before."""
 
 
 def any_marginals(domain: Domain, budget: Budget, stop: Stop) -> MeasuredMarginals:
-    """Brackets of the marginals; relies on a non-decreasing function. ``stop`` : where the budget ends nothing."""
+    """Brackets of the marginals; relies on a non-decreasing function. ``stop`` : if the budget ends nothing."""
     known = _Seen(domain, budget)
     try:
         known.bound()
@@ -41,7 +41,7 @@ def any_marginals(domain: Domain, budget: Budget, stop: Stop) -> MeasuredMargina
 
 
 class _Seen:
-    """Ends so far of every element; raises ``OutOfBudget`` where a value is asked for that the budget forbids."""
+    """Ends so far of every element; raises ``OutOfBudget`` if the budget forbids a value that is needed."""
 
     def __init__(self, domain: Domain, budget: Budget) -> None:
         self.domain, self.f, n = domain, Metered(domain.restricted, budget), domain.restricted.n

@@ -90,16 +90,16 @@ def total_curvature(
 ) -> Curvature:
     """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
 
-    Exact where the domain can be enumerated (up to 2**24 sets) in time, else for information criteria a certified
+    Exact if the domain can be enumerated (up to 2**24 sets) in time, else for information criteria a certified
     bracket, tightened by branch and bound; for other functions what theory says of them, and contexts drawn at random
     (seeded), which attain the lower end. An interrupt returns the bracket.
 
     Parameters
     ----------
-    f : non-decreasing set function; refused with a witness where an enumeration shows that it is not
+    f : non-decreasing set function; refused with a witness if an enumeration shows that it is not
     owners : (n,) owner (robot) of each element, for the domain ``"feasible"``; without it the domain is ``"elements"``
     plan : one element per robot, for the domain ``"robots"`` (``owners`` are then not used)
-    gap : the search stops once ``(1 - lower) / (1 - upper) <= 1 + gap``; not used where everything is enumerated
+    gap : the search stops once ``(1 - lower) / (1 - upper) <= 1 + gap``; not used if everything is enumerated
     time_limit : seconds for the search; ``None`` for no limit. max_nodes : parts it may bound
     max_evaluations : values of a function that is no information criterion; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
@@ -132,8 +132,8 @@ def curvature(
 
     Parameters
     ----------
-    f : normalised, non-decreasing and submodular. Over ``"elements"`` and ``"robots"`` that is checked where the table
-        fits, known where theory proves it (log-det), and otherwise relied on, not checked (``how`` says which)
+    f : normalised, non-decreasing and submodular. Over ``"elements"`` and ``"robots"`` that is checked if the table
+        fits, known if theory proves it (log-det), and otherwise relied on, not checked (``how`` says which)
     owners, plan, gap, time_limit, max_nodes, max_evaluations, budget : see :func:`total_curvature`
 
     Raises
@@ -164,7 +164,7 @@ def curvature_over(domain: Domain, *, total: bool, gap: float, budget: Budget) -
 
 
 def _singles(domain: Domain, budget: Budget) -> FloatArray | None:
-    """(n,) marginals without context; ``None`` where the budget does not allow that many values."""
+    """(n,) marginals without context; ``None`` if the budget does not allow that many values."""
     f = domain.restricted
     metered = f if isinstance(f, InformationObjective | TableFunction) else Metered(f, budget)
     try:

@@ -32,7 +32,7 @@ class Domain:
     """``restricted`` is the function on the elements that take part; a set holds at most one of each owner's.
 
     ``owners`` : owner of each of its elements, 0.. without gaps. ``names`` : their indices in the original function.
-    ``rounding`` : error that a marginal may have; 0 where the values are given and not computed.
+    ``rounding`` : error that a marginal may have; 0 if the values are given and not computed.
     """
 
     name: str
@@ -171,7 +171,7 @@ class Restricted(SetFunction):
 
     @property
     def most_total_curvature(self) -> float:
-        """As of the whole function: fewer contexts can only be less curved."""
+        """The bound of the whole function: with fewer contexts the curvature is no larger."""
         return self.f.most_total_curvature
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

@@ -1,6 +1,6 @@
 """Smallest and largest marginals of every element: what is known of them, and how it becomes known.
 
-Where the sets can be listed, all of them; elsewhere brackets, the least certain ratio refined first.
+If the sets can be listed, all of them; elsewhere brackets, the least certain ratio refined first.
 """
 
 from __future__ import annotations
@@ -225,6 +225,6 @@ class MarginalBrackets(ABC):
 
 
 def _ratios(small: FloatArray, large: FloatArray) -> FloatArray:
-    """Infinite where the large one is 0: such elements restrict nothing."""
+    """Infinite if the large one is 0: such elements restrict nothing."""
     useful = large > 0
     return np.where(useful, small / np.where(useful, large, 1.0), np.inf)

@@ -39,7 +39,7 @@ __all__ = ["GeneralisedCurvature", "SubmodularityRatio", "generalised_curvature"
 LARGEST_PAIRS = 1.5e8
 """Most pairs of nested sets that are all looked at (a few seconds)."""
 SAMPLES = 200
-"""Random sets whose subsets are all looked at, where the domain is too large."""
+"""Random sets whose subsets are all looked at, if the domain is too large."""
 SAMPLED_SIZE = 8
 """Elements of each: 3**8 nested pairs take 0.1 ms compiled, so that all samples take a fraction of a second."""
 
@@ -87,7 +87,7 @@ def submodularity_ratio(
     Exact by all nested pairs up to 1.5e8 of them (17 elements; 4 robots with 12 controls over ``"feasible"``). Beyond,
     but with an enumerable domain: ``rho(W | S) <= sum of the largest later marginals``, so ``gamma`` is at least the
     smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``. Beyond that, for information
-    criteria: 1 where theory proves submodularity (log-det), else at least ``1 - total curvature``. The upper end is
+    criteria: 1 if theory proves submodularity (log-det), else at least ``1 - total curvature``. The upper end is
     attained, by a seeded search.
 
     Arguments and errors are those of :func:`ratt_opt.total_curvature`; ``seed`` : of the search beyond enumeration.
@@ -130,7 +130,7 @@ def generalised_curvature(
 ) -> GeneralisedCurvature:
     """Bracket the generalised curvature ``alpha`` of a non-decreasing function.
 
-    Exact where the domain can be enumerated, by running maxima over subsets (O(n) passes an element). Beyond, for
+    Exact if the domain can be enumerated, by running maxima over subsets (O(n) passes an element). Beyond, for
     information criteria: at most the total curvature (submodular ones: the curvature), at least what a seeded search
     attains.
 
@@ -188,7 +188,7 @@ def _monotone_values(domain: Domain, budget: Budget) -> FloatArray:
 
 
 def _smallest_ratio(values: FloatArray, groups: list[IntArray], budget: Budget) -> tuple[float, Context, Context]:
-    """``gamma`` (1 where nothing restricts it) and the sets that attain it."""
+    """``gamma`` (1 if nothing restricts it) and the sets that attain it."""
     from ratt_opt.setfunctions.lattice import smallest_gain_ratio
 
     ratio, top, part = smallest_gain_ratio(np.ravel(values), np.array(values.shape, dtype=np.int64), budget)
@@ -202,7 +202,7 @@ def _smallest_ratio(values: FloatArray, groups: list[IntArray], budget: Budget) 
 def _smallest_kept(
     values: FloatArray, groups: list[IntArray], budget: Budget
 ) -> tuple[float, int | None, Context, Context]:
-    """Smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 where no gain is positive); ``i``, ``A`` and ``B``."""
+    """Smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 if no gain is positive); ``i``, ``A`` and ``B``."""
     best: tuple[float, int | None, Context, Context] = (1.0, None, (), ())
     for i, gain, rest in each_marginal(values, groups):
         budget.check()
@@ -218,7 +218,7 @@ def _smallest_kept(
 
 
 def _later_marginals(values: FloatArray, groups: list[IntArray], budget: Budget) -> float:
-    """Smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``, where that is positive."""
+    """Smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``, if that is positive."""
     best = np.inf
     for _, gain, _ in each_marginal(values, groups):
         budget.check()
@@ -232,7 +232,7 @@ def _later_marginals(values: FloatArray, groups: list[IntArray], budget: Budget)
 
 
 def _attaining_subset(gain: FloatArray, index: tuple[np.intp, ...], value: float) -> tuple[int, ...]:
-    """A subset of the set at ``index`` where the gain is ``value``."""
+    """A subset of the set at ``index`` if the gain is ``value``."""
     options = np.ix_(*[[0, int(pick)] if pick else [0] for pick in index])
     local = gain[options]
     where = np.unravel_index(int((local == value).argmax()), local.shape)

@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Self
 
+from ratt_opt.findings.units import value_unit
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -36,6 +38,12 @@ class AssessedPlan:
     best_group: frozenset[int]
     posterior: FloatArray | None
 
+    def role(self, robot: int) -> str:
+        """What becomes of a robot under the attack: ``blinded``, ``sees`` (in the best group) or ``cut off``."""
+        if robot in self.worst_case.attack.sensing:
+            return "blinded"
+        return "sees" if robot in self.best_group else "cut off"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Findings:
@@ -43,6 +51,7 @@ class Findings:
 
     problem: Problem
     alpha_cs: int
+    n_max_upper: int | None = None
     ratt: AssessedPlan
     baselines: tuple[AssessedPlan, ...]
     optimum: MaxMinResult
@@ -59,6 +68,7 @@ class Findings:
     views: Mapping[str, AssessedPlan] = field(default_factory=dict)
     seeds: Mapping[str, int] = field(default_factory=dict)
     interrupted: bool = False
+    remarks: tuple[str, ...] = ()
 
     @property
     def objective(self) -> str:
@@ -68,8 +78,8 @@ class Findings:
 
     @property
     def unit(self) -> str:
-        """Unit of the objective; empty where none is stated."""
-        return getattr(self.problem.objective, "unit", "")
+        """Unit of the objective; of a state that is not a position in words; empty if none is stated."""
+        return value_unit(self.problem.objective, getattr(self.source, "units", None))
 
     @property
     def n_targets(self) -> int | None:
@@ -95,11 +105,11 @@ class Findings:
 
     @property
     def upper(self) -> float:
-        """Proved upper bound on what any plan can keep."""
+        """Proved upper bound on the worst-case value of every plan."""
         return float(max(self.optimum.upper, *(plan.worst_case.lower for plan in self.plans)))
 
     def share(self, plan: AssessedPlan) -> float:
-        """What a plan keeps at least, as a share of the best possible; 1 when both are 0."""
+        """Proved worst-case value of a plan as a share of the best possible; 1 if both are 0."""
         return float(plan.worst_case.lower) / self.upper if self.upper > 0 else 1.0
 
     @property
@@ -109,7 +119,7 @@ class Findings:
 
     @property
     def guaranteed_share(self) -> float:
-        """The largest share of the optimum that was guaranteed before planning; 0 where nothing was."""
+        """The largest share of the optimum that was guaranteed before planning; 0 if nothing was."""
         return max((float(guarantee) for guarantee in self.guarantees.values()), default=0.0)
 
     def with_certificate(self, certification: Certification) -> Self:

@@ -52,7 +52,7 @@ class SubsetLattice:
         return cls(n_robots, links, protected, _connected(neighbour_masks(n_robots, threat.graph.links), masks))
 
     def crossing(self, first: IntArray, second: IntArray) -> IntArray:
-        """Links between disjoint subsets; a huge number where one of them is protected."""
+        """Links between disjoint subsets; a huge number if one of them is protected."""
         both = first | second
         count = self.links[both] - self.links[first] - self.links[second]
         locked = self.protected[both] - self.protected[first] - self.protected[second]

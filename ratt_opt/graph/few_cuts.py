@@ -1,6 +1,6 @@
-"""All partitions that a few cut links leave, one by one: where links and cuts are few, the quickest exact way.
+"""All partitions that a few cut links leave, one by one: if links and cuts are few, the quickest exact way.
 
-Real networks are large and hardly more than trees. With one cut there are as many cases as links, whatever the team's
+Real networks are large and hardly more than trees. With one cut each link is one case, whatever the team's
 size.
 """
 

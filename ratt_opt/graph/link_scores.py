@@ -51,7 +51,7 @@ eigenvalues and sums are off by some 1e-14 of the numbers that go into them."""
 class LinkScores:
     """For each share, groups of ``s`` robots score at most ``most[k, s]`` and all together ``need[k]`` or more.
 
-    ``most`` : (K, N + 1), minus infinity where no group of an attack has so many robots; ``need`` : (K,);
+    ``most`` : (K, N + 1), minus infinity if no group of an attack has that many robots; ``need`` : (K,);
     ``least`` : (K,) what each group scores at least
     """
 
@@ -106,7 +106,7 @@ class MostScores:
         return np.array(self._most)
 
     def branch(self, node: tuple[BoolArray, BoolArray], joining: int, needed: FloatArray) -> int | None:
-        """``None`` where robots inside with ``joining`` undecided ones (N,) never score so much, else one to decide."""
+        """``None`` if robots inside with ``joining`` undecided ones (N,) never score so much, else one to decide."""
         inside, undecided = node
         starts = self.multipliers[:, int(inside.sum()) + joining][:, undecided]
         unclear = np.zeros(len(starts[0]))
@@ -127,7 +127,7 @@ class MostScores:
 def scoring_group(
     graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget
 ) -> BoolArray | None:
-    """These robots (N,) and ``joining`` others that score so much (K,); ``None`` where it is proved that none do.
+    """These robots (N,) and ``joining`` others that score so much (K,); ``None`` if it is proved that none do.
 
     Others are taken or left one by one, a node each in ``budget``; after ``NODES`` of them ``members`` are returned,
     and nothing is known.
@@ -163,7 +163,7 @@ def _rounded(bound: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Top:
-    """A bound of a quadratic form on a sphere, where it is attained, and the sphere's multiplier."""
+    """A bound of a quadratic form on a sphere, the point that attains it, and the sphere's multiplier."""
 
     value: float
     place: FloatArray
@@ -199,7 +199,7 @@ class RelaxedScores:
 
     @staticmethod
     def rounding(multipliers: FloatArray) -> float:
-        """More than what a bound by these is off by, where it is not much larger than 1."""
+        """More than what a bound by these is off by, if it is not much larger than 1."""
         return ROUNDING * len(multipliers) * float(np.abs(multipliers).max(initial=0.0))
 
     def descend(self, size: float, start: FloatArray, steps: int = STEPS) -> tuple[float, FloatArray]:
@@ -218,7 +218,7 @@ class RelaxedScores:
         return top.value, top.place - top.place**2
 
     def top(self, multipliers: FloatArray, size: float) -> Top:
-        """The bound for these multipliers (N,), and where it is attained."""
+        """The bound for these multipliers (N,), and the point that attains it."""
         n_robots = len(multipliers)
         mean, linear = size / n_robots, multipliers - self.charge
         radius = size * (1.0 - mean)
@@ -231,7 +231,7 @@ class RelaxedScores:
 
 
 def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> Top:
-    """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value but for rounding; where.
+    """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value up to rounding; its point.
 
     For every ``t > levels`` the value is at most ``t radius + sum of slope^2 / (4 (t - levels))``; the best ``t`` has
     ``z = slope / (2 (t - levels))`` on the sphere.

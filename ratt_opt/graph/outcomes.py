@@ -2,7 +2,7 @@
 
 An outcome is the family of groups of non-blinded robots that an attack leaves. One outcome dominates another when it
 refines it (every group of the first lies in a group of the second): a non-decreasing objective is then no larger on the
-first. An attack that blinds as many robots as it may dominates one that blinds fewer.
+first. An attack that uses its whole budget of blinded robots dominates one that blinds fewer.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def non_dominated_outcomes(threat: Threat) -> Iterator[Outcome]:
 def count_outcomes(threat: Threat, *, enough: float = inf) -> int:
     """Return how many outcomes ``non_dominated_outcomes`` yields on a complete graph, without enumerating them.
 
-    ``enough`` : counts no further once there are more, as of hundreds of robots even their sizes are too many to list
+    ``enough`` : stop counting above this number; for hundreds of robots even the sizes are too many to list
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Sizes of the groups of seeing robots that an attack can leave on a graph whose groups' scores are bounded.
+"""Sizes of the groups of unblinded robots that an attack can leave on a graph whose groups' scores are bounded.
 
 The bounds (``link_scores.py``) depend on sizes alone, so a vector of sizes is possible or not; every attack's is. The
-blinded robots stand in any groups, which need no seeing robot.
+blinded robots stand in any groups, which need no unblinded robot.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ __all__ = ["PossibleSizes"]
 
 
 class PossibleSizes:
-    """Vectors of sizes of ``n_seeing`` seeing robots in groups with ``n_blinded`` blinded ones.
+    """Vectors of sizes of ``n_seeing`` unblinded robots in groups with ``n_blinded`` blinded ones.
 
-    ``least`` : seeing robots that are known to be left in some group
+    ``least`` : unblinded robots that are known to be left in some group
 
     A table of best scores has, for each bound and each number of blinded robots used, (K, n_blinded + 1).
     """
@@ -46,7 +46,7 @@ class PossibleSizes:
         return table
 
     def _add(self, table: FloatArray, size: int) -> FloatArray:
-        """Best scores with one more group of ``size`` seeing robots and any number of blinded ones."""
+        """Best scores with one more group of ``size`` unblinded robots and any number of blinded ones."""
         added = np.full_like(table, -np.inf)
         for inside in range(self._n_blinded + 1):
             score = self._most[:, size + inside, None]
@@ -54,7 +54,7 @@ class PossibleSizes:
         return added
 
     def _smaller_than(self, largest: int, smaller: dict[int, FloatArray]) -> dict[int, FloatArray]:
-        """Best scores of each number of seeing robots in groups of at most ``largest``."""
+        """Best scores of each number of unblinded robots in groups of at most ``largest``."""
         tables = {0: self._apart}
         for count in range(1, self.n_seeing + 1):
             options = [self._add(tables[count - largest], largest)] if count >= largest else []
@@ -70,13 +70,13 @@ class PossibleSizes:
 
     @property
     def forced(self) -> int:
-        """Seeing robots that some group keeps under every attack."""
+        """Unblinded robots that some group keeps under every attack."""
         nobody = self._nobody()
         sizes = range(self._least, self.n_seeing + 1)
         return next(k for k in sizes if self._is_possible(nobody, self._best[k].get(self.n_seeing, nobody - np.inf)))
 
     def largest(self, size: int) -> list[tuple[int, FloatArray]]:
-        """What a largest group of ``size`` seeing robots must score (K,), with so many blinded ones inside.
+        """What a largest group of ``size`` unblinded robots must score (K,), with that many blinded ones inside.
 
         Only for those numbers of blinded robots with which groups of that many robots may score it.
         """
@@ -90,7 +90,7 @@ class PossibleSizes:
         return [(inside, need) for inside, need in needs if (self._most[:, size + inside] >= need).all()]
 
     def vectors(self, budget: Budget, at_most: int) -> list[Sizes] | None:
-        """Possible vectors of which every other possible one is a merger; ``None`` where they are too many.
+        """Possible vectors of which every other possible one is a merger; ``None`` if they are too many.
 
         Non-increasing sizes, the smallest largest group first.
         """
@@ -109,7 +109,7 @@ class PossibleSizes:
         return sorted(kept)
 
     def _below(self, sizes: Sizes, table: FloatArray, left: int, largest: int) -> Iterator[Sizes]:
-        """Possible vectors that begin with ``sizes``; where the others may all be alone, only that one."""
+        """Possible vectors that begin with ``sizes``; if the others may all be alone, only that one."""
         if not self._is_possible(table, self._best[min(largest, left)][left]):
             return
         first = sizes[0] if sizes else min(left, 1)

@@ -2,7 +2,7 @@
 
 A connected set of robots can only be split off when its links to all others are within the budget and none is
 protected. On sparse graphs such *separable* groups are few (thousands for thirty robots with six links each),
-so every attack is a choice of disjoint ones that cover the team. Imported only where needed: compiling takes
+so every attack is a choice of disjoint ones that cover the team. Imported only if needed: compiling takes
 seconds, once per machine (cached).
 """
 
@@ -61,9 +61,9 @@ class SeparableGroups:
 
 
 def separable_groups(threat: Threat, most: int, budget: Budget | None = None) -> SeparableGroups | None:
-    """Tabulate the separable groups; ``None`` where there are more than ``most``, or more robots than a mask holds.
+    """Tabulate the separable groups; ``None`` if there are more than ``most``, or more robots than a mask holds.
 
-    ``None`` too where the ``budget`` is spent before; what was listed of the last few graphs is kept, and gone on with.
+    ``None`` too if the ``budget`` is spent before; what was listed of the last few graphs is kept, and gone on with.
 
     The places are the robots in the order in which :class:`PartitionSearch` covers them: those in the most groups
     first, so that what is left afterwards are few small groups.
@@ -78,7 +78,7 @@ def separable_groups(threat: Threat, most: int, budget: Budget | None = None) ->
 LONGEST_LIST = 1_000_000
 """Groups listed at most: eight megabytes."""
 STEPS = 20_000
-"""Of the enumeration between two looks at the clock: some hundredths of a second."""
+"""Nodes of the enumeration between two looks at the clock: some hundredths of a second."""
 
 
 @lru_cache(maxsize=4)
@@ -99,7 +99,7 @@ class _Listing:
         self._placed: tuple[IntArray, IntArray, IntArray, IntArray] | None = None
 
     def masks(self, most: int, budget: Budget) -> IntArray | None:
-        """All groups by bit mask over robots; ``None`` where they are more than ``most``, or the budget is spent."""
+        """All groups by bit mask over robots; ``None`` if they are more than ``most``, or the budget is spent."""
         is_done = False
         while not is_done and self._position[2] <= most and not budget.is_over:
             given = self._neighbours, self._locked, self._alpha_c
@@ -141,10 +141,10 @@ def count_ones(mask: int) -> int:
 
 @numba.njit(cache=True)
 def _enumerate(given: Any, found: Any, stack: Any, position: Any, steps: int) -> bool:
-    """Go on with listing connected sets with at most so many outgoing links, none locked; whether that is all of them.
+    """Go on with listing connected sets with at most that many outgoing links, none locked; whether these are all.
 
     Each set grows from its lowest robot; a robot next to it is taken in or left out, and what is left out
-    already costs its links. It ends, for now, after ``steps``, or where ``found`` (G,) is full.
+    already costs its links. It ends, for now, after ``steps``, or if ``found`` (G,) is full.
 
     ``given`` : (N,) neighbours and locked ones by bit mask, most links; ``stack`` : (2 N + 2, 3) robots inside,
     outside, links between them; ``position`` : robots begun with, depth of the stack, sets found
@@ -185,7 +185,7 @@ def _enumerate(given: Any, found: Any, stack: Any, position: Any, steps: int) ->
 
 @numba.njit(cache=True)
 def _most_linked(neighbours: Any, inside: int, outside: int) -> int:
-    """The robot next to ``inside``, in neither set, with the most links to both; -1 where there is none."""
+    """The robot next to ``inside``, in neither set, with the most links to both; -1 if there is none."""
     pick, most_links = -1, -1
     for i in range(len(neighbours)):
         links = count_ones(neighbours[i] & inside)
@@ -285,7 +285,7 @@ class PartitionSearch:
         return int(self._counters[1])
 
     def next_within(self, nodes: int, budget: Budget) -> list[int] | None:
-        """Spend up to ``nodes`` more of the budget on :meth:`next`; raises ``OutOfBudget`` where none is left."""
+        """Spend up to ``nodes`` more of the budget on :meth:`next`; raises ``OutOfBudget`` if none is left."""
         before = self.nodes
         chosen = self.next(before + budget.nodes_left(nodes))
         budget.nodes += self.nodes - before

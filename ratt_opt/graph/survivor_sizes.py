@@ -1,4 +1,4 @@
-"""Sizes of the groups that an attack on a complete graph can leave: CAA, and those of the seeing robots.
+"""Sizes of the groups that an attack on a complete graph can leave: CAA, and those of the unblinded robots.
 
 On a complete graph every robot and link is alike, so an outcome is feasible or not by its group sizes alone. ``b``
 blinded robots still hold links and may stand in any group; the links kept, ``sum_k C(size_k, 2)``, are convex in where
@@ -81,7 +81,7 @@ Sizes = tuple[int, ...]
 
 
 def cheapest_cut(n_blinded: int, sizes: Sizes) -> int:
-    """Fewest links to cut on a complete graph so that ``sizes`` seeing robots stand apart."""
+    """Fewest links to cut on a complete graph so that ``sizes`` unblinded robots stand apart."""
     if not sizes:
         return 0
     total = sum(sizes) + n_blinded
@@ -145,7 +145,7 @@ def _tight(robots: int, largest: int, missing: int) -> Iterator[Sizes]:
 
 
 def forced_group_size(n_robots: int, n_blinded: int, alpha_c: int) -> int:
-    """Largest ``k`` such that every attack leaves a group of at least ``k`` seeing robots.
+    """Largest ``k`` such that every attack leaves a group of at least ``k`` unblinded robots.
 
     Proof by integer partitions: ``k`` is the smallest first entry of a feasible size vector, and
     the cut of a vector whose groups all have at most ``p`` robots is least, by convexity, for as

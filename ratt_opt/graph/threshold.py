@@ -72,7 +72,7 @@ class ThresholdTest:
     """Decides for one plan whether an attack can push the team value to a threshold.
 
     ``threat`` : N robots, at most ``LARGEST_LATTICE``; ``values`` : (2**N,) value of every set of robots, by bit mask;
-    ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most so many robots
+    ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most this many robots
     """
 
     def __init__(self, threat: Threat, values: FloatArray, *, largest_group: int | None = None) -> None:
@@ -122,7 +122,7 @@ def _robots(mask: int) -> list[int]:
 def fewest_blinded(threat: Threat, values: FloatArray, threshold: float) -> IntArray:
     """(2**N,) fewest robots to blind in each group so that the others are worth at most ``threshold``.
 
-    More than N where it cannot be done (protected robots, or a threshold below the value of no measurement).
+    More than N if it cannot be done (protected robots, or a threshold below the value of no measurement).
     """
     n_robots = threat.graph.n_robots
     sizes = np.bitwise_count(np.arange(2**n_robots)).astype(np.int64)

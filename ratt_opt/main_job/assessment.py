@@ -1,4 +1,4 @@
-"""One plan under attack: what is left of the team in its worst case, and under other attacks worth seeing."""
+"""One plan under attack: the team after its worst attack, and after other attacks worth seeing."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def recommended(plans: Iterable[PlanAssessment]) -> PlanAssessment:
 def assess(
     problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
 ) -> PlanAssessment:
-    """Attack one plan in the worst way, unless that is ``known``, and say what is left of the team."""
+    """Attack one plan in the worst way, unless that is ``known``, and describe the team after it."""
     elements = plan.elements
     worst = known or worst_case_attack(problem, elements, budget=budget)
     seeing, f = problem.best_group(elements, worst.attack), problem.objective
@@ -77,7 +77,7 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
 
 
 def _spared(problem: Problem, attack: Attack) -> Iterator[Problem]:
-    """The problem with one blinded robot (or cut link, where none is blinded) protected, each in turn."""
+    """The problem with one blinded robot (or cut link, if none is blinded) protected, each in turn."""
     if attack.sensing:
         for i in sorted(attack.sensing)[:MOST_SPARED]:
             yield replace(problem, protected_robots=problem.protected_robots | {i})

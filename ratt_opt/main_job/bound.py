@@ -9,7 +9,10 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
+import numpy as np
+
 from ratt_opt._rounding import down, up
+from ratt_opt._values import counted
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget, Stop
@@ -17,8 +20,13 @@ from ratt_opt.certificates.certification import INTERRUPTED, NOT_ASKED_FOR, Cert
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
+from ratt_opt.graph.largest_group.counting import by_counting
+from ratt_opt.graph.largest_group.smallest import SUBSETS_SOON, by_subsets
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
+from ratt_opt.missions.first_step import first_step
+from ratt_opt.missions.players.planners import elements_of
+from ratt_opt.missions.world import MissionModel
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
@@ -27,13 +35,14 @@ from ratt_opt.solvers.maxmin.subtrees.crew import check_workers
 from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks, random_plan
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator, Mapping
     from concurrent.futures import Executor
     from pathlib import Path
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
@@ -79,15 +88,17 @@ ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75,
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
 on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
 of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
-bracket, so shares trade strength only; the non-robust optimum is a baseline where it is proved in its share."""
+bracket, so shares trade strength only; the non-robust optimum is a baseline if it is proved in its share."""
 CERTIFICATE_SHARE = 0.25
-"""Of the whole time, kept for writing and verifying a certificate where one is asked for; what the searches leave of
+"""Of the whole time, kept for writing and verifying a certificate if one is wanted; what the searches leave of
 theirs comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
 GUARANTEES, QUICK_SECONDS = ("none", "quick", "full"), 2.0
 """How much time the guarantees have; of six bearing-only drones the curvature took half a minute, the plan a second."""
+TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust")
+"""Names of a report's own planners."""
 RANDOM_SEED = 0
 """Seed of the random baseline, so that a report is reproducible."""
 
@@ -104,12 +115,14 @@ def bound(
     scenario_or_problem: HasProblem | Problem,
     *,
     objective: str | None = None,
+    model: MissionModel | None = None,
     gap: float = 1e-9,
     time_limit: float | None = 60.0,
     certificate: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
     workers: int | Executor | None = None,
     guarantees: str = "quick",
+    planners: Mapping[str, Planner] | None = None,
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
@@ -118,16 +131,21 @@ def bound(
     Parameters
     ----------
     scenario_or_problem : a scenario (its ``problem(objective)`` is used), or a problem
-    objective : name of the criterion (trace where ``None``); not with a problem, which has its own
+    objective : name of the criterion (the model's, or the trace, if ``None``); not with a problem, which has its own
+    model : of a scenario: plan as the first step of a mission with this model does, with its sensors, motions and
+        filter. The default filter of missions counts what linearisation leaves out, so values are below those of the
+        scenario alone, which is the paper's linearised problem
     gap : relative gap at which the search for the optimum stops
     time_limit : seconds for all of it, of which the search for the optimum may take three quarters of what
         the attacks on the baselines leave, and a certificate has a quarter for itself; ``None`` for no limit. Of a set
-        function of the user's own the value of each element is asked for whatever the limit: RATT's plan needs them
-    certificate : file for the proof of the bracket, verified before it is named so; none where ``None``
+        function of the user's own the value of each element is computed whatever the limit: RATT's plan needs them
+    certificate : file for the proof of the bracket, verified before it is named so; none if ``None``
     progress : called with one line of text whenever there is something to tell
     workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`
     guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
         most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
+    planners : planners of your own by name, ``(problem) -> elements`` as in missions: their plans are attacked too, and
+        stand beside the others in every table and figure. They take what time they take
 
     Raises
     ------
@@ -137,8 +155,9 @@ def bound(
     check_limits(gap, time_limit)
     if guarantees not in GUARANTEES:
         raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
+    _check_planners(planners or {})
     began = datetime.now(UTC)
-    problem, source = _problem_of(scenario_or_problem, objective)
+    problem, source = _problem_of(scenario_or_problem, objective, model)
     check_workers(problem, workers)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
@@ -147,6 +166,7 @@ def bound(
         single = problem.objective.singletons()
         alpha_cs, robust = _planned(problem, single, budget)
         baselines = _kept(budget, lambda: tuple(_baselines(problem, single, budget)))
+        baselines += tuple(_own_plans(problem, planners or {}, budget))
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers)
         optimum, best = _best(problem, search, budget)
@@ -165,6 +185,7 @@ def bound(
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
+        n_max_upper=_n_max_upper(problem, problem.n_robots - alpha_cs, budget),
         ratt=robust,
         baselines=baselines,
         optimum=optimum,
@@ -173,7 +194,7 @@ def bound(
         total_curvature=c,
         guarantees=sure,
         inapplicable={} if guarantees == "none" else inapplicable_guarantees(problem, alpha_cs),
-        omitted=_omitted(baselines, k or c, guarantees),
+        omitted=_omitted(baselines, k or c, guarantees, planners or {}),
         certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
@@ -181,6 +202,7 @@ def bound(
         views=views,
         seeds={"random": RANDOM_SEED},
         interrupted=whole.stop() is Stop.INTERRUPTED,
+        remarks=_remarks(problem),
     )
     return _delivered(report.with_certificate(proof), failure)
 
@@ -232,11 +254,18 @@ def _kept(budget: Budget, step: Callable[[], T]) -> T:
         return step()
 
 
-def _problem_of(given: HasProblem | Problem, objective: str | None) -> tuple[Problem, HasProblem | None]:
+def _problem_of(
+    given: HasProblem | Problem, objective: str | None, model: MissionModel | None = None
+) -> tuple[Problem, HasProblem | None]:
     """The problem, and what it was made from where that is known."""
+    if model is not None:
+        if not isinstance(model, MissionModel):
+            raise InputError("model", "must be a MissionModel", type(model).__name__)
+        step = first_step(given, model)
+        return step.problem(objective or model.objective), step
     if isinstance(given, Problem):
         if objective is not None:
-            raise InputError("objective", "must be absent where a problem is given (it has its own)", objective)
+            raise InputError("objective", "must be absent if a problem is given (it has its own)", objective)
         return given, None
     if not isinstance(given, HasProblem):
         raise InputError("scenario_or_problem", "must be a scenario or a Problem", type(given).__name__)
@@ -258,9 +287,35 @@ def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
 
 
-def _omitted(baselines: tuple[PlanAssessment, ...], found: Curvature | None, guarantees: str) -> dict[str, str]:
+def _own_plans(problem: Problem, planners: Mapping[str, Planner], budget: Budget) -> Iterator[PlanAssessment]:
+    """The plans of the user's planners under attack; an interrupt ends them. InputError : one returns no plan."""
+    for name, planner in planners.items():
+        try:
+            found = planner(problem)
+            elements, cost = elements_of(found, problem), getattr(found, "evaluations", 0)
+        except KeyboardInterrupt:
+            budget.interrupt()
+            return
+        except InputError as error:
+            raise InputError(f"planners[{name!r}]: {error.argument}", error.rule, error.value) from None
+        plan = Plan(elements=elements, evaluations=cost)
+        yield _kept(budget, partial(assess, problem, name, plan, budget.part(ATTACK_SHARE)))
+
+
+def _check_planners(planners: Mapping[str, Planner]) -> None:
+    for name, planner in planners.items():
+        if name in TAKEN or not (isinstance(name, str) and name.isprintable() and name):
+            raise InputError("planners", f"must have names that are none of {', '.join(TAKEN)}", name)
+        if not callable(planner):
+            raise InputError(f"planners[{name!r}]", "must be a function of the problem", type(planner).__name__)
+
+
+def _omitted(
+    baselines: tuple[PlanAssessment, ...], found: Curvature | None, guarantees: str, planners: Collection[str]
+) -> dict[str, str]:
     """What the report leaves out, and why."""
-    omitted = {}
+    planned = {plan.name for plan in baselines}
+    omitted = {name: "interrupted" for name in planners if name not in planned}
     if all(plan.name != "nonrobust" for plan in baselines):
         omitted["nonrobust"] = "the best plan without attack was not found and proved in its share of the time"
     if guarantees == "none":
@@ -270,8 +325,32 @@ def _omitted(baselines: tuple[PlanAssessment, ...], found: Curvature | None, gua
     return omitted
 
 
+def _n_max_upper(problem: Problem, lower: int, budget: Budget) -> int | None:
+    """A size of the largest group that some cut leaves: ``lower`` itself if that is known to be the smallest."""
+    if problem.threat.links_alike:
+        return lower
+    links = replace(problem.threat, alpha_s=0)
+    found = by_counting(links, budget).upper
+    if found > lower and problem.n_robots <= SUBSETS_SOON:
+        found = by_subsets(links, budget).upper
+    return found
+
+
+def _remarks(problem: Problem) -> tuple[str, ...]:
+    """What a user should know of the input: elements, and robots, that tell nothing about any target."""
+    f = problem.objective
+    if not isinstance(f, InformationObjective):
+        return ()
+    silent = np.all(f.information == 0, axis=(1, 2, 3))
+    if not silent.any():
+        return ()
+    robots = [i for i, own in enumerate(problem.choices) if silent[own].all()]
+    none = f"; none of robot {', '.join(map(str, robots))} tells anything: check its sensor" if robots else ""
+    return (f"{silent.sum()} of {counted(f.n, 'element')} tell nothing about any target{none}",)
+
+
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
-    """Curvature (of a submodular criterion) or total curvature over feasible sets, where it can be bracketed."""
+    """Curvature (of a submodular criterion) or total curvature over feasible sets, if it can be bracketed."""
     f, owners = problem.objective, problem.robot
     try:
         if f.is_submodular:

@@ -14,8 +14,10 @@ from ratt_opt.errors import ProofError
 from ratt_opt.findings.bound import AssessedPlan, Findings
 from ratt_opt.report.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
+from ratt_opt.report.latex import latex_of
 from ratt_opt.report.notebook import plan_view, report_view
 from ratt_opt.report.picture import picture_of
+from ratt_opt.report.tables import report_tables
 from ratt_opt.report.write import write_report
 
 if TYPE_CHECKING:
@@ -29,7 +31,7 @@ __all__ = ["BoundReport", "PlanAssessment"]
 
 
 class PlanAssessment(AssessedPlan):
-    """One planner's plan and its worst case; equal to another that says the same.
+    """One planner's plan and its worst case. Two are equal if all their fields are.
 
     ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
     own elements; ``bait`` : RATT's bait robots, empty for other planners.
@@ -66,7 +68,7 @@ class BoundReport(Findings):
     """What to do now, the worst that can follow, and how far that is from the best possible.
 
     Claims, all in floating point unless a certificate says more: each plan's worst case lies in
-    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan keeps at least
+    its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan has a worst-case value of at least
     ``certified_ratio`` of ``Phi*``. ``best`` is the plan the search for the optimum found.
     ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
     ``inapplicable`` : the guarantees that do not apply here, and why; ``omitted`` : what was left out, and why.
@@ -74,7 +76,7 @@ class BoundReport(Findings):
     ``seconds`` : wall time of each step; ``created`` : when the call began (UTC, ISO 8601).
     ``source`` : the scenario or model-free input that was given, ``None`` for a problem.
     ``views`` : the recommended plan under other attacks too, for maps: its ``worst`` case; the worst found that spares
-    one of the robots or links which that attacks (``next worst``, where the worst attacks anything); and ``none``.
+    one of the robots or links which that attacks (``next worst``, if the worst attacks anything); and ``none``.
     ``seeds`` : of everything drawn at random.
     ``interrupted`` : the user ended the searches; the brackets hold all the same.
 
@@ -107,7 +109,7 @@ class BoundReport(Findings):
         """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
 
         ``report.json`` (all of it), ``report.html`` (to read), ``plan.csv`` (to execute), ``plan.png``, ``plan.svg``,
-        and ``certificate.json``: a copy of the report's, or if none was asked for before, one that is written now.
+        and ``certificate.json``: a copy of the report's, or, if the report has none, one that is written now.
 
         Parameters
         ----------
@@ -129,15 +131,19 @@ class BoundReport(Findings):
             raise
         return write_report(self.with_certificate(proof), directory)
 
+    def to_latex(self) -> str:
+        r"""Return the tables that ``ratt-opt bound`` prints as LaTeX, which needs ``\usepackage{booktabs}``."""
+        return "\n".join(map(latex_of, report_tables(self)))
+
     def plot(self) -> Figure:
-        """Return a figure: the map of the recommended plan and its worst attack, beside what each planner keeps."""
+        """Return a figure: the recommended plan and its worst attack on a map, beside the worst case of each plan."""
         return plan_figure(self, picture_of(self.source, self))
 
     def _repr_html_(self) -> str:
         return report_view(self)
 
     def __repr__(self) -> str:
-        best = f"the best plan keeps {down(self.optimum.lower, 8)} to {up(self.upper, 8)}"
+        best = f"the best plan has a worst-case value of {down(self.optimum.lower, 8)} to {up(self.upper, 8)}"
         return f"BoundReport({self.objective}, {self.problem.n_robots} robots, {best}, {self.recommended!r})"
 
     def __eq__(self, other: object) -> bool:

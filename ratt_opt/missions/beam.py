@@ -2,7 +2,7 @@
 
 The beam grows step by step: of all sequences so far each robot keeps those worth most alone. The bracket is a column
 generation around the exact search. The search over some elements proves an upper bound by a tree of cuts, each of which
-is linear in every element's information. A plan with elements that were left out is sent, where the tree splits
+is linear in every element's information. A plan with elements that were left out is sent, if the tree splits
 the elements of their robot, to any child; so each leaf bounds it as soon as its maxima run over what was left out too.
 Elements that attain a maximum above the bound join the search, until the bracket is as narrow as wanted.
 """

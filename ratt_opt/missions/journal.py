@@ -35,7 +35,7 @@ SEAL = "checksum"
 
 @dataclass(slots=True)
 class Journal:
-    """The decisions recorded so far; ``path`` is ``None`` where none are kept.
+    """The decisions recorded so far; ``path`` is ``None`` if none are kept.
 
     The file begins with the first decision: a mission that is refused leaves none behind.
     """
@@ -82,7 +82,7 @@ class Journal:
         return journal
 
     def recorded(self, step: int) -> tuple[IntArray, Attack] | None:
-        """The decisions of a step, where they are known."""
+        """The decisions of a step, if they are known."""
         return self.lines[step] if step < len(self.lines) else None
 
     def append(self, step: int, elements: IntArray, attack: Attack) -> None:
@@ -102,7 +102,7 @@ def _lines(file: Path) -> list[str]:
 
 
 def _drop(file: Path, torn: str) -> None:
-    """Cut off what follows the last whole line, where the next step is written; whole lines are never written again."""
+    """Cut off what follows the last whole line: the next step is written there; whole lines are never written again."""
     try:
         os.truncate(file, file.stat().st_size - len(torn.encode()))
     except OSError as error:

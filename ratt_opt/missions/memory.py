@@ -3,7 +3,7 @@
 A measurement becomes information about the state at its step (``H'R^-1 H`` and ``H'R^-1 z``), which adds up. Every
 robot keeps the pieces that it made or was told since the last step of which all robots know everything. A group's
 belief is that of a filter run over the union of its pieces: whatever splits and meetings there were, nothing is
-counted twice, and where nothing is lost the belief is that of one central filter. Adding beliefs themselves would
+counted twice, and if nothing is lost the belief is that of one central filter. Adding beliefs themselves would
 count their common past, and the motion noise they share, twice.
 
 Source: information filter; the pieces are those of Durrant-Whyte and Henderson, Multisensor Data Fusion (2008).

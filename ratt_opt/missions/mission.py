@@ -13,7 +13,7 @@ __all__ = ["Mission"]
 
 
 class Mission(FlownMission):
-    """A mission as it went; equal missions are equal to the bit.
+    """A finished mission; equal missions are equal to the bit.
 
     ``start`` : the poses (N, 3) it began at; ``settings`` : its arguments by name, for people; ``decisions`` : the
     elements and attack of every step, from which it can be replayed.

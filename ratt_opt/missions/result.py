@@ -36,8 +36,8 @@ class MissionStep(ByValue):
 
     ``truth`` : (M, d) states; ``links`` : those that were not cut; ``groups`` : by the lowest robot. ``best`` : which
     of them is the team's, the one with the smallest trace of position covariances (sharing the best group's belief
-    only: the group that the criterion values most); ``value`` : the criterion of its seeing robots. ``links_short`` :
-    by how many links the network was smaller than the attacker's budget, which was capped at the network's.
+    only: the group that the criterion values most); ``value`` : the criterion of its unblinded robots. ``links_short``
+    : by how many links the network was smaller than the attacker's budget, which was capped at the network's.
     """
 
     poses: FloatArray
@@ -64,7 +64,7 @@ class MissionStep(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FlownMission(ByValue):
-    """A mission as it went; equal missions are equal to the bit.
+    """A finished mission; equal missions are equal to the bit.
 
     ``start`` : the poses (N, 3) it began at; ``settings`` : its arguments by name, for people; ``decisions`` : the
     elements and attack of every step, from which it can be replayed.
@@ -115,12 +115,12 @@ class FlownMission(ByValue):
 
     @property
     def nees(self) -> FloatArray:
-        """(T,) normalised estimation error squared, mean over the targets; ``d`` where the filter is consistent."""
+        """(T,) normalised estimation error squared, mean over the targets; ``d`` if the filter is consistent."""
         return readonly(np.array([step.team.belief.nees(step.truth).mean() for step in self.steps]))
 
     @property
     def nis(self) -> FloatArray:
-        """(T,) normalised innovation squared of the team's group per number measured; NaN where none was."""
+        """(T,) normalised innovation squared of the team's group per number measured; NaN if none was."""
         pairs = [(step.team.innovation.squared, step.team.innovation.count) for step in self.steps]
         return readonly(np.array([s / n if n else np.nan for s, n in pairs]))
 
@@ -132,7 +132,7 @@ class FlownMission(ByValue):
         return low / self.scenario.n_targets, high / self.scenario.n_targets
 
     def nis_band(self, level: float = 0.95) -> FloatArray:
-        """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN where none."""
+        """(T, 2) what :attr:`nis` lies in with probability ``level`` when the filter is consistent; NaN if none."""
         _check_level(level)
         counts = np.array([step.team.innovation.count or np.nan for step in self.steps])
         ends = [(1 - level) / 2, (1 + level) / 2]

@@ -84,7 +84,7 @@ def run_mission(
     journal : a file that keeps every step's decisions; a mission that was killed is replayed from it and goes on
     progress : called as ``progress(step, steps)``
 
-    Where fewer links are left than may be cut, the attacker may cut all of them: ``MissionStep.links_short`` says so.
+    If fewer links are left than may be cut, the attacker may cut all of them: ``MissionStep.links_short`` says so.
 
     Targets that nobody can reach stay as uncertain as their motion makes them; a robot that drives off is not stopped
     unless ``model.area`` says so.

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.models.sensor_model import SensorModel
     from ratt_opt.missions.world import World
+    from ratt_opt.scenario.sensors.model import SensorModel
 
 __all__ = ["Reading", "group_pieces", "simulated_readings"]
 
@@ -59,9 +59,9 @@ def group_pieces(
     """The pieces of a group's seeing ``robots`` (zero for others), and how surprising they were together.
 
     Every measurement is linearised at the predicted positions, as the plan does; with an iterated linearisation at the
-    estimate that follows, again and again. A sighting counts wherever its target was expected, in view or not.
+    estimate that follows, again and again. A sighting counts even if its target was expected out of view.
 
-    ``poses`` : robot by robot (3,), or (M, 3) where each target was measured from another pose.
+    ``poses`` : robot by robot (3,), or (M, 3) if each target was measured from another pose.
     ``pose_covariances`` : (N, 3, 3) of the poses, whose errors are taken for further noise of every measurement.
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)

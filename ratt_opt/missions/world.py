@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
     from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.models.robots import RobotMotion
-    from ratt_opt.missions.models.sensor_model import SensorModel
+    from ratt_opt.scenario.sensor import Sensor
+    from ratt_opt.scenario.sensors.model import SensorModel
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["Linearisation", "MissionModel", "Threatened", "World"]
@@ -48,13 +49,14 @@ class MissionModel:
     ----------
     motion : of the targets: ``"known velocity"`` (the paper's), ``"constant velocity"``, ``"coordinated turn"``, or a
         :class:`TargetMotion`
-    sensor : what of the scenario's sensors is measured, ``"range and bearing"`` (the same as ``None``), ``"range"`` or
-        ``"bearing"``; or a :class:`SensorModel` for all robots, or one for each
+    sensor : ``None`` for the scenario's sensors; ``"range and bearing"``, ``"range"`` or ``"bearing"``, a part of what
+        its range-and-bearing sensors measure; a registered kind of sensor; or a :class:`Sensor` or
+        :class:`SensorModel` for all robots, or one for each
     robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
         is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
         estimate
-    objective : criterion of a plan; the log-det only where a single position is planned for
+    objective : criterion of a plan; the log-det only if a single position is planned for
     output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``. The max-eigenvalue's mean is the
         worst axis of the errors of all steps together, over their number
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
@@ -63,7 +65,7 @@ class MissionModel:
     """
 
     motion: str | TargetMotion = "known velocity"
-    sensor: str | SensorModel | Sequence[SensorModel] | None = None
+    sensor: str | Sensor | SensorModel | Sequence[Sensor | SensorModel] | None = None
     robot_motion: str = "paper"
     linearisation: Linearisation = "second order"
     objective: str = "trace"
@@ -89,7 +91,7 @@ class MissionModel:
 def _beside(prior: FloatArray, information: FloatArray) -> FloatArray:
     """The information (E, M, d, d), scaled down if a prior (M, d, d) would lose its digits beside it.
 
-    Where nothing is known of a target yet, a sighting that is worth 1e14 times as much leaves it as well known as one
+    If nothing is known of a target yet, a sighting that is worth 1e14 times as much leaves it as well known as one
     that is worth more: the value changes in its last digits.
     """
     sizes = np.trace(information, axis1=-2, axis2=-1) * np.trace(prior, axis1=-2, axis2=-1)  # at least the largest axes
@@ -138,7 +140,7 @@ class World:
         object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
         if self.model.objective not in WITH_OUTPUT and self.horizon > 1:
-            rule = f"must be {' or '.join(WITH_OUTPUT)} where a plan looks several steps ahead"
+            rule = f"must be {' or '.join(WITH_OUTPUT)} if a plan looks several steps ahead"
             raise InputError("objective", rule, self.model.objective)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,12 +10,13 @@ import numpy as np
 
 from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.sensors.range_bearing import RangeBearing
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Problem
 
-__all__ = ["Description", "View", "describe"]
+__all__ = ["Description", "View", "describe", "named"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +29,7 @@ class View:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Description:
-    """Names are empty, and the rest ``None``, where the source does not tell.
+    """Names are empty, and the rest ``None``, if the source does not tell.
 
     ``robot_names`` : (N,); ``target_names`` : (M,); ``weights`` : (M,) importance of the targets.
     ``labels`` : (E,) what each element is ("3 m/s, 1 rad/s"); ``controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
@@ -46,16 +48,23 @@ class Description:
     views: tuple[View, ...] | None = None
 
     def robot(self, i: int) -> str:
-        """Robot ``i`` for people: its number, and its name where it has one."""
-        return f"{i} {self.robot_names[i]}".rstrip()
+        """Robot ``i`` for people: its number, and its name if that says more."""
+        return named(i, self.robot_names[i], "robot")
 
     def label(self, element: int) -> str:
-        """What an element is; its index where nothing is known."""
+        """What an element is; its index if nothing is known."""
         return self.labels[element] if self.labels else f"element {element}"
 
     def pose_after(self, element: int) -> list[float] | None:
         """Where its robot is after an element's control: x, y [m], heading [rad] as far as known."""
         return None if self.poses_after is None else [float(x) for x in self.poses_after[element]]
+
+
+def named(number: int, name: str, kind: str) -> str:
+    """A robot's number, or a target's after a T, with its name unless that says the same ("R2", "robot 2", "2")."""
+    shown = f"T{number}" if kind == "target" else f"{number}"
+    again = re.fullmatch(rf"(?:{kind}|{kind[0]})?[\s_#-]*0*{number}", name, re.IGNORECASE)
+    return f"{shown} {name}" if name and not again else shown
 
 
 def describe(problem: Problem, source: object = None) -> Description:
@@ -82,15 +91,22 @@ def describe(problem: Problem, source: object = None) -> Description:
         target_names=source.target_names or unnamed[1],
         weights=weights,
         labels=source.labels,
+        controls=_array(source.element_controls),
         poses=_array(source.robot_positions),
-        poses_after=_array(source.element_positions),
+        poses_after=_poses_after(source),
         targets=_array(source.target_positions),
     )
 
 
+def _poses_after(source: InformationInput) -> FloatArray | None:
+    places, headings = _array(source.element_positions), source.element_headings
+    return places if places is None or headings is None else np.column_stack([places, headings])
+
+
 def _views(scenario: Scenario) -> tuple[View, ...]:
     sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
-    return tuple(View(sensor.field_of_view, sensor.max_range) for sensor in sensors)
+    limited = [sensor.sensor if isinstance(sensor, RangeBearing) else sensor for sensor in sensors]
+    return tuple(View(getattr(one, "field_of_view", None), getattr(one, "max_range", None)) for one in limited)
 
 
 def _array(places: tuple[tuple[float, float], ...] | None) -> FloatArray | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt._version import __version__
+from ratt_opt._version import CITATION, __version__
 from ratt_opt.report.description import describe
 from ratt_opt.scenario.problem_record import ProblemRecord
 
@@ -35,6 +35,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "format": FORMAT,
         "version": VERSION,
         "software": f"ratt-opt {__version__}",
+        "citation": CITATION,
         "created": report.created,
         "seeds": dict(report.seeds),
         "input": _input(report.source),
@@ -47,6 +48,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "alpha_s": problem.alpha_s,
         "alpha_c": problem.alpha_c,
         "n_max": report.n_max,
+        "n_max_upper": report.n_max_upper,
         "alpha_cs": report.alpha_cs,
         "ratt": _shared(report, report.ratt),
         "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
@@ -59,6 +61,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "proofs": {name: value.proof for name, value in report.guarantees.items()},
         "inapplicable": dict(report.inapplicable),
         "omitted": dict(report.omitted),
+        "remarks": list(report.remarks),
         "guaranteed_share": report.guaranteed_share,
         "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
         "views": {name: plan_document(view) for name, view in report.views.items()},
@@ -78,7 +81,7 @@ def attack_document(
     best_links: Mapping[str, BestLinks] | None = None,
     explains: bool = False,
 ) -> dict[str, Any]:
-    """Return the attacks on one plan as JSON-ready values, and what to protect or add where that was asked for.
+    """Return the attacks on one plan as JSON-ready values, and what to protect or add, if wanted.
 
     ``best_links`` : by what is done with them, "protect" and "add"
     ``explains`` : also which stages of the exact attack ran, and what each did
@@ -148,7 +151,7 @@ def _shared(report: Findings, plan: AssessedPlan) -> dict[str, Any]:
 
 
 def _input(source: object) -> dict[str, Any] | None:
-    """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` where a problem was given."""
+    """The contents of the input file and the SHA-256 of their canonical JSON; ``None`` if a problem was given."""
     if not isinstance(source, ProblemRecord):
         return None
     return {"sha256": source.digest, "document": source.storable.model_dump(mode="json")}

@@ -64,7 +64,7 @@ def draw_fields(axes: Axes, picture: Picture, robots: Collection[int]) -> None:
 
 
 def draw_watching(axes: Axes, picture: Picture, robots: Collection[int]) -> None:
-    """Draw a thin line from each robot to each target that it measures, dotted where the attack takes that away."""
+    """Draw a thin line from each robot to each target that it measures, dotted if the attack takes that away."""
     from matplotlib.collections import LineCollection
 
     if picture.targets is None:

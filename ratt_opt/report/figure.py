@@ -31,11 +31,11 @@ def plan_figure(report: Findings, picture: Picture) -> Figure:
     draw_map(left, picture)
     draw_bars(right, report)
     share = share_text(plan.worst_case.lower, report.upper)
-    share = share if share.startswith("optimal") else f"{share} of the most any plan can keep"
+    share = share if share.startswith("optimal") else f"{share} of the best possible"
     figure.suptitle(
         f"{plan.name} plan. Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
         f"{len(attack.links)} of {len(report.problem.communication.links)} links cut.\n"
-        f"It keeps {down(plan.worst_case.lower, 6)}: {share}.",
+        f"Worst-case value {down(plan.worst_case.lower, 6)}: {share}.",
         fontsize=11.5,
     )
     name_things(left, picture)

@@ -1,4 +1,4 @@
-"""Put words on a map where they cover as little as possible: each beside its place, in the best of eight spots."""
+"""Put words on a map where they cover as little as possible: each beside its place, in the best of some spots."""
 
 from __future__ import annotations
 
@@ -6,23 +6,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.report.lettering import lettering
+from ratt_opt.report.spots import SPOTS, best_spot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from matplotlib.axes import Axes
-    from matplotlib.transforms import Bbox
+    from matplotlib.transforms import BboxBase
 
     from ratt_opt._validation import FloatArray
+    from ratt_opt.report.spots import Box
 
 __all__ = ["Label", "halo", "place_labels"]
 
-SPOTS = (
-    *((x, y, side) for x, side in ((8, "left"), (-8, "right")) for y in (-9, 9, -3)),
-    (0, 15, "center"),
-    (0, -17, "center"),
-)
-"""Offsets [points] from the place, the first preferred, and which end of the word is there."""
 MARK = 7.0
 """Half the width of a robot or target on paper [points]."""
 
@@ -52,13 +48,14 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         word = axes.annotate(
             text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
         )
-        costs = []
+        boxes = []
         for x, y, side in SPOTS:
             word.set(position=(x, y), ha=side)
-            costs.append(_covered(word.get_window_extent(), taken, axes.bbox))
-        x, y, side = SPOTS[costs.index(min(costs))]
+            boxes.append(_box(word.get_window_extent()))
+        chosen, _ = best_spot(boxes, taken, _box(axes.bbox))
+        x, y, side = SPOTS[chosen]
         word.set(position=(x, y), ha=side)
-        taken.append(word.get_window_extent())
+        taken.append(boxes[chosen])
 
 
 def halo() -> list[Any]:
@@ -68,17 +65,10 @@ def halo() -> list[Any]:
     return [withStroke(linewidth=HALO, foreground="white", alpha=0.8)]
 
 
-def _square(centre: FloatArray, half: float) -> Bbox:
-    from matplotlib.transforms import Bbox
+def _square(centre: FloatArray, half: float) -> Box:
+    x, y = (float(c) for c in centre)
+    return x - half, y - half, x + half, y + half
 
-    return Bbox.from_extents(*(centre - half), *(centre + half))
 
-
-def _covered(box: Bbox, taken: Iterable[Bbox], inside: Bbox) -> float:
-    """Area that a word would cover of others, and that would stick out of the map."""
-    from matplotlib.transforms import Bbox
-
-    shared = (Bbox.intersection(box, other) for other in taken)
-    kept = Bbox.intersection(box, inside)
-    out = box.width * box.height - (0.0 if kept is None else kept.width * kept.height)
-    return out + sum(part.width * part.height for part in shared if part is not None)
+def _box(given: BboxBase) -> Box:
+    return float(given.x0), float(given.y0), float(given.x1), float(given.y1)

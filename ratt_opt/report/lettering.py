@@ -31,7 +31,7 @@ def lettering(text: str) -> tuple[str, tuple[str, ...]]:
 
 @lru_cache(maxsize=256)
 def _letters(path: str) -> frozenset[int]:
-    """The code points of a font; none where it cannot be read."""
+    """The code points of a font; none if it cannot be read."""
     from matplotlib.ft2font import FT2Font
 
     try:

@@ -22,9 +22,9 @@ SIGMAS = 2.4477
 MANY_LINKS = 60
 """Above this many links of a kind they are drawn fainter."""
 MANY_ROBOTS = 20
-"""From so many robots on, only the best group and what is attacked are drawn one by one, the rest as a density,"""
+"""From this many robots on, only the best group and what is attacked are drawn one by one, the rest as a density,"""
 SPARSE, MOST_DRAWN = 4, 60
-"""unless there are at most so many links a robot and so many robots: a network is read by all of its links."""
+"""unless there are at most this many links a robot and this many robots: a network is read by all of its links."""
 
 
 def draw_map(axes: Axes, picture: Picture) -> None:
@@ -175,7 +175,7 @@ def _draw_density(axes: Axes, picture: Picture, rest: list[int]) -> None:
 
 
 def _draw_moves(axes: Axes, picture: Picture, robots: list[int]) -> None:
-    """A ring where each robot is now, and an arrow to where its control takes it."""
+    """A ring at the robot's place now, and an arrow to its place after the control."""
     if picture.before is None:
         return
     now = picture.before[robots]

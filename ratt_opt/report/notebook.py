@@ -21,18 +21,22 @@ __all__ = ["html_table", "plan_view", "report_view"]
 
 
 def html_table(caption: str, columns: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return a table with a caption and headed columns; every text is escaped."""
-    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in columns)
-    body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
+    """Return a table with a caption and headed columns; every text is escaped. Cells know the name of their column."""
+    names = list(columns)
+    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in names)
+    body = "".join(f"<tr>{''.join(map(_cell, names, row))}</tr>" for row in rows)
     return f"<table><caption>{escape(caption)}</caption><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
+def _cell(name: str, value: object) -> str:
+    return f'<td data-column="{escape(name)}">{escape(str(value))}</td>'
+
+
 def plan_view(plan: AssessedPlan) -> str:
-    """Return one plan as a table: what each robot does, and what is left of it."""
+    """Return one plan as a table: what each robot does, and its role under attack."""
     attack = plan.worst_case.attack
     rows = [
-        (i, element, "yes" if i in plan.bait else "", "blinded" if i in attack.sensing else "sees")
-        for i, element in enumerate(plan.elements.tolist())
+        (i, element, "yes" if i in plan.bait else "", plan.role(i)) for i, element in enumerate(plan.elements.tolist())
     ]
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
     lost = f"{counted(len(attack.sensing), 'robot')} blinded and {counted(len(attack.links), 'link')} cut"
@@ -50,7 +54,9 @@ def report_view(report: Findings) -> str:
         )
         for plan in report.plans
     ]
-    table = html_table("what each planner keeps", ("planner", "worst-case value", "of the best possible"), rows)
+    table = html_table(
+        "planners under their worst attacks", ("planner", "worst-case value", "share of the best possible"), rows
+    )
     drawing = io.StringIO()
     plan_figure(report, picture_of(report.source, report)).savefig(drawing, format="svg", metadata={"Date": None})
     svg = drawing.getvalue()

@@ -7,8 +7,24 @@ deuteranopia, and ``LEAST_GREY_DISTANCE`` of lightness in grey; markers, hatches
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-__all__ = ["BLINDED", "CUT", "INK", "LOST", "PLANNERS", "SURVIVING", "TARGET", "VERDICTS", "Look", "look_of"]
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = [
+    "BLINDED",
+    "CUT",
+    "INK",
+    "LOST",
+    "PLANNERS",
+    "SURVIVING",
+    "TARGET",
+    "VERDICTS",
+    "Look",
+    "look_of",
+    "looks_of",
+]
 
 LEAST_COLOUR_DISTANCE = 20.0
 """About nine times what is just noticeable."""
@@ -46,6 +62,16 @@ CUT = BLINDED
 INK = "#222222"
 
 
+OWN = (Look("#6c757d", "P", "oo"), Look("#c9d55b", "*", "--"), Look("#1c1c1c", "h", "||"), Look("#e0451b", "<", "**"))
+"""Looks of planners that are not the library's, one after the other."""
+
+
 def look_of(planner: str) -> Look:
     """Return a planner's look; that of others than the library's own is plain grey."""
-    return PLANNERS.get(planner, Look("#6c757d", "P", "oo"))
+    return PLANNERS.get(planner, OWN[0])
+
+
+def looks_of(planners: Sequence[str]) -> dict[str, Look]:
+    """Return the looks of planners in one figure: those that are not the library's differ as long as looks last."""
+    own = [name for name in planners if name not in PLANNERS]
+    return {name: PLANNERS[name] if name in PLANNERS else OWN[own.index(name) % len(OWN)] for name in planners}

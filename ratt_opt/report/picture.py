@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.report.description import View, describe
+from ratt_opt.report.description import View, describe, named
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -20,14 +20,14 @@ __all__ = ["Picture", "picture_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Picture:
-    """Lengths in metres, angles in radians; ``None`` where nothing is known.
+    """Lengths in metres, angles in radians; ``None`` if nothing is known.
 
-    ``places`` : (N, 2) robots after their controls, or a layout of the graph where ``is_layout``.
-    ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty where none.
+    ``places`` : (N, 2) robots after their controls, or a layout of the graph if ``is_layout``.
+    ``headings`` : (N,); ``before`` : (N, 2) robots now; ``names`` : (N,), empty if none.
     ``targets`` : (M, 2) predicted means; ``target_names`` and ``weights`` : (M,); ``prior``, ``posterior`` :
-    (M, 2, 2) covariances, the latter with the best surviving group's measurements.
-    ``views`` : (N,) fields of view after the controls, where a sensor is limited; ``watched`` : (N, M) whether a robot
-    measures a target, where not every robot measures all.
+    (M, 2, 2) covariances of the positions, the latter with the best surviving group's measurements.
+    ``views`` : (N,) fields of view after the controls, if a sensor is limited; ``watched`` : (N, M) whether a robot
+    measures a target, if not every robot measures all.
     ``groups`` : connected groups left by the attack; ``best`` : the one that performs best.
     """
 
@@ -56,10 +56,10 @@ class Picture:
         return self.weights is not None and len(self.weights) > 0 and bool(np.ptp(self.weights) > 0)
 
     def target_label(self, j: int) -> str:
-        """Target ``j`` on the map: its number, its name if it has one, its weight where weights differ."""
+        """Target ``j`` on the map: its number, its name if it has one, its weight if weights differ."""
         name = self.target_names[j] if self.target_names else ""
         weight = f" ×{self.weights[j]:g}" if self.weights is not None and self.is_weighted else ""
-        return f"T{j} {name}".rstrip() + weight
+        return named(j, name, "target") + weight
 
     @property
     def seeing(self) -> frozenset[int]:
@@ -68,7 +68,7 @@ class Picture:
 
     @property
     def unseen(self) -> frozenset[int]:
-        """Targets that no robot of the best group measures; none where all robots measure all."""
+        """Targets that no robot of the best group measures; none if all robots measure all."""
         if self.watched is None:
             return frozenset()
         return frozenset(np.flatnonzero(~self.watched[sorted(self.seeing)].any(axis=0)).tolist())
@@ -80,18 +80,18 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
     problem, known = report.problem, describe(report.problem, source)
     places = _places(report, plan, known)
     after = None if known.poses_after is None else known.poses_after[plan.elements]
-    flat = known.targets is not None and plan.posterior is not None and plan.posterior.shape[-1] == 2
+    plane = None if known.targets is None or plan.posterior is None else _plane(source, plan.posterior.shape[-1])
     return Picture(
         places=places,
         is_layout=after is None and known.poses is None,
         headings=None if after is None or after.shape[1] < 3 else after[:, 2],
         before=None if known.poses is None or after is None else known.poses[:, :2],
-        names=known.robot_names,
+        names=tuple(name if known.robot(i).endswith(f" {name}") else "" for i, name in enumerate(known.robot_names)),
         targets=known.targets,
         target_names=known.target_names,
         weights=known.weights,
-        prior=problem.information_objective.prior if flat else None,
-        posterior=plan.posterior if flat else None,
+        prior=None if plane is None else problem.information_objective.prior[plane],
+        posterior=None if plane is None or plan.posterior is None else plan.posterior[plane],
         views=_views(known) if after is not None and after.shape[1] == 3 else None,
         watched=_watched(problem, plan) if after is not None and known.targets is not None else None,
         links=problem.communication.links,
@@ -101,6 +101,16 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
         groups=plan.groups,
         best=next((group for group in plan.groups if plan.best_group and plan.best_group <= group), plan.groups[0]),
     )
+
+
+def _plane(source: object, dimension: int) -> tuple[Any, ...] | None:
+    """What picks the covariances (M, 2, 2) of x and y out of those of whole states; ``None`` if they are not told.
+
+    They are the first two coordinates in metres; a state of two numbers is a position unless its units say otherwise.
+    """
+    units = getattr(source, "units", None) or (("m", "m") if dimension == 2 else ())
+    metres = [k for k, unit in enumerate(units) if unit == "m"][:2]
+    return (slice(None), *np.ix_(metres, metres)) if len(metres) == 2 else None
 
 
 def _views(known: Description) -> tuple[View, ...] | None:

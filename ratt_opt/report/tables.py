@@ -10,9 +10,8 @@ from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt.report.description import describe
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rich.console import RenderableType
     from rich.table import Table
 
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
@@ -33,12 +32,12 @@ __all__ = [
 ]
 
 PROVED_OPTIMAL = Fraction("1e-9")
-"""A plan proved to keep all but this share of the best possible is called optimal."""
+"""A plan is called optimal if at most this share of the best possible value is lost."""
 LONGEST_LINK_LIST = 12
 """More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
 
-def report_tables(report: Findings) -> Iterable[RenderableType]:
+def report_tables(report: Findings) -> Iterable[Table]:
     """Yield the tables of a bound report: planners, plan, bracket, guarantees."""
     yield _planners(report)
     yield _plan(report)
@@ -55,9 +54,11 @@ def attack_tables(
     *,
     best_links: Mapping[str, BestLinks] | None = None,
     explains: bool = False,
+    names: Sequence[str] = (),
 ) -> Iterable[Table]:
-    """Yield the attacks on a plan, and, where asked for, what to protect or add and what pushes it ``below`` a value.
+    """Yield the attacks on a plan, and, if wanted, what to protect or add and what pushes it ``below`` a value.
 
+    ``names`` : (N,) robots for people, by their numbers where empty
     ``best_links`` : by what is done with them, "protect" and "add"
     ``explains`` : also which stages of the exact attack ran, and what each did
     """
@@ -65,11 +66,11 @@ def attack_tables(
     if explains:
         yield _stages(results["exact"])
     if critical is not None:
-        yield _critical(critical)
+        yield _critical(critical, names)
     if budgets is not None:
         yield _budgets(budgets, f"{below}")
     if best_links:
-        yield _best_links(best_links)
+        yield _best_links(best_links, names)
 
 
 def audit_table(chains: Mapping[str, Mapping[str, int]]) -> Table:
@@ -109,16 +110,17 @@ def _stages(exact: AttackResult) -> Table:
 
 
 def _moved(before: float, after: float, rounded: Callable[[float, int], str]) -> str:
-    """An end of a bracket, and what it was where it moved; a dash where it is not known."""
+    """An end of a bracket, and what it was if it moved; a dash if it is not known."""
     old, new = (rounded(end, 8) if math.isfinite(end) else "-" for end in (before, after))
     return new if old == new else f"{old} → {new}"
 
 
-def _critical(ranking: Iterable[Criticality]) -> Table:
+def _critical(ranking: Iterable[Criticality], names: Sequence[str]) -> Table:
     """One row a robot or link: what protecting it alone gains, and what losing it alone costs."""
     table = _table("what to protect", "robot or link", "worst case gained if protected", "value lost if attacked alone")
     for row in ranking:
-        name = f"robot {row.target}" if isinstance(row.target, int) else f"link {row.target[0]}-{row.target[1]}"
+        target = row.target
+        name = f"robot {_named(target, names)}" if isinstance(target, int) else f"link {_link(target, names)}"
         table.add_row(name, bracket_text(row.gain_lower, row.gain_upper), f"{row.loss:.8g}")
     return table
 
@@ -133,23 +135,36 @@ def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
     return table
 
 
-def _best_links(found: Mapping[str, BestLinks]) -> Table:
+def _best_links(found: Mapping[str, BestLinks], names: Sequence[str]) -> Table:
     """One row a kind of change: the best links, and the worst case with them."""
-    table = _table("the best links", "what to do", "links", "worst case with them", "no choice keeps more than")
+    table = _table("the best links", "what to do", "links", "worst case with them", "no choice is better than")
     for what, best in found.items():
-        links = ", ".join(f"{i}-{j}" for i, j in best.links) or "none gains anything"
+        links = ", ".join(_link(link, names) for link in best.links) or "none gains anything"
         table.add_row(what, links, bracket_text(best.lower, best.after.upper), up(best.upper, 8))
         table.caption = f"without them {bracket_text(best.before.lower, best.before.upper)}; the plan is the same"
     return table
 
 
+def _named(robot: int, names: Sequence[str]) -> str:
+    return names[robot] if names else f"{robot}"
+
+
+def _link(link: tuple[int, int], names: Sequence[str]) -> str:
+    """A link by its robots' numbers, or by their names if there are any: "0 ada - 1 bob"."""
+    i, j = (_named(robot, names) for robot in link)
+    return f"{i} - {j}" if " " in i + j else f"{i}-{j}"
+
+
 def _planners(report: Findings) -> Table:
-    table = _table("what each planner keeps", "planner", "worst-case value", "of the best possible", "evaluations")
+    unit = f" [{report.unit}]" if report.unit else ""
+    value = f"worst-case value{unit}"
+    table = _table("planners under their worst attacks", "planner", value, "share of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(plan.worst_case.lower, report.upper)
         name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
         table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
-    table.caption = "; ".join(["* recommended: the best proved worst case", *omitted_texts(report)])
+    lines = ["* recommended: the best proved worst case", *omitted_texts(report), *report.remarks]
+    table.caption = "\n".join(lines)
     return table
 
 
@@ -163,10 +178,9 @@ def _plan(report: Findings) -> Table:
     table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
     home = {i: k for k, group in enumerate(plan.groups) for i in group}
     for i, element in enumerate(plan.elements.tolist()):
-        state = "blinded" if i in plan.worst_case.attack.sensing else "sees"
         group = f", group {home[i]} of {len(plan.groups)}" if len(plan.groups) > 1 else ""
         control = known.labels[element] if known.labels else ""
-        table.add_row(known.robot(i), str(element), control, state + group)
+        table.add_row(known.robot(i), str(element), control, plan.role(i) + group)
     table.caption = f"cut links: {_links(plan.worst_case.attack)}"
     return table
 
@@ -179,10 +193,11 @@ def _bracket(report: Findings) -> Table:
         table.add_row("gap, of the criterion left after measuring", up(optimum.posterior_gap, 3))
     table.add_row("search stopped because", optimum.stop.value)
     table.add_row("certificate", verdict_text(report.certificate))
-    table.add_row("certified ratio of RATT", share_text(report.ratt.worst_case.lower, report.upper))
+    table.add_row("RATT's certified share of the best possible", share_text(report.ratt.worst_case.lower, report.upper))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
-    is_known = problem.threat.links_alike  # by CAA; on other graphs RATT may know but a bound
-    table.add_row("smallest largest group, n_max", f"{'' if is_known else 'at least '}{report.n_max}")
+    is_known = report.n_max == report.n_max_upper  # a bound else, of which RATT is sure
+    most = "" if report.n_max_upper is None else f", at most {report.n_max_upper}"
+    table.add_row("smallest largest group, n_max", f"{report.n_max}" if is_known else f"at least {report.n_max}{most}")
     table.add_row("equivalent sensing attacks, alpha_cs", f"{'' if is_known else 'at most '}{report.alpha_cs}")
     for name, bracket in (("curvature k", report.curvature), ("total curvature c", report.total_curvature)):
         if bracket is not None:
@@ -202,7 +217,7 @@ def verdict_text(given: Certification) -> str:
 
 
 def _guarantees(report: Findings) -> Table:
-    table = _table("what was guaranteed before planning", "guarantee", "value", "needs", "proved at")
+    table = _table("what was guaranteed before planning", "guarantee", "share", "needs", "proved at")
     best = report.guaranteed_share
     for name, guarantee in report.guarantees.items():
         strongest = float(guarantee) == best and best > 0
@@ -217,7 +232,7 @@ def _guarantees(report: Findings) -> Table:
 
 
 def guarantee_text(report: Findings) -> str:
-    """What the strongest guarantee says where that is all or nothing, else nothing."""
+    """What the strongest guarantee says if that is all or nothing, else nothing."""
     best = report.guaranteed_share
     if best == 1:
         return "RATT's plan is optimal, and was sure to be before planning"

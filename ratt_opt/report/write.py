@@ -28,7 +28,7 @@ FILES = (*NUMBERS, *FIGURES)
 def write_report(report: Findings, folder: str | Path) -> list[Path]:
     """Write ``report.json``, ``report.html``, ``plan.csv``, ``plan.png``, ``plan.svg`` and return the files.
 
-    The certificate, where there is one, is copied beside them. Drawing takes a second or two; an interrupt, or a fault,
+    The certificate, if there is one, is copied beside them. Drawing takes a second or two; an interrupt, or a fault,
     of that leaves the numbers.
 
     Raises

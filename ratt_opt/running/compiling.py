@@ -1,9 +1,9 @@
 """Numba for modules of compiled loops, which take it from here: interrupts are answered, and no outdated code is run.
 
 Machine code is made in one call of at most half a second, in which the compiler calls back into Python. An interrupt in
-those callbacks, where every one ends up that came during the call, is dropped by Python, and what was half made then
+those callbacks, if every one ends up that came during the call, is dropped by Python, and what was half made then
 fails with an error of its own; so is one in the callback of a weak reference, of which compiling ends many. So it is
-raised again as soon as the callback has ended. Where the compiler takes a
+raised again as soon as the callback has ended. If the compiler takes a
 module over, an interrupt just after it left two owners, each of which freed it; one at the very end of compiling left
 interrupts handled as while it lasts: there, too, it comes again a little later. What is kept of compiled code:
 ``kept_code.py``.
@@ -12,8 +12,8 @@ An interrupt while compiled loops run came when the arrays that they return are 
 for their class. Of two arrays the second one then ended in ``SystemError``. The class is among the loop's constants
 here, so that nobody is asked and the interrupt comes once the loop has returned.
 
-A generator of random numbers is asked for its functions by Python code of ctypes. An interrupt there ended the process:
-Numba goes on with an object that there is not. Here they are read from what the generator offers to C.
+Python code of ctypes reads the functions of a generator of random numbers. An interrupt there ended the process:
+Numba goes on with an object that does not exist. Here they are read from what the generator offers to C.
 
 What it frees later it frees in destructors, too, when the collector comes to it, long after compiling. An interrupt
 there is dropped as well, so it is raised again.
@@ -94,7 +94,7 @@ class _Interrupts(event.Listener):
         self._before: Any = None
 
     def on_start(self, event: object) -> None:
-        """Handle interrupts from now on, in the place of whoever raises them otherwise."""
+        """Handle interrupts from now on, in the place of the handler that raises them otherwise."""
         del event
         if threading.current_thread() is not threading.main_thread():
             return
@@ -131,7 +131,7 @@ def _must_wait(frame: FrameType | None) -> bool:
 
 
 def _raised_again(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[[sys.UnraisableHookArgs], None]:
-    """``hook`` of what Python drops, but for an interrupt dropped where compiled code is freed: that comes again."""
+    """``hook`` of what Python drops, except an interrupt dropped where compiled code is freed: that comes again."""
 
     def dropped(what: sys.UnraisableHookArgs) -> None:
         module = getattr(what.object, "__module__", None) or ""
@@ -144,7 +144,7 @@ def _raised_again(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[
 
 
 def _array_of_constant_class(kind: Any, value: Any, context: Any) -> Any:
-    """Code that makes an array for Python, as Numba's own but for its class, which that keeps pickled."""
+    """Code that makes an array for Python, as Numba's own except for its class, which that keeps pickled."""
     api, constants = context.pyapi, context.env_manager
     api.serialize_object, api.unserialize = constants.add_const, constants.read_const
     try:

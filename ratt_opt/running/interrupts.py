@@ -32,9 +32,9 @@ def again_later(number: int = signal.SIGINT) -> None:
 
 
 def interrupt_main_thread(number: int = signal.SIGINT) -> None:
-    """From any thread; also where the main one sleeps or waits, if the system can tell a single thread.
+    """From any thread; also if the main one sleeps or waits, if the system can tell a single thread.
 
-    A main thread that waits goes on for as long as it was to where the signal is sent to another one.
+    A main thread that waits goes on for as long as it was to if the signal is sent to another one.
     """
     if sys.platform != "win32":
         signal.pthread_kill(threading.main_thread().ident or 0, number)
@@ -83,7 +83,7 @@ def interrupts_between_packages(load: Callable[[str], object], name: str) -> obj
 
 
 def imported_whole(module: str) -> Any:
-    """A module of others whose import takes too long for interrupts to wait, imported anew where one ended it.
+    """A module of others whose import takes too long for interrupts to wait, imported anew if one ended it.
 
     What was imported of its package by then would stay, and hold on to a package that is none.
     """

@@ -1,9 +1,9 @@
 """Machine code is kept from one process to the next for as long as all sources that are in it stay the same.
 
-Numba keeps it beside the modules, where an upgrade by pip leaves it, and takes it for current while the module's own
-file is the same. But a loop contains those of other modules that it calls, their constants and the layout of named
-tuples it is given. Where only these changed the old code would run on without a word; and where a named tuple is gone,
-the index of what is kept cannot be read, so that every call fails.
+Numba keeps it beside the modules. An upgrade by pip leaves it there, and Numba takes it for current while the module's
+own file is the same. But a loop contains those of other modules that it calls, their constants and the layout of named
+tuples it is given. If only these changed the old code would run on without a word; and if a named tuple is gone, the
+index of what is kept cannot be read, so that every call fails.
 
 So what is kept is named for the contents of all modules that the loop's module imports from, for annotations too, and
 on through those that hold compiled loops themselves.
@@ -46,7 +46,7 @@ def _imported(path: Path) -> Iterator[Path]:
 
 @cache
 def fingerprint(path: Path) -> str:
-    """Of all sources that machine code of the module in this file may contain."""
+    """Fingerprint of all sources that machine code of the module in this file may contain."""
     reached, unread = {path}, [path]
     while unread:
         new = set(_imported(unread.pop())) - reached
@@ -83,7 +83,7 @@ class SourcesLocator:
         return str(self._inner.get_cache_path())
 
     def get_source_stamp(self) -> Any:
-        """Of the function's own file."""
+        """Time of the function's own file."""
         return self._inner.get_source_stamp()
 
     def get_disambiguator(self) -> str:

@@ -26,7 +26,7 @@ class _Pool(ProcessPoolExecutor):
     """One that ends although its processes died while a call was being sent to them.
 
     Before 3.12 the thread that sends it, and with it shutting down and the interpreter's exit, waits for ever
-    (python/cpython#94777). Where nobody holds the reading end any more it gets an error, and ends.
+    (python/cpython#94777). If nobody holds the reading end any more it gets an error, and ends.
     """
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
@@ -37,7 +37,7 @@ class _Pool(ProcessPoolExecutor):
 
 
 def _stop_sending(calls: Any, future: Future[Any]) -> None:
-    """Close the reading end of the queue of ``calls`` where the future is lost with its process."""
+    """Close the reading end of the queue of ``calls`` if the future is lost with its process."""
     if calls is not None and not future.cancelled() and isinstance(future.exception(), BrokenProcessPool):
         with suppress(OSError):  # closed already
             calls._reader.close()
@@ -71,7 +71,7 @@ def local_processes(workers: int | None) -> Iterator[Executor]:
 
 
 class SeparateProcesses(Executor):
-    """So many pools of one process each, started when asked for first: one that dies takes no other's work along.
+    """That many pools of one process each, started at first use: one that dies takes no other's work along.
 
     Unlike a pool of several processes it goes on after that: the next call starts another one. Shutting down ends
     them at once, whatever they are at.

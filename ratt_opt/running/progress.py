@@ -1,6 +1,6 @@
 """What is going on and since when, for people at a terminal, about every step that has taken two seconds.
 
-A step says what it is with ``Step``, as a block or as a decorator. Nothing is shown where standard error is no
+A step says what it is with ``Step``, as a block or as a decorator. Nothing is shown if standard error is no
 terminal, in worker processes and in threads other than the main one; nothing stays on the screen.
 """
 
@@ -28,7 +28,7 @@ ERASE = "\r\x1b[2K"
 class Step(ContextDecorator):
     """``with Step("certificate") as step: step.say("checking it")``, or ``@Step("the worst attack")``.
 
-    ``patience`` : seconds before it is shown, ``PATIENCE`` by default; 0 where somebody waits for an answer.
+    ``patience`` : seconds before it is shown, ``PATIENCE`` by default; 0 if somebody waits for an answer.
     """
 
     def __init__(self, text: str, patience: float | None = None) -> None:
@@ -130,7 +130,7 @@ _HEARD: list[object] = []
 
 
 def _hear_compilers() -> None:
-    """Have a step for as long as loops are compiled, where Numba is loaded: nothing here loads it."""
+    """Have a step for as long as loops are compiled, if Numba is loaded: nothing here loads it."""
     events: Any = sys.modules.get("numba.core.event")
     if events is None or _HEARD:
         return

@@ -71,18 +71,16 @@ def load_input(path: str | Path) -> Scenario | InformationInput:
 
 
 def save_scenario(scenario: Scenario | InformationInput, path: str | Path) -> None:
-    """Write a file that :func:`load_scenario` (:func:`load_input` for matrices) reads back equal, whole or not at all.
+    """Write a scenario (:func:`load_scenario` reads it) or matrices (:func:`load_input`), whole or not at all.
 
     Raises
     ------
-    InputError : the file cannot be written, or could not be read back: a file cannot name a sensor class of your own.
-        ``scenario.to_information()`` can be saved then.
+    InputError : the file cannot be written, or could not be read back: a file names a sensor class of your own only if
+        it is registered (:func:`register_sensor`). ``scenario.to_information()`` can always be saved.
     """
     if isinstance(scenario, Scenario):
         for field, kind in scenario.own_sensors.items():
-            rule = (
-                "must be the library's Sensor to be saved in a scenario file (save scenario.to_information() instead)"
-            )
+            rule = "must be the library's Sensor or a registered one to be saved (register_sensor, or to_information())"
             raise InputError(field, rule, kind)
     document = scenario.model_dump(mode="json")
     length = len(json.dumps(document, indent=1))
@@ -113,7 +111,7 @@ def read_json(path: str | Path) -> Any:
 
     Raises
     ------
-    FileFormatError : any of these is broken, with the line where one is known.
+    FileFormatError : any of these is broken, with the line if one is known.
     """
     text = _read_text(Path(path))
     try:

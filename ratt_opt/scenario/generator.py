@@ -40,7 +40,7 @@ def random_scenario(
     """Draw robots and targets uniformly in a square, headings zero, as the paper's trials do.
 
     Robots and targets come from two child streams of ``SeedSequence(seed)``, one number after the
-    other: with the same seed the first robots stay where they are when more are asked for.
+    other: with the same seed a larger team has the same first robots.
 
     Parameters
     ----------
@@ -49,9 +49,9 @@ def random_scenario(
     seed : integer >= 0
     side : side of the square [m]
     prior_std, process_std : standard deviation per axis of each target's estimate and motion noise [m]
-    sensor : noise and reach; the default sensor where ``None``
+    sensor : noise and reach; the default sensor if ``None``
     controls : (speed [m/s], turn rate [rad/s]) pairs of every robot
-    communication_range : robots within this distance are linked [m]; all are where ``None``
+    communication_range : robots within this distance are linked [m]; all are if ``None``
 
     Raises
     ------

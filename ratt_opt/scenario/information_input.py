@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
@@ -21,6 +21,9 @@ __all__ = ["InformationInput"]
 LARGEST_ENTRY = 1e100
 """Units are the user's, so far larger entries than a scenario's are accepted; products of two stay finite."""
 
+LATER = ("output", "units", "element_headings", "element_controls")
+"""Optional fields that came after the first release of the format."""
+
 Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY), BeforeValidator(plain)]
 Matrix = tuple[tuple[Entry, ...], ...]
 Place = tuple[Number, Number]
@@ -31,9 +34,12 @@ class InformationInput(ProblemRecord):
 
     ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
     each element; ``weights`` : (M,) or ``None``; ``labels`` : (E,) what each element is, or ``None``.
-    Links, budgets and protections are those of a scenario. For maps and tables only, each optional:
-    ``robot_names`` : (N,); ``target_names`` : (M,); ``robot_positions`` : (N, 2) now,
-    ``element_positions`` : (E, 2) after each element's control, ``target_positions`` : (M, 2), all x, y [m].
+    ``output`` : (q, d) the part ``C x`` of every target's state that counts, for the trace and the max-eigenvalue;
+    ``None`` for the whole state. Links, budgets and protections are those of a scenario. For maps and tables only, each
+    optional: ``units`` : (d,) of the state's coordinates, such as ``["m", "m", "m/s", "m/s"]``; ``robot_names`` : (N,);
+    ``target_names`` : (M,); ``robot_positions`` : (N, 2) now, ``element_positions`` : (E, 2) and ``element_headings`` :
+    (E,) after each element's control, ``target_positions`` : (M, 2), all x, y [m] and angles [rad];
+    ``element_controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
     """
 
     format: Literal["ratt-opt information"] = "ratt-opt information"
@@ -54,6 +60,16 @@ class InformationInput(ProblemRecord):
     robot_positions: tuple[Place, ...] | None = None
     element_positions: tuple[Place, ...] | None = None
     target_positions: tuple[Place, ...] | None = None
+    output: Matrix | None = None
+    units: tuple[Text, ...] | None = None
+    element_headings: tuple[Number, ...] | None = None
+    element_controls: tuple[Place, ...] | None = None
+
+    @model_serializer(mode="wrap")
+    def _as_before(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without later fields that hold nothing: files and their SHA-256 are as they were before these came."""
+        document: dict[str, Any] = whole(self)
+        return {name: value for name, value in document.items() if value is not None or name not in LATER}
 
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
@@ -97,10 +113,17 @@ class InformationInput(ProblemRecord):
             ("robot_positions", self.n_robots, "robot"),
             ("element_positions", len(self.robot), "element"),
             ("target_positions", self.n_targets, "target"),
+            ("element_headings", len(self.robot), "element"),
+            ("element_controls", len(self.robot), "element"),
+            ("units", len(self.prior[0]), "coordinate"),
         ):
             given = getattr(self, name)
             if given is not None and len(given) != length:
                 raise InputError(name, f"must have {length} entries, one per {of}", len(given))
+
+    @property
+    def _output(self) -> FloatArray | None:
+        return None if self.output is None else _array("output", self.output)
 
     @property
     def _owners(self) -> IntArray:
@@ -120,3 +143,8 @@ def _array(name: str, nested: object) -> FloatArray:
         return np.array(nested, dtype=np.float64)
     except ValueError:
         raise InputError(name, "must hold square matrices of one size", "lists of different lengths") from None
+
+
+def nested(array: FloatArray) -> Any:
+    """An array as nested tuples, the form of the fields of a record."""
+    return tuple(nested(part) for part in array) if array.ndim > 1 else tuple(array.tolist())

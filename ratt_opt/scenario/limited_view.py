@@ -51,7 +51,7 @@ def limited_view_scenario(
     prior_std: float = 3.0,
     process_std: float = 0.5,
 ) -> Scenario:
-    """Draw a team whose robots see only a part of what is around them, so that each must choose what to look at.
+    """Draw a team with limited views: each robot must choose what to look at.
 
     A control is a speed, 0 or 2 m/s, and one of ``headings`` equal turns of the full circle; the robot drives along
     its old heading and looks along the new one. Robots and slow targets stand uniformly in a square: 60 m for up to 10
@@ -64,9 +64,9 @@ def limited_view_scenario(
     alpha_s, alpha_c : robots that may be blinded, links that may be cut
     seed : integer >= 0
     view : full angle that a sensor sees about its robot's heading [degrees], in (0, 360]
-    reach : distance up to which a sensor sees [m]; no limit where ``None``
+    reach : distance up to which a sensor sees [m]; no limit if ``None``
     headings : directions in which a robot can look after a step
-    communication_range : robots within this distance are linked [m]; all are where ``None``
+    communication_range : robots within this distance are linked [m]; all are if ``None``
     sensor : ``"camera"`` (precise bearing), ``"radar"`` (precise range), or a :class:`Sensor` whose noise is taken
     prior_std, process_std : standard deviation per axis of each target's estimate and motion noise [m]
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
-from ratt_opt.scenario.information_input import InformationInput
+from ratt_opt.scenario.information_input import InformationInput, nested
 from ratt_opt.scenario.motion import move_robots, predict_targets
 from ratt_opt.scenario.own_sensors import replaced_methods
 from ratt_opt.scenario.problem_record import Link, ProblemRecord, near_pairs
 from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text, Whole
 from ratt_opt.scenario.sensor import Sensor
+from ratt_opt.scenario.sensors.kinds import AnySensor, kind_of
+from ratt_opt.scenario.sensors.model import SensorModel
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -43,7 +45,7 @@ class Robot(Record):
     y: Number
     heading: Number = 0.0
     controls: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1)] = DEFAULT_CONTROLS
-    sensor: Sensor | None = None
+    sensor: Annotated[Sensor | SensorModel, AnySensor] | None = None
     name: Text = ""
 
 
@@ -91,7 +93,7 @@ class Scenario(ProblemRecord):
     version: Literal[1] = 1
     robots: Annotated[tuple[Robot, ...], Field(min_length=1)]
     targets: Annotated[tuple[Target, ...], Field(min_length=1)]
-    sensor: Sensor = Sensor()
+    sensor: Annotated[Sensor | SensorModel, AnySensor] = Sensor()
     sampling_period: Positive = 1.0
     alpha_s: Whole
     alpha_c: Whole
@@ -104,7 +106,7 @@ class Scenario(ProblemRecord):
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
         if self.links is not None and self.communication_range is not None:
-            raise InputError("communication_range", "must be absent where links are listed", self.communication_range)
+            raise InputError("communication_range", "must be absent if links are listed", self.communication_range)
         self._check_sizes(sum(len(robot.controls) for robot in self.robots), 2)
         self._check_links()
         self._check_ranges()
@@ -143,7 +145,7 @@ class Scenario(ProblemRecord):
 
     @cached_property
     def predicted_targets(self) -> FloatArray:
-        """(M, 2) predicted mean positions [m], where the sensor model is linearised."""
+        """(M, 2) predicted mean positions [m]; the sensor model is linearised there."""
         positions = np.array([(target.x, target.y) for target in self.targets])
         motions = np.array([(target.speed, target.turn_rate, target.heading) for target in self.targets])
         return readonly(predict_targets(positions, motions, self.sampling_period))
@@ -183,11 +185,10 @@ class Scenario(ProblemRecord):
 
     @property
     def own_sensors(self) -> dict[str, str]:
-        """Fields that hold a sensor with behaviour of its own, and in words which."""
+        """Fields that hold a sensor with behaviour of its own that no file can name, and in words which."""
         fields = {"sensor": self.sensor}
         fields |= {f"robots[{i}].sensor": own for i, robot in enumerate(self.robots) if (own := robot.sensor)}
-        found = {name: (type(sensor).__name__, replaced_methods(sensor)) for name, sensor in fields.items()}
-        return {name: f"{kind} with its own {', '.join(own)}" for name, (kind, own) in found.items() if own}
+        return {name: words for name, sensor in fields.items() if (words := _unnamed(sensor))}
 
     @property
     def storable(self) -> Scenario | InformationInput:
@@ -198,8 +199,8 @@ class Scenario(ProblemRecord):
         """The same one-step problem as matrices: what a sensor class of your own tells goes into a file this way."""
         links = near_pairs(self.poses, self.communication_range) if self.communication_range else self.links
         return InformationInput(
-            prior=_nested(self.prior),
-            information=_nested(self.information),
+            prior=nested(self.prior),
+            information=nested(self.information),
             robot=tuple(self.robot.tolist()),
             alpha_s=self.alpha_s,
             alpha_c=self.alpha_c,
@@ -211,9 +212,12 @@ class Scenario(ProblemRecord):
             notes=self.notes,
             robot_names=tuple(robot.name for robot in self.robots),
             target_names=tuple(target.name for target in self.targets),
-            robot_positions=_nested(self.poses[:, :2]),
-            element_positions=_nested(self.predicted_poses[:, :2]),
-            target_positions=_nested(self.predicted_targets),
+            robot_positions=nested(self.poses[:, :2]),
+            element_positions=nested(self.predicted_poses[:, :2]),
+            target_positions=nested(self.predicted_targets),
+            units=("m", "m"),
+            element_headings=nested(self.predicted_poses[:, 2]),
+            element_controls=nested(self.controls),
         )
 
     @property
@@ -253,6 +257,11 @@ class Scenario(ProblemRecord):
             )
 
 
-def _nested(array: FloatArray) -> Any:
-    """An array as nested tuples, the form of the fields of a record."""
-    return tuple(_nested(part) for part in array) if array.ndim > 1 else tuple(array.tolist())
+def _unnamed(sensor: Sensor | SensorModel) -> str:
+    """What a sensor is that no file can name; nothing if one can."""
+    if type(sensor) is Sensor or kind_of(sensor):
+        return ""
+    if isinstance(sensor, SensorModel):
+        return f"{type(sensor).__name__}, which is not registered"
+    own = replaced_methods(sensor)
+    return f"{type(sensor).__name__} with its own {', '.join(own)}" if own else ""

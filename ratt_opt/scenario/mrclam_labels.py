@@ -24,7 +24,7 @@ __all__ = ["LabelEvidence", "Sightings", "pose_at"]
 FIT_RANGE, FIT_BEARING = 1.0, 0.3
 """A sighting fits a landmark when its range and bearing agree to within these [m], [rad]."""
 FEWEST, CLEAR = 10, 2.0
-"""Labels are exchanged if at least so many of their sightings fit then, and that many times more than as labelled."""
+"""Labels are exchanged if at least this many of their sightings fit then, and this many times more than as labelled."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

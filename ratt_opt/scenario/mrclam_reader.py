@@ -36,7 +36,7 @@ class MrclamData:
 
     ``landmarks`` : subject -> (x, y) [m]; ``subject_of`` : barcode -> subject, after corrections;
     ``corrections`` : those applied; ``inapplicable`` : those that name a subject this set does not have;
-    ``labels`` : in one line which labelling is used, who decided that, and how many sightings fit;
+    ``labels`` : one line: which labelling is used, who decided that, and how many sightings fit;
     ``poses`` : per robot (K, 4) time [s], x [m], y [m], heading [rad];
     ``measurements`` : per robot (L, 4) time [s], barcode, range [m], bearing [rad]; ``pose_files`` : names read.
     """
@@ -56,7 +56,7 @@ def opened_mrclam(data: str | Path | MrclamData, corrections: Mapping[int, int] 
     if not isinstance(data, MrclamData):
         return read_mrclam(data, corrections)
     if corrections is not None:
-        raise InputError("corrections", "must be given where the folder is read (read_mrclam)", dict(corrections))
+        raise InputError("corrections", "must be given if the folder is read (read_mrclam)", dict(corrections))
     return data
 
 
@@ -133,7 +133,7 @@ def _table(
 ) -> FloatArray:
     """The numbers of a file, at least ``columns`` on each line; ``#`` starts a comment. ``empty`` : it may have none.
 
-    The columns ``identifiers`` hold whole numbers, in each column all different where ``unique``.
+    The columns ``identifiers`` hold whole numbers, in each column all different if ``unique``.
     """
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()  # some loggers write a byte-order mark

@@ -14,12 +14,13 @@ from ratt_opt._validation import check_number
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.record import Record, Whole
-from ratt_opt.setfunctions.criteria.registry import criterion_called
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["Link", "ProblemRecord", "near_pairs"]
 
@@ -105,10 +106,10 @@ class ProblemRecord(Record):
 
         Raises
         ------
-        InputError : there is no criterion of that name, or a matrix breaks its rule.
+        InputError : there is no criterion of that name, or none of a part of the state, or a matrix breaks its rule.
         """
         return Problem(
-            criterion_called(objective)(*self._matrices),
+            self._criterion(objective),
             self._owners,
             self.graph,
             self.alpha_s,
@@ -116,6 +117,19 @@ class ProblemRecord(Record):
             frozenset(self.protected_robots),
             frozenset(self.protected_links),
         )
+
+    def _criterion(self, objective: str) -> InformationObjective:
+        kind = criterion_called(objective)
+        if self._output is None:
+            return kind(*self._matrices)
+        if objective not in WITH_OUTPUT:
+            raise InputError("objective", f"must be {' or '.join(WITH_OUTPUT)}, as an output is given", objective)
+        return WITH_OUTPUT[objective](*self._matrices, output=self._output)
+
+    @property
+    def _output(self) -> FloatArray | None:
+        """(q, d) the part of the state that counts, or ``None`` for the whole."""
+        return None
 
     def pairs_within(self, reach: float) -> tuple[tuple[int, int], ...]:
         """Pairs of robots ``(i, j)``, ``i < j``, at most ``reach`` [m] apart, ascending; linked or not.

@@ -22,7 +22,7 @@ class Sensor(Record):
     With ``law = "variance"`` (the paper's), the *variances* are
     ``range_noise + range_noise_slope * r`` [m^2] and ``bearing_noise + bearing_noise_slope * |bearing|`` [rad^2].
     With ``law = "std"`` (real sensors), the same expressions give *standard deviations* [m], [rad].
-    The constant terms keep the noise positive at range 0 and bearing 0, where the paper's law would vanish.
+    The constant terms keep the noise positive at range 0 and bearing 0; the paper's law would vanish there.
 
     The paper gives no coefficients. The defaults make one robot at the mean distance in the
     100 m square (52 m) about halve the uncertainty of a default target along its line of sight, so

@@ -10,7 +10,8 @@ import numpy as np
 from ratt_opt._validation import check_distinct, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.own_sensors import tells_itself
-from ratt_opt.scenario.sensor import jacobian, measure, wrap_angle
+from ratt_opt.scenario.sensors.model import SensorModel
+from ratt_opt.scenario.sensors.range_bearing import RangeBearing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -53,11 +54,11 @@ def simulate_tracking(
 ) -> Tracking:
     """Draw true target positions and measurements, and update the EKF with the measurements of ``robots``.
 
-    The truth comes from the predicted distribution of every target. Robot ``i`` of ``robots`` moves by
-    its chosen control and measures range and bearing with the sensor's noise at the true geometry; the
-    filter assumes the noise and the Jacobian at the predicted position, as the plan does. A measurement
-    exists if the sensor sees the true position, wherever the target was expected. The random numbers of a robot
-    depend on ``seed`` only: plans and groups are compared on the same luck.
+    The truth comes from the predicted distribution of every target. Robot ``i`` of ``robots`` moves by its chosen
+    control and measures with the sensor's noise at the true geometry; the filter assumes the noise and the Jacobian at
+    the predicted position, as the plan does. A measurement exists if the sensor sees the true position, even if the
+    target was expected elsewhere. The random numbers of a robot depend on ``seed`` only: plans and groups are compared
+    on the same luck.
 
     Parameters
     ----------
@@ -82,29 +83,33 @@ def simulate_tracking(
     poses = scenario.predicted_poses[_check_plan(elements, scenario.robot, scenario.n_robots)]
     predicted, prior = scenario.predicted_targets, scenario.prior
     truth = predicted + _correlated(rng.standard_normal((draws, *predicted.shape)), prior)
-    luck = rng.standard_normal((scenario.n_robots, *truth.shape))
+    sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
+    numbers = max(2, *(getattr(sensor, "size", 2) for sensor in sensors))
+    luck = rng.standard_normal((scenario.n_robots, *truth.shape[:-1], numbers))
     estimates, covariances = np.broadcast_to(predicted, truth.shape), np.broadcast_to(prior, (draws, *prior.shape))
     for i in group:
-        sensor = scenario.robots[i].sensor or scenario.sensor
-        if tells_itself(sensor):
-            raise InputError(f"sensor of robots[{i}]", "must not state its own information", type(sensor).__name__)
-        expected, actual = measure(poses[i], predicted), measure(poses[i], truth)
-        surprise = actual + np.sqrt(_variances(sensor, actual)) * luck[i] - expected
-        surprise[..., 1] = wrap_angle(surprise[..., 1])
+        sensor, pose = _model(sensors[i], i), poses[i]
+        actual = sensor.measure(pose, truth)
+        noisy = actual + np.sqrt(sensor.noise(pose, truth)) * luck[i][..., : sensor.size]
+        surprise = sensor.surprise(noisy, sensor.measure(pose, predicted))
         # Every measurement is linearised at the prediction, as the plan does; the mean has moved since.
-        slope = jacobian(poses[i], predicted)
+        slope = sensor.jacobian(pose, predicted)
         surprise -= np.einsum("mij,dmj->dmi", slope, estimates - predicted)
-        noise = _variances(sensor, expected)[:, None, :] * np.eye(2)
-        seen = sensor.sees(*np.moveaxis(actual, -1, 0))
+        noise = sensor.noise(pose, predicted)[:, None, :] * np.eye(sensor.size)
+        seen = sensor.sees(pose, truth)
         gain = _gain(covariances, slope, noise) * seen[..., None, None]
         estimates = estimates + np.einsum("dmij,dmj->dmi", gain, surprise)
         covariances = _joseph(covariances, gain, slope, noise)
     return Tracking(truth=readonly(truth), estimates=readonly(estimates), covariances=readonly(covariances))
 
 
-def _variances(sensor: Sensor, measured: FloatArray) -> FloatArray:
-    """(..., 2) noise variances of range [m^2] and bearing [rad^2] measurements (..., 2)."""
-    return np.stack(sensor.noise_variances(measured[..., 0], measured[..., 1]), axis=-1)
+def _model(sensor: Sensor | SensorModel, robot: int) -> SensorModel:
+    """A robot's sensor as a model. InputError : it states its own information."""
+    if isinstance(sensor, SensorModel):
+        return sensor
+    if tells_itself(sensor):
+        raise InputError(f"sensor of robots[{robot}]", "must not state its own information", type(sensor).__name__)
+    return RangeBearing(sensor)
 
 
 def _check_plan(elements: ArrayLike, robot: IntArray, n_robots: int) -> IntArray:

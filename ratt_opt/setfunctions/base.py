@@ -29,7 +29,7 @@ def check_table_size(n: int) -> None:
 
 
 def finite_values(values: FloatArray) -> FloatArray:
-    """Return values of a set function, refused where one is NaN or infinite."""
+    """Return values of a set function, refused if one is NaN or infinite."""
     with np.errstate(all="ignore"):
         total = float(values.sum())  # NaN and infinities survive a sum; a sum of finite values may overflow
     if not np.isfinite(total) and not np.isfinite(values).all():
@@ -39,7 +39,7 @@ def finite_values(values: FloatArray) -> FloatArray:
 
 
 def checked_values(f: SetFunction, membership: BoolArray) -> FloatArray:
-    """(K,) values of the subsets in the rows of ``membership`` (K, n), refused where one is no finite number."""
+    """(K,) values of the subsets in the rows of ``membership`` (K, n), refused if one is no finite number."""
     values = np.asarray(f.evaluate(membership))
     if values.shape != (len(membership),) or values.dtype.kind not in "fiub":
         rule = f"must evaluate to one number for each of {len(membership)} sets"
@@ -59,7 +59,7 @@ class SetFunction(ABC):
 
     A subclass gives ``n`` and :meth:`evaluate`; the other methods have correct,
     slower defaults that a subclass may override with the same meaning.
-    Two functions are equal only if they are the same object: nobody compares tables of 2**26 values by accident.
+    Two functions are equal only if they are the same object: a comparison of tables of 2**26 values would take long.
     """
 
     __slots__ = ()
@@ -76,12 +76,12 @@ class SetFunction(ABC):
 
     @property
     def rounding(self) -> float:
-        """Values that differ by no more may be equal but for rounding; 0 where nothing is known of that."""
+        """Values that differ by no more may be equal up to rounding; 0 if nothing is known of that."""
         return 0.0
 
     @property
     def most_total_curvature(self) -> float:
-        """What theory says that the total curvature over all elements is at most; 1 where it says nothing.
+        """What theory says that the total curvature over all elements is at most; 1 if it says nothing.
 
         A function of your own that knows better says so: what keeps a share of its value then has a bound.
         """
@@ -89,7 +89,7 @@ class SetFunction(ABC):
 
     @abstractmethod
     def evaluate(self, membership: BoolArray) -> FloatArray:
-        """(K,) values of many subsets; ``membership`` (K, n) is True where the element belongs to the subset."""
+        """(K,) values of many subsets; ``membership`` (K, n) is True if the element belongs to the subset."""
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(n={self.n})"

@@ -43,8 +43,9 @@ class Tangent:
 class Choices:
     """The elements of the owners other than ``x``'s: K elements of R owners about M targets, d by d.
 
-    ``elements`` : (K,); ``owners`` : (K,) position of the owner; ``first`` : (R,) where each owner's elements begin.
-    ``inverse`` : (K, M, d, d) of their ``information``, zero where it is not ``regular`` (K, M).
+    ``elements`` : (K,); ``owners`` : (K,) position of the owner; ``first`` : (R,) first position of each owner's
+    elements.
+    ``inverse`` : (K, M, d, d) of their ``information``, zero if it is not ``regular`` (K, M).
     """
 
     elements: IntArray
@@ -77,12 +78,12 @@ class SeparableMinorant:
 
 
 def lacking(criterion: object, part: str, what: str) -> InputError:
-    """The refusal of a criterion that leaves a part out which is asked for."""
+    """The error for a criterion that lacks a part which is needed."""
     return InputError("objective", f"must define {part}, the {what}", type(criterion).__name__)
 
 
 class ProofParts(SetFunction):
-    """Parts that the library's own criteria have; another may, where it is to be relaxed or certified."""
+    """Parts that the library's own criteria have; another may, if it is to be relaxed or certified."""
 
     __slots__ = ()
 
@@ -101,7 +102,7 @@ class ProofParts(SetFunction):
 
     @property
     def prior_eigenvalue(self) -> float | None:
-        """An irrational number of the prior that a certificate states as a narrow range, where it needs one."""
+        """An irrational number of the prior that a certificate states as a narrow range, if it needs one."""
         return None
 
     @property
@@ -161,7 +162,7 @@ class CriterionParts(ProofParts):
 
     @property
     def prior_criterion(self) -> float | None:
-        """The criterion before any measurement, where it is a size (trace, max-eigenvalue) and not a logarithm."""
+        """The criterion before any measurement, if it is a size (trace, max-eigenvalue) and not a logarithm."""
         return None
 
     def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
@@ -239,7 +240,7 @@ class CriterionParts(ProofParts):
         return SeparableMinorant(0.0, np.zeros(len(others.elements)), np.zeros(len(others.first)))
 
     def planar_levels(self) -> PlanarLevels | None:
-        """The data as levels, where the value is one over their smallest (max-eigenvalue, at most two coordinates)."""
+        """The data as levels, if the value is one over their smallest (max-eigenvalue, at most two coordinates)."""
         return None
 
 

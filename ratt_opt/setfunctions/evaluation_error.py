@@ -1,11 +1,11 @@
 """How far computed values may be from the exact ones, of the matrices as they are given.
 
 Notation, for one target: ``P`` is the prior, ``X`` the information of a set of elements, at most one of each robot,
-``L = P^{-1} + X``; norms are spectral, or Frobenius' where that is simpler and larger; ``u = 2^-53``.
+``L = P^{-1} + X``; norms are spectral, or Frobenius' if that is simpler and larger; ``u = 2^-53``.
 
 1. What is evaluated is not ``L`` but ``L + D``: the prior's inverse was computed, and sums were rounded. Each rounding
    moves a sum by at most ``u`` times the sizes of its terms.
-2. ``tr C (L + D)^{-1} C'`` differs from ``tr C L^{-1} C'`` by at most ``r / (1 - r) |C|^2 q``, ``r = |D| q``, where
+2. ``tr C (L + D)^{-1} C'`` differs from ``tr C L^{-1} C'`` by at most ``r / (1 - r) |C|^2 q``, ``r = |D| q``, if
    ``L^{-1} <= q``. The same is true of the largest eigenvalue. Log-determinants differ by at most ``d r / (1 - r)``.
    If nothing is seen of a target, ``q = |P|``. Otherwise, let ``e`` be the largest element of the set: ``L`` is no
    smaller than ``P^{-1} + X_e``, whose inverse has a norm of at most ``q``, and ``|L| <= |P^{-1}| + N |X_e|``. So the
@@ -14,7 +14,7 @@ Notation, for one target: ``P`` is the prior, ``X`` the information of a set of 
    exchanges, whose factors have entries of at most ``2^(k - 1)`` times the matrix's in step ``k``, and three
    triangular solutions (Higham, Accuracy and Stability of Numerical Algorithms, 2002, theorems 8.5, 9.3 and 14.1).
 
-Where elements tell about some directions only, ``r`` grows with ``|P| |L|``. Where the prior's own condition makes that
+If elements tell about some directions only, ``r`` grows with ``|P| |L|``. If the prior's own condition makes that
 large, coordinates in which the prior is the identity have a smaller one: see ``ratt_opt/coordinates/unit_prior.py``.
 """
 

@@ -204,7 +204,7 @@ def from_triangles(entries: FloatArray) -> FloatArray:
 
 
 def _check_symmetric(argument: str, matrices: FloatArray, *, single: bool) -> FloatArray:
-    """Return the symmetric part of matrices that are symmetric up to rounding, to float32 where they are ``single``."""
+    """Return the symmetric part of matrices that are symmetric up to rounding, to float32 if they are ``single``."""
     tolerance = SINGLE_TOLERANCE if single else SYMMETRY_TOLERANCE
     if np.abs(matrices).max() > LARGEST:
         raise InputError(argument, f"must have entries of size at most {LARGEST:g}", float(np.abs(matrices).max()))
@@ -243,7 +243,7 @@ def _check_prior(value: ArrayLike) -> FloatArray:
 
 
 def _unit_diagonal(matrix: FloatArray) -> FloatArray:
-    """The matrix in units in which its diagonal is one: definite as before; as it is where an entry is not positive."""
+    """The matrix in units in which its diagonal is one: definite as before; as it is if an entry is not positive."""
     diagonal = np.diagonal(matrix)
     if diagonal.min() <= 0:
         return matrix
@@ -275,7 +275,7 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
 
 
 def _repaired(information: FloatArray, eigenvalues: FloatArray) -> FloatArray:
-    """The matrices, negative eigenvalues set to 0 where rounding to float32 explains them; a warning says how many."""
+    """The matrices, negative eigenvalues set to 0 if rounding to float32 explains them; a warning says how many."""
     least, most = eigenvalues[..., 0], np.abs(eigenvalues[..., -1])
     rounded = (least < -SYMMETRY_TOLERANCE * most) & (least >= -SINGLE_TOLERANCE * most)
     if not rounded.any():

@@ -1,4 +1,4 @@
-"""Compiled passes over a table of all subsets; imported only where a table is checked (compiling is cached).
+"""Compiled passes over a table of all subsets; imported only if a table is checked (compiling is cached).
 
 Every pass reads the table in its own order and makes no copy of it. The plain versions are in the tests.
 """
@@ -108,7 +108,7 @@ def _smallest_rise(block: Any, size: int, step: int) -> float:
 def _smallest_wide(block: Any, size: int, step: int) -> float:
     """The same many at once, the smallest of each place in a chunk kept apart; ``block`` goes on for one chunk more.
 
-    Where ``step`` is less than a chunk, places with that bit take differences that mean nothing; they are left out.
+    If ``step`` is less than a chunk, places with that bit take differences that mean nothing; they are left out.
     """
     least = np.full(_WIDTH, np.inf)
     for base in range(0, size, max(2 * step, _WIDTH)):
@@ -202,7 +202,7 @@ def _overlapping(values: Any, start: int, end: int, known: Any) -> Any:
 
 
 def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget) -> tuple[float, int, int]:
-    """Smallest ``(sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S))``, ``S`` in ``T``, where the gain is not 0.
+    """Smallest ``(sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S))``, ``S`` in ``T``, if the gain is not 0.
 
     ``values`` : flat, in C order, one axis of ``sizes[a]`` options an owner, option 0 being none of its elements.
     Returns the ratio (infinite if no gain is positive), the position of ``T``, and ``S`` as a mask over the axes

@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 __all__ = ["Metered", "metered", "table_within", "unmetered"]
 
 AT_ONCE = 0.02
-"""Seconds of values that are asked for at once: the clock is looked at, and an interrupt heard, about so often."""
+"""Seconds of values that are computed at once: the clock and interrupts are checked about this often."""
 MOST_AT_ONCE = 2**14
-"""Sets that are asked for at once, however fast: their memberships stay in cache."""
+"""Sets that are valued at once, however fast: their memberships stay in cache."""
 MOST_KEPT_AT_ONCE, MOST_KEPT = 2**12, 2**17
-"""Sets whose values are kept: of larger batches, which enumerate, none comes twice; all keep within some megabytes."""
+"""Sets whose values are stored: larger batches enumerate, so none comes twice; all stay within some megabytes."""
 
 
 class Metered(SetFunction):
     """``f`` within ``budget``; raises ``OutOfBudget`` instead of asking for a value that it does not allow.
 
-    However slow ``f`` is, few sets are asked for at once, so that the clock is looked at in between.
+    However slow ``f`` is, few sets are valued at once, so that the clock is looked at in between.
     """
 
     __slots__ = ("_at_once", "_budget", "_known", "f")
@@ -92,7 +92,7 @@ def unmetered(f: SetFunction) -> SetFunction:
 
 
 def table_within(f: SetFunction, budget: Budget) -> FloatArray:
-    """The full table of ``f``, as fast as it makes it itself; raises ``OutOfBudget`` where the budget is too small."""
+    """The full table of ``f``, as fast as it makes it itself; raises ``OutOfBudget`` if the budget is too small."""
     check_table_size(f.n)
     if isinstance(f, TableFunction):
         return f.values

@@ -1,6 +1,6 @@
-"""What a set function is: each check returns a witness against the property, or says that there is none.
+"""What a set function is: each check returns a witness against the property, or says that none exists.
 
-``None`` is a statement: every set was looked at (or theory decides). Where the ground set is too large for a table, or
+``None`` is a statement: every set was looked at (or theory decides). If the ground set is too large for a table, or
 the time too short, the answer is a witness or :class:`NotFound`, which is false, counts its trials and claims nothing
 more. An interrupt propagates.
 """
@@ -67,7 +67,7 @@ class _Question:
         return cls(f, rule, check_number("tolerance", tolerance, low=0), trials, seed, budget)
 
     def table(self) -> FloatArray | None:
-        """The table of ``f``; ``None`` where it is too large, or not complete in its share of the time."""
+        """The table of ``f``; ``None`` if it is too large, or not complete in its share of the time."""
         if self.f.n > LARGEST_EXACT:
             return None
         try:
@@ -133,11 +133,11 @@ def find_monotonicity_violation(
     """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
 
     ``tolerance`` : how negative counts, relative to the largest absolute value of the function
-    ``trials``, ``seed`` : of the sampled search, where the ground set has more than 24 elements or time is short
+    ``trials``, ``seed`` : of the sampled search, if the ground set has more than 24 elements or time is short
     ``time_limit``, ``max_evaluations`` : seconds, a minute by default, and values of ``f``, unlimited by default
     ``budget`` : an outer search's budget: its seconds and interrupts count too
 
-    Returns the witness; ``None`` where there is none, by a look at every set (up to 24 elements) or by theory
+    Returns the witness; ``None`` if there is none, by a look at every set (up to 24 elements) or by theory
     (information criteria: added information is positive semidefinite, up to the rounding their input rule admits);
     otherwise :class:`NotFound`, which is false and proves nothing.
 

@@ -35,7 +35,7 @@ TRIALS = 20_000
 BATCH = 2_000
 """Pairs evaluated at once: bounds the memory, a membership row a pair."""
 CLIMBS = 50
-"""Most steps from the worst pair found, each to its best neighbour; it ends earlier where no neighbour is worse."""
+"""Most steps from the worst pair found, each to its best neighbour; it ends earlier if no neighbour is worse."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,9 +70,9 @@ class Violation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotFound:
-    """No violation found in ``trials`` pairs of sets; not a proof. False.
+    """No violation found in ``trials`` pairs of sets. It is not a proof; its truth value is False.
 
-    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` where all pairs asked for were tried.
+    ``smallest_slack`` : the closest any came. ``stop`` : ``HEURISTIC`` if all ``trials`` pairs were tried.
     """
 
     rule: str

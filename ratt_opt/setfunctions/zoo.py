@@ -34,9 +34,9 @@ __all__ = ["REFERENCE_FAMILIES", "Reference", "reference"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """A set function and what theory knows of it, with the argument (``why``); ``None`` where theory says nothing.
+    """A set function and what theory knows of it, with the argument (``why``); ``None`` if theory says nothing.
 
-    Both curvatures are over all subsets (``"elements"``), and ``None`` also where the function is not monotone (then
+    Both curvatures are over all subsets (``"elements"``), and ``None`` also if the function is not monotone (then
     neither is defined).
     """
 

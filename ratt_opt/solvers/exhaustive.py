@@ -46,7 +46,7 @@ def exhaustive_optimum(
     Parameters
     ----------
     time_limit : seconds; unlimited by default
-    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
+    max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
 
     Raises
@@ -96,7 +96,7 @@ def exhaustive_optimum(
 def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:
     """Value of one group's robots for each joint choice of theirs.
 
-    The array has one axis per robot of the team that has a choice: its number of elements where the robot
+    The array has one axis per robot of the team that has a choice: its number of elements if the robot
     belongs to ``group``, 1 elsewhere, so that arrays of different groups broadcast.
     """
     members = sorted(group)

@@ -6,13 +6,13 @@ last time it was: information only grows, so covariances only shrink.
 - Log-det: marginals shrink with them (submodularity).
 - Trace: the marginal ``g(X) = tr(X - (X^{-1} + I)^{-1}) = tr(X (X + I^{-1})^{-1} X)`` is convex in the covariance,
   and later covariances lie in ``{0 <= X <= P}``. A convex function is largest at an extreme point: 0, ``P``, or
-  ``x x'`` with ``x = P^{1/2} v``, ``|v| = 1``, where it is ``|x|^2 s / (1 + s)`` with ``s = x' I x``; there
+  ``x x'`` with ``x = P^{1/2} v``, ``|v| = 1``; there it is ``|x|^2 s / (1 + s)`` with ``s = x' I x``; there
   ``|x|^2 <= lambda_max(P)`` and ``s <= mu = tr(P I)``. So no later marginal exceeds
   ``max(g(P), lambda_max(P) mu / (1 + mu))``, target by target.
 - Max-eigenvalue: no bound is kept; targets are looked at worst first, and a candidate is left as soon as one of them
   stays worse than with the best candidate.
 
-Imported only where many elements are to choose from: compiling takes seconds, once per machine (cached).
+Imported only if many elements are to choose from: compiling takes seconds, once per machine (cached).
 """
 
 from __future__ import annotations

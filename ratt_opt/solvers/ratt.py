@@ -37,14 +37,14 @@ twice as many, and what takes no longer than ``AT_ONCE`` within any: RATT's plan
 def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -> int:
     """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``, or a bound above it.
 
-    Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots and, where an
+    Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots and, if an
     attack can split off few groups, up to 60; else a proved lower bound on it, by tree inequalities and counting,
-    within a fixed amount of work (an integer program takes minutes from 20 robots on). Where both were asked, at 20 to
+    within a fixed amount of work (an integer program takes minutes from 20 robots on). If both were asked, at 20 to
     36 robots, they mostly agree and differ by one at most. RATT then prepares for more attacks than the links are
     worth; its guarantees hold for any number of baits. ``smallest_largest_group`` takes the time that the exact one
     needs, and :func:`ratt` an ``alpha_cs`` from there.
 
-    ``budget`` : an outer search's: where it is short a weaker bound is returned
+    ``budget`` : an outer search's: if it is short a weaker bound is returned
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
@@ -69,8 +69,8 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
     Parameters
     ----------
-    alpha_cs : sensing attacks that the link attacks are worth, where known; else asked for
-    budget : an outer search's budget: where ``alpha_cs`` takes long it is a bound found in a part of its seconds, and
+    alpha_cs : sensing attacks that the link attacks are worth, if known; else asked for
+    budget : an outer search's budget: if ``alpha_cs`` takes long it is a bound found in a part of its seconds, and
         once it is spent, the robots left get their individually best element too
 
     Returns
@@ -84,8 +84,8 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
 
 FIRST_SHARE, SHORT_SHARE = 0.02, 0.1
-"""Of a search's time for ``n_max``, and where that is less than two seconds: on networks of 30 robots a tenth of 120
-seconds went there and no plan was better for it; of one second nothing was left. Where no time is set nothing is cut
+"""Of a search's time for ``n_max``, and if that is less than two seconds: on networks of 30 robots a tenth of 120
+seconds went there and no plan was better for it; of one second nothing was left. If no time is set nothing is cut
 short."""
 
 
@@ -101,7 +101,7 @@ def bait_and_greedy(
 ) -> Plan:
     """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts.
 
-    ``single`` : (E,) individual values, where known; else asked for. They count as evaluations either way
+    ``single`` : (E,) individual values, if known; else asked for. They count as evaluations either way
     """
     single = check_problem(problem).objective.singletons() if single is None else single
     best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])

@@ -39,7 +39,8 @@ __all__ = ["RefinedPlan", "refined"]
 
 SECONDS = 1.0
 PROOF_SHARE, PROOF_SHARE_OF_ALL = 0.4, 0.05
-"""Of the time left, kept for proving what the best plan keeps; less if all attacks that matter are known."""
+"""Share of the remaining time for proving the worst case of the best plan; less if all attacks that matter are
+known."""
 BEST_SHARE = 0.7
 """Of that, for the best plan; the rest is for an attack on RATT's plan that leaves it no more."""
 PROOF_NODES = 500_000
@@ -50,9 +51,9 @@ PATIENCE = 200
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RefinedPlan(Plan):
-    """A plan that keeps at least ``lower`` under any attack, and at most ``upper`` under ``worst_case``'s.
+    """A plan and its worst-case value: at least ``lower``, at most ``upper`` (by ``worst_case``).
 
-    ``unattacked`` : its value when nobody attacks; ``kicks`` : how often it was tried to leave the best plan
+    ``unattacked`` : its value when nobody attacks; ``kicks`` : perturbations of the best plan that were tried
     """
 
     lower: float
@@ -150,7 +151,7 @@ def _walked(incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most
 def _best(  # noqa: PLR0917
     problem: Problem, few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int, stop: Stop
 ) -> RefinedPlan:
-    """The plan of which most is proved, if that is no less than RATT's plan can keep; that one otherwise.
+    """The plan with the best proved worst case, if that is no less than RATT's; RATT's plan otherwise.
 
     Elements of RATT's plan that are dominated were exchanged before.
     """

@@ -25,7 +25,7 @@ __all__ = ["MaxMinResult", "NonrobustPlan", "posterior_gap"]
 
 
 def posterior_gap(problem: Problem, lower: float, upper: float) -> float | None:
-    """``upper - lower`` as a share of the posterior criterion that ``lower`` leaves, where the criterion is a size."""
+    """``upper - lower`` as a share of the posterior criterion that ``lower`` leaves, if the criterion is a size."""
     before = problem.information_objective.prior_criterion
     return None if before is None or before <= lower else float((upper - lower) / (before - lower))
 
@@ -41,7 +41,7 @@ class NonrobustPlan(Plan):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MaxMinResult(ByValue, Shown):
-    """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` keeps at least ``lower`` under any attack.
+    """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` is worth at least ``lower`` under any attack.
 
     ``Phi*`` is the largest worst-case value of any plan [unit of the objective]. Two results are equal when all
     their fields are.
@@ -57,15 +57,15 @@ class MaxMinResult(ByValue, Shown):
     """``upper - lower`` as a share of the posterior criterion (trace, max-eigenvalue) that ``lower`` leaves: a
     diffuse prior hides real differences in the relative gap. ``None`` for other objectives."""
     worst_case: AttackResult | None = None
-    """The attack on ``elements`` that ``lower`` rests on; ``None`` where it was enumerated."""
+    """The attack on ``elements`` that ``lower`` rests on; ``None`` if it was enumerated."""
     proof: UpperProof | None = None
-    """What ``upper`` rests on; ``None`` where it was enumerated."""
+    """What ``upper`` rests on; ``None`` if it was enumerated."""
     unattacked: float | None = None
     """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
-    ``None`` where plans were enumerated, and for set functions that are no information criterion."""
+    ``None`` if plans were enumerated, and for set functions that are no information criterion."""
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        """Its plan: a result can be given wherever elements are asked for."""
+        """Its plan: functions that take elements take a result, too."""
         return np.array(self.elements, dtype=dtype, copy=copy)
 
     def outward(self, problem: Problem) -> Self:

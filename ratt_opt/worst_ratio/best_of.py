@@ -61,7 +61,7 @@ class _Elements:
 
 
 def best_of_three(n_robots: int, alpha_s: int, curvature: Fraction, *, time_limit: float | None = None) -> BestOfThree:
-    """Bracket the smallest share that the best of the three planners keeps, no link cut, total curvature at most c.
+    """Bracket the worst ratio of the best of the three planners, no link cut, total curvature at most c.
 
     Four robots take minutes. A spent ``time_limit`` raises ``OutOfBudget``: half the programs prove nothing.
     """

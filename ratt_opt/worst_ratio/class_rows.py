@@ -1,7 +1,7 @@
 """The two classes of set functions as linear programs over the values that matter.
 
 Elements: ``u_i`` (the planner's choice for robot i) is bit ``i``, ``o_i`` (an optimal plan's)
-is bit ``N + i``. Taking them distinct loses nothing. Where ``o_i = u_i``, add a twin ``o'`` of ``u``:
+is bit ``N + i``. Taking them distinct loses nothing. If ``o_i = u_i``, add a twin ``o'`` of ``u``:
 ``f(S + o') = f(S + u)``, and ``f(S + u + o') = f(S + u) + w`` with ``w = (1-k) f(u)`` (submodular; diminishing
 returns hold because every marginal of ``u`` is at least ``w``) or any ``w`` in ``[(1-c) m_u, m_u]`` (total
 curvature, ``m_u`` the largest marginal of ``u``). Neither curvature nor any value used below changes.

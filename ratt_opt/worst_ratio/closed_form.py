@@ -21,7 +21,7 @@ class KnownRatio:
     """What is known of one worst ratio without computing it.
 
     ``lower`` : a share that a written proof guarantees. ``attained`` : whether a written family of instances has it, so
-    that it is the ratio. ``conjectured`` : the ratio as conjectured from computed values, where that is more.
+    that it is the ratio. ``conjectured`` : the ratio as conjectured from computed values, if that is more.
     """
 
     lower: Fraction
@@ -30,10 +30,10 @@ class KnownRatio:
 
 
 def pattern_free_ratio(curvature: Fraction, family: str) -> Fraction:
-    """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner keep it on any instance.
+    """Return ``1 - k`` or ``(1 - c)**2`` exactly: RATT, Greedy and the myopic planner reach it on any instance.
 
     Proved in ``bounds.guarantees.pattern_free_bound``: its plan is any whose robots are bait or chosen greedily.
-    They are the infima over all teams: ``witness.attaining_instance`` attains the first for every ``k < 1`` where ties
+    They are the infima over all teams: ``witness.attaining_instance`` attains the first for every ``k < 1`` if ties
     go against RATT and comes as close as wanted without ties; the ratios of ``witness.limit_instance`` tend to the
     second.
     """
@@ -48,7 +48,7 @@ def proved_ratio(question: RatioQuestion) -> Fraction:
 def known_ratio(question: RatioQuestion) -> KnownRatio:
     """What written proofs, families and conjectures say of one worst ratio on the complete graph.
 
-    For RATT the best of :func:`survivor_bound`, :func:`group_size_bound` (where a bait always survives) and, where no
+    For RATT the best of :func:`survivor_bound`, :func:`group_size_bound` (if a bait always survives) and, if no
     cut splits the team, :func:`sensing_ratio`; for the other planners the pattern-free bound.
     """
     kept, submodular = 1 - question.curvature, question.family == "submodular"
@@ -83,7 +83,7 @@ def three_left_ratio(kept: Fraction) -> Fraction:
 
     ``(2 + t + 3 t^2) / 6`` up to ``t = 1/3``; beyond it the smaller one of ``(1+t) (1+2t) / (4+3t)`` and
     ``(1 + t^2 + t^3) / (2 + t)``, but at least t. Read off from coverage functions that attain it at four robots; the
-    computed values agree (``docs/ratios.md``). From ``t + t^2 = 1`` on it is t, the pattern-free bound.
+    computed values agree (``docs/researchers/ratios.md``). From ``t + t^2 = 1`` on it is t, the pattern-free bound.
     """
     t = kept
     if 3 * t <= 1:

@@ -2,7 +2,7 @@
 
 A weighted coverage function of few kinds of items has a weight for each instead of a value for each subset, so the
 program of a whole team of seven robots is small. Its optimum is the ratio of an instance, hence no less than the worst
-ratio, and for three and four robots left the same as that of the full program wherever both were computed.
+ratio, and for three and four robots left the same as that of the full program if both were computed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def coverage_instance(size: int, swapped: int, curvature: Fraction) -> tuple[Fra
     size, swapped : g robots are left and p blinded, which are the first greedy robots; N is at most 7
     curvature : k in [0, 1)
 
-    ``None`` where the solver's solution does not verify without rounding.
+    ``None`` if the solver's solution does not verify without rounding.
     """
     n = size + swapped
     question = RatioQuestion(n_robots=n, alpha_s=swapped, alpha_c=0, curvature=curvature, family="submodular")

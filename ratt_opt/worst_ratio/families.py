@@ -37,7 +37,7 @@ def pair_instance(curvature: Fraction) -> RatioWitness:
 
 
 def shared_plan_instance(size: int, curvature: Fraction) -> RatioWitness:
-    """Return an instance with ``N = 2g``, ``alpha_s = g = size`` on which three planners keep ``(1 + (g-1) t) / g``.
+    """Return an instance, ``N = 2g``, ``alpha_s = g = size``, on which three planners have ``(1 + (g-1) t) / g``.
 
     RATT, the myopic planner and Greedy return one plan, so the best of them is no better: over all teams it keeps no
     share above ``t = 1 - curvature`` either. A weighted coverage function: each bait element covers t alone and all
@@ -64,7 +64,8 @@ def link_only_instance(curvature: Fraction) -> RatioWitness:
     o(r1); ``t k`` on b1, b2, v2, o(v3); ``k (t-k)`` on v1, o(r1); ``t^2 k`` on v3, o(r1); ``k`` on r1, o(v1) and on
     r2, o(v2). The values are 1, but t for v1, v2, o(v3) and ``t^2`` for v3, and the parts covered alone at least t
     times that, as ``t^2 <= k <= 1/2``. Greedy takes r1, r2 (1), v1, v2 (t, as each o(v) then adds) and v3 (``t^2``).
-    Isolating r1 and r2 leaves ``4 t + t^2``; the elements o share nothing, so five of them keep at least ``4 + t``.
+    Isolating r1 and r2 leaves ``4 t + t^2``; the elements o share nothing, so five of them are worth at least ``4 +
+    t``.
 
     Raises
     ------
@@ -101,7 +102,7 @@ def _coverage(
 def sensing_instance(size: int, swapped: int, curvature: Fraction) -> RatioWitness:
     """Return the instance with ``N = g + p``, ``alpha_s = p``, no link cut, on which RATT keeps :func:`sensing_ratio`.
 
-    ``g = size`` robots are left, ``p = swapped <= g``, ``t = 1-c``, ``h = min(g-1, p (1 + 1/t))`` or ``g - 1`` where p
+    ``g = size`` robots are left, ``p = swapped <= g``, ``t = 1-c``, ``h = min(g-1, p (1 + 1/t))`` or ``g - 1`` if p
     is 0. Robots have weights w: 1, but the last ``g - p`` greedy ones, in order, as much as leaves them ``h + 1 - p``
     in all, so at most one is between 0 and 1. Largest marginals are w for bait and for those greedy elements, ``1/t``
     for the first p greedy ones, and ``w/t`` for the others'. Prescribed: an element alone is worth w; the first greedy

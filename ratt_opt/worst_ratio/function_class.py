@@ -46,7 +46,7 @@ def check_class(
 ) -> None:
     """Test the definitions of ``function_class`` on a full integer table; ``ProofError`` says what fails and where.
 
-    ``judged`` : (2**n,) the sets that the curvature is over; all where it is not given
+    ``judged`` : (2**n,) the sets that the curvature is over; all if it is not given
     """
     if values[0] != 0:
         raise ProofError("the function is not normalised")

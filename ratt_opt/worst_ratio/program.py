@@ -82,7 +82,7 @@ class RatioProgram:
             self.on[index] = on
 
     def solve(self, seconds: float, *, afresh: bool = False) -> ClaimedOptimum | None:
-        """Run HiGHS for at most so many seconds; ``None`` unless it claims an optimum.
+        """Run HiGHS for at most that many seconds; ``None`` unless it claims an optimum.
 
         ``afresh`` : forget the basis of the last solve
         """
@@ -104,7 +104,7 @@ NONZERO = 1e-9
 
 
 def proved_bound(program: RatioProgram, claimed: ClaimedOptimum, budget: Budget) -> Fraction:
-    """Return a lower bound on the minimum, proved by rational multipliers; 0 (``x_0 >= 0``) where none verifies."""
+    """Return a lower bound on the minimum, proved by rational multipliers; 0 (``x_0 >= 0``) if none verifies."""
     best = Fraction(0)
     for multipliers in _candidates(program, claimed, budget):
         best = max(best, checked_bound(program, multipliers) or best)

@@ -57,7 +57,7 @@ def solve_exactly(columns: Sequence[Mapping[int, Fraction]], target: Mapping[int
 def solve_square(
     entries: Iterable[tuple[int, int, Fraction]], right: Sequence[Fraction], n_unknowns: int
 ) -> list[Fraction]:
-    """Solve a square rational system exactly; all zero where it is singular, not square or too large.
+    """Solve a square rational system exactly; all zero if it is singular, not square or too large.
 
     ``entries`` : (row, column, value); ``right`` : (rows,)
     """

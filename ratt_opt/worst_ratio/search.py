@@ -182,7 +182,7 @@ class RatioSearch:
         return sorted(self._core | set(node.attack) | {group << self.skeleton.n_robots for group in node.saved})
 
     def _solve(self, node: _Node, budget: Budget) -> ClaimedOptimum | None:
-        """Solve the node's program, adding class rows until none is violated; ``None`` where HiGHS has no answer."""
+        """Solve the node's program, adding class rows until none is violated; ``None`` if HiGHS has no answer."""
         for group, row in self._hit.items():
             self.program.switch(row, on=group in node.attack)
         for group, row in self._saved.items():

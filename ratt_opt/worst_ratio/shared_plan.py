@@ -1,11 +1,11 @@
 """Is there a better planner? One plan that RATT, the myopic planner and Greedy all return, and that no exchange mends.
 
-The best of several planners keeps at least RATT's worst ratio, and no more than the ratio of any instance on which all
-of them return the same plan. The smallest such ratio is the optimum of RATT's own program with more comparisons; where
+The best of several planners has at least RATT's worst ratio, and no more than the ratio of any instance on which all
+of them return the same plan. The smallest such ratio is the optimum of RATT's own program with more comparisons; if
 the two agree, the best of the planners is provably no better than RATT alone at these budgets. With several attacks
 that are equally bad for the plan, an exchange of a few robots' elements leaves one of them as bad as it was.
 
-Plans that no exchange of ``j`` elements improves, wherever they come from, can keep nothing once ``j`` robots may be
+Plans that no exchange of ``j`` elements improves, from any source, can be worth nothing once ``j`` robots may be
 blinded: a plan of useless elements stays at 0, as the attack blinds the robots whose elements were exchanged.
 """
 
@@ -35,7 +35,7 @@ __all__ = ["SharedPlanRatio", "exchange_gain", "shared_plan_ratio"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SharedPlanRatio:
-    """Claim: the best of all planners keeps at most ``upper`` of the optimum on ``witness``, if any was found.
+    """Claim: the best of all planners has at most ``upper`` of the optimum on ``witness``, if any was found.
 
     ``lower`` : no instance on which the planners agree in this way has a smaller ratio.
     """
@@ -59,7 +59,7 @@ def shared_plan_ratio(
     question : for RATT; its ``planner`` is not used
     order : the robots in the order in which Greedy picks them, RATT's bait first by index
     attacks : groups left, as bit masks of robots, that all must be as bad for the plan as its worst attack; one of all
-        attacks where empty
+        attacks if empty
     time_limit : seconds; the bracket stays valid
     """
     n = question.n_robots
@@ -94,7 +94,7 @@ def _picks(n_robots: int, order: Sequence[int]) -> Iterator[tuple[int, int]]:
 
 
 def exchange_gain(problem: Problem, elements: IntArray) -> float:
-    """How much the best exchange of one robot's element adds to a plan's worst case; 0 where none adds anything."""
+    """How much the best exchange of one robot's element adds to a plan's worst case; 0 if none adds anything."""
     here = uninterrupted(worst_case_attack(problem, elements)).upper
     best = here
     for robot, choice in enumerate(problem.choices):

@@ -1,7 +1,7 @@
 """An explicit instance on which a planner attains a ratio, and its exact replay through the library.
 
 Two families show that no larger share than the pattern-free bounds holds for all teams: :func:`attaining_instance`
-has ``1-k`` where ties go against RATT, and comes as close as wanted without ties; the ratios of :func:`limit_instance`
+has ``1-k`` if ties go against RATT, and comes as close as wanted without ties; the ratios of :func:`limit_instance`
 tend to ``(1-c)^2``. For one budget more is true (``bounds/survivors.py``). ``families.py`` has more of them.
 """
 
@@ -44,7 +44,7 @@ LARGEST_VALUE = 2**52
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RatioQuestion:
-    """Whose worst ratio is asked for: a planner on N robots of the complete graph, a threat, a class of functions.
+    """The subject of a worst ratio: a planner on N robots of the complete graph, a threat, a class of functions.
 
     ``family`` : ``"submodular"`` or ``"nondecreasing"``; ``domain`` : what ``curvature`` is over, ``"elements"`` or
     ``"feasible"`` sets; ``planner`` : a name of ``PLANNERS``.
@@ -88,7 +88,7 @@ class RatioWitness(ByValue, RatioQuestion):
 
 
 def scaled_values(values: Sequence[Fraction]) -> IntArray | None:
-    """Multiply rationals by the least common multiple of their denominators; ``None`` where that exceeds 2**52."""
+    """Multiply rationals by the least common multiple of their denominators; ``None`` if that exceeds 2**52."""
     scale = lcm(*(value.denominator for value in values))
     if scale * max(values) > LARGEST_VALUE:
         return None
@@ -98,7 +98,7 @@ def scaled_values(values: Sequence[Fraction]) -> IntArray | None:
 def replay(witness: RatioWitness) -> Fraction:
     """Check that the function is of its class and return planner's worst-case value over optimum, exactly.
 
-    Runs the library's planner, exact attacker and exhaustive optimum on the instance; raises ``ProofError`` where the
+    Runs the library's planner, exact attacker and exhaustive optimum on the instance; raises ``ProofError`` if the
     function is not normalised, not of the class, exceeds its curvature, or has optimum 0.
     """
     _check(witness)
@@ -124,7 +124,7 @@ def _check(witness: RatioWitness) -> None:
 def attaining_instance(size: int, curvature: Fraction, epsilon: Fraction = Fraction(0)) -> RatioWitness:
     """Return the instance with ``N = 3 size`` robots, ``alpha_s = size`` on which RATT keeps exactly ``1 - curvature``.
 
-    That is where ties go against RATT, by the order of the elements. With ``epsilon > 0`` RATT's choices are strictly
+    That is if ties go against RATT, by the order of the elements. With ``epsilon > 0`` RATT's choices are strictly
     the best, in whatever order elements come, and it keeps at most ``1 - curvature + 3/2 epsilon``.
 
     Let ``t = 1-k`` and m = ``size``. A weighted coverage function, hence submodular and non-decreasing. Each element
@@ -176,7 +176,7 @@ def limit_instance(size: int, curvature: Fraction) -> RatioWitness:
     Let ``t = 1-c``. Largest marginals are 1 for RATT's elements and ``1/t`` for the others. Prescribed: any number
     ``a >= 1`` of bait elements is worth ``1 + (a-1) t``; ``b`` greedy elements are worth ``b``, and with one other
     element ``b + 1``; ``d >= 1`` others are worth ``1 + (d-1)/t``. All single values are 1, so RATT picks its own
-    elements by the tie rule. Blinding the greedy half leaves it ``1 + (g-1) t``; the other plan keeps
+    elements by the tie rule. Blinding the greedy half leaves it ``1 + (g-1) t``; the other plan is worth
     ``1 + (g-1)/t`` whatever ``g`` robots are left.
 
     Such values extend to a function of total curvature c if for all prescribed sets ``f(X) - f(Y)`` is at most

@@ -98,7 +98,7 @@ WITHIN = {"attack": {24: 0.02, 30: 0.02, 50: 0.02, 100: 0.05}, "maxmin": {24: 0.
 
 @pytest.mark.parametrize("what", WITHIN)
 def test_the_tables_of_networks_on_the_page_are_those_of_the_rows_measured(what):
-    page = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "researchers" / "benchmarks.md").read_text(encoding="utf-8")
     rows = read_rows([ROOT / "analysis" / "measured" / f"networks_{what}.csv"])
     assert set(rows) == set(WITHIN[what])
     for robots, of_team in rows.items():

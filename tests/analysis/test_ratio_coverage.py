@@ -47,11 +47,11 @@ def test_the_paper_s_smallest_budget_with_one_robot_a_group_is_optimal() -> None
 
 def test_pages_name_the_steps_that_the_ledger_says_fail() -> None:
     """Names stand on three pages; the first is written from the ledger."""
-    page = (ROOT / "docs" / "audit.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "researchers" / "audit.md").read_text(encoding="utf-8")
     outcome = re.search(r"\| fails in every reading \| (\d+) \| (.*?) \|", page)
     assert outcome is not None
     labels = outcome[2].replace("\\", "").split(", ")
     assert len(labels) == int(outcome[1]) > 0
-    for name in ("README.md", "docs/evaluation.md"):
+    for name in ("README.md", "docs/researchers/evaluation.md"):
         text = (ROOT / name).read_text(encoding="utf-8")
         assert set(re.findall(r"`((?:nd|sub)_p\w+)`", text)) == set(labels)

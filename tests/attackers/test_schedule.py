@@ -90,7 +90,7 @@ def test_brackets_are_true_without_a_stage(name, small_teams, monkeypatch):
 
 
 def test_the_page_of_the_engine_shows_the_schedules(tmp_path):
-    text = (ROOT / "docs" / "engine.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "contributors" / "engine.md").read_text(encoding="utf-8")
     assert refreshed(text, tmp_path) == text
 
 

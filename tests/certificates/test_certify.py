@@ -128,7 +128,7 @@ def test_says_what_was_proved_and_what_was_not(tmp_path):
     path.write_text(json.dumps(document))
     verified = verify_certificate(path)
     assert not verified.lower_proved
-    assert "NOT proved: this plan keeps" in "\n".join(verified.lines())
+    assert "NOT proved: this plan has" in "\n".join(verified.lines())
     assert verified.problem_hash in text
 
 

@@ -57,7 +57,7 @@ def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFi
     assert report["total_curvature"]["domain"] == "feasible"
     assert {"greedy", "myopic", "random", "nonrobust"} <= report["baselines"].keys()
     printed = capsys.readouterr().out
-    assert "certified ratio of RATT" in printed
+    assert "RATT's certified share of the best possible" in printed
     assert (tmp_path / "demo" / "plan.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "demo" / "plan.svg").read_text().startswith("<?xml")
 
@@ -146,7 +146,7 @@ def test_a_bound_comes_with_a_certificate_that_verifies(
     assert "certificate.json" in printed
     assert run(["verify", str(out / "certificate.json"), *about]) == 0
     text = capsys.readouterr().out
-    assert "no plan keeps more than" in text
+    assert "no plan has a worst-case value above" in text
     assert "not covered" in text
     assert run(["verify", str(out / "certificate.json"), "--json"]) == 0
     found = _strict(capsys.readouterr().out)

@@ -129,11 +129,14 @@ def test_alpha_cs_is_computed_once(monkeypatch):
     assert report.alpha_cs == ro.ratt(report.problem).alpha_cs
 
 
-def test_off_complete_graphs_n_max_is_printed_as_a_bound():
-    for links, said in ((None, ""), (((0, 1), (1, 2), (2, 3)), "at least ")):
+def test_n_max_is_printed_as_a_number_only_where_a_cut_attains_it():
+    for links in (None, ((0, 1), (1, 2), (2, 3))):
         report = ro.bound(SCENARIO.replace(links=links))
-        cells = [cell for table in report_tables(report) for column in table.columns for cell in column.cells]
-        assert f"{said}{report.n_max}" in cells
+        assert report.n_max_upper == report.n_max
+        for most, said in ((report.n_max, f"{report.n_max}"), (9, f"at least {report.n_max}, at most 9")):
+            shown = replace(report, n_max_upper=most)
+            cells = [cell for table in report_tables(shown) for column in table.columns for cell in column.cells]
+            assert said in cells
 
 
 class RootOfTrace(InformationObjective):

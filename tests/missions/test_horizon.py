@@ -158,7 +158,7 @@ def test_missions_look_ahead_for_the_worst_axis(output: str) -> None:
     world = world_of(2, output, objective="maxeig")
     mission = run_mission(world.scenario, steps=3, horizon=2, model=world.model)
     assert len(mission.steps) == 3
-    with pytest.raises(InputError, match="objective must be trace or maxeig where a plan looks several steps ahead"):
+    with pytest.raises(InputError, match="objective must be trace or maxeig if a plan looks several steps ahead"):
         world_of(2, objective="logdet")
 
 

@@ -343,7 +343,7 @@ def test_bad_models_and_journals(tmp_path) -> None:
     with pytest.raises(InputError, match="model must be a MissionModel"):
         run_mission(scenario_of(), steps=1, model=3)
     for sensor in (3, "radar", [], [3]):
-        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, a SensorModel, or"):
+        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, position, a Sensor"):
             MissionModel(sensor=sensor)
     with pytest.raises(InputError, match="sensor must be a SensorModel, or one for each of"):
         run_mission(scenario_of(), steps=1, model=MissionModel(sensor=[PositionSensor(1.0)]))
@@ -353,7 +353,7 @@ def test_bad_models_and_journals(tmp_path) -> None:
         MissionModel(robot_motion="sideways")
     with pytest.raises(InputError, match="planner must return a plan"):
         run_mission(scenario_of(), steps=1, planner=lambda _: 3)
-    with pytest.raises(InputError, match="objective must be trace or maxeig where"):
+    with pytest.raises(InputError, match="objective must be trace or maxeig if"):
         run_mission(scenario_of(), steps=1, horizon=2, model=MissionModel(objective="logdet"))
     with pytest.raises(InputError, match="hold must be"):
         PersistentAttacks(hold=0)

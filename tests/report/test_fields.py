@@ -87,7 +87,7 @@ def test_a_sector_is_the_field_of_view_and_holds_what_is_measured(drawn):
 
 def test_the_page_shows_the_same(drawn):
     view, reach, report, picture, _ = drawn
-    worst = report_page(report).partition('id="view-worst"')[2].partition("</figure>")[0]
+    worst = report_page(report).partition('id="view-worst"')[2].partition("</svg>")[0]
     pairs = seen_by(picture, view, reach)
     heard = sum(i in picture.seeing for i, _ in pairs)
     assert worst.count('class="watch"') == heard

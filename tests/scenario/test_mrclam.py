@@ -109,7 +109,7 @@ def test_what_the_caller_says_of_labels_counts_whatever_the_sightings_say(tmp_pa
         lambda: fit_sensor(*[np.ones(30)] * 4, corrections={}),
         lambda: replay_mrclam(plain, steps=1, corrections={}),
     ):
-        with pytest.raises(InputError, match=r"corrections must (be given where|come with)"):
+        with pytest.raises(InputError, match=r"corrections must (be given if|come with)"):
             call()
 
 

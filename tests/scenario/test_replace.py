@@ -57,6 +57,10 @@ GOOD_AND_BAD: list[tuple[Record, dict[str, tuple[Any, Any]]]] = [
             "robot_positions": (((0.0, 0.0), (1.0, 1.0)), ((0.0, 0.0),)),
             "element_positions": (((0.0, 0.0),) * 3, ((0.0, float("nan")),) * 3),
             "target_positions": (((0.0, 0.0),), ()),
+            "output": (((2.0,),), ((1.0, 2.0),)),
+            "units": (("m",), ("m", "m")),
+            "element_headings": ((0.0, 1.0, 2.0), (0.0,)),
+            "element_controls": (((1.0, 0.0),) * 3, ((1.0, 0.0),)),
         },
     ),
     (

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 import ratt_opt as ro
-from analysis.studies.study import Case, Seeds, Study
-
-if TYPE_CHECKING:
-    from analysis.studies.instance import Instance
+from ratt_opt.studies.study import Case, Seeds, Study
 
 __all__ = ["STUDY", "boldest", "cover", "first_robot"]
 
@@ -36,19 +31,15 @@ def cover(case: Case, seeds: Seeds) -> ro.Problem:
     return ro.Problem(Cells(sees), np.repeat(np.arange(case.n_robots), 2), None, case.alpha_s, case.alpha_c)
 
 
-def boldest(instance: Instance):
+def boldest(problem: ro.Problem):
     """Every robot's element of the largest value alone."""
-    values = instance.problem.objective.singletons()
-    return [int(own[np.argmax(values[own])]) for own in instance.problem.choices]
+    values = problem.objective.singletons()
+    return [int(own[np.argmax(values[own])]) for own in problem.choices]
 
 
-def first_robot(instance: Instance, plan):
+def first_robot(problem: ro.Problem, plan):  # noqa: ARG001
     """Blind robot 0."""
-    from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
-    from ratt_opt.attackers.task import PlanValues
-
-    attack = ro.Attack(frozenset({0}), frozenset())
-    return heuristic_result(instance.problem, PlanValues(instance.problem, plan), attack)
+    return ro.Attack(frozenset({0}), frozenset())
 
 
 STUDY = Study(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from analysis.studies.command import Entry, main
+from ratt_opt.studies.command import Entry, main
 from tests.studies.toy import STUDY
 
 if __name__ == "__main__":

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from analysis.paper.small_scale import STUDY as SMALL
-from analysis.studies.engine import run
-from analysis.studies.executors import open_executor
-from analysis.studies.progress import Progress
 from ratt_opt import InputError
+from ratt_opt.studies.engine import run
+from ratt_opt.studies.executors import open_executor
+from ratt_opt.studies.progress import Progress
 from tests.cluster import SLOW, scheduler, wait_for, workers
 from tests.documents import ROOT
 from tests.studies.toy import STUDY
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A loaded machine may answer later than a user would wait; what is tested here is what is answered."""
-    monkeypatch.setattr("analysis.studies.executors.PATIENCE", SLOW)
+    monkeypatch.setattr("ratt_opt.studies.executors.PATIENCE", SLOW)
 
 
 def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
     with open_executor(None, 1) as executor:
-        expected = run(STUDY, tmp_path / "local", executor, trials=10, progress=Progress()).read_bytes()
+        expected = run(STUDY, tmp_path / "local", executor, trials=10, progress=Progress()).path.read_bytes()
     with ExitStack() as stack:
         address = stack.enter_context(scheduler(tmp_path))
         first, _ = stack.enter_context(workers(2, address, tmp_path, seconds=0.1))
@@ -51,7 +51,7 @@ def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
                     yield counting
 
         with open_executor(address, None) as executor:
-            table = run(STUDY, tmp_path / "dask", executor, trials=10, progress=Killing())
+            table = run(STUDY, tmp_path / "dask", executor, trials=10, progress=Killing()).path
         assert first.wait(SLOW) != 0
     assert rows == 40
     assert table.read_bytes() == expected
@@ -59,12 +59,12 @@ def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
 
 def test_the_papers_rows_are_the_same_bytes_on_a_cluster(tmp_path: Path) -> None:
     with open_executor(None, 1) as executor:
-        expected = run(SMALL, tmp_path / "local", executor, trials=1, progress=Progress()).read_bytes()
+        expected = run(SMALL, tmp_path / "local", executor, trials=1, progress=Progress()).path.read_bytes()
     with ExitStack() as stack:
         address = stack.enter_context(scheduler(tmp_path))
         stack.enter_context(workers(2, address, tmp_path))
         with open_executor(address, None) as executor:
-            table = run(SMALL, tmp_path / "dask", executor, trials=1, progress=Progress())
+            table = run(SMALL, tmp_path / "dask", executor, trials=1, progress=Progress()).path
     assert table.read_bytes() == expected
 
 
@@ -85,7 +85,7 @@ def test_a_lost_scheduler_is_one_line_and_the_sweep_resumes(tmp_path: Path) -> N
     again = "finished rows are kept, run the same command to resume"
     assert errors.splitlines() == [f"error: the cluster dropped the trials; {again}"]
     with open_executor(None, 1) as executor:
-        table = run(STUDY, tmp_path / "out" / "toy", executor, trials=100, progress=Progress())
+        table = run(STUDY, tmp_path / "out" / "toy", executor, trials=100, progress=Progress()).path
     assert len(table.read_text().splitlines()) == 401
 
 
@@ -119,9 +119,9 @@ def test_a_worker_without_the_package_that_joins_later_changes_nothing(tmp_path:
         stack.enter_context(workers(1, address, tmp_path, seconds=0.05))
         executor = stack.enter_context(open_executor(address, None))
         stack.enter_context(workers(1, address, tmp_path, path=_without_the_package(tmp_path), before=1))
-        table = run(STUDY, tmp_path / "dask", executor, trials=5, progress=Progress()).read_bytes()
+        table = run(STUDY, tmp_path / "dask", executor, trials=5, progress=Progress()).path.read_bytes()
     with open_executor(None, 1) as executor:
-        assert run(STUDY, tmp_path / "local", executor, trials=5, progress=Progress()).read_bytes() == table
+        assert run(STUDY, tmp_path / "local", executor, trials=5, progress=Progress()).path.read_bytes() == table
 
 
 def test_unreachable_cluster_exits_2_with_one_line(tmp_path: Path) -> None:

@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from analysis.studies import engine, versions
-from analysis.studies.engine import SweepError, run
-from analysis.studies.executors import local_processes, open_executor
-from analysis.studies.progress import Progress
-from analysis.studies.store import open_journal, read_table
-from analysis.studies.study import Case, Seeds, run_trial
 from ratt_opt import InputError
+from ratt_opt.studies import engine, versions
+from ratt_opt.studies.engine import SweepError, run
+from ratt_opt.studies.executors import local_processes, open_executor
+from ratt_opt.studies.progress import Progress
+from ratt_opt.studies.store import open_journal, read_table
+from ratt_opt.studies.study import Case, Seeds, run_trial
 from tests.studies.toy import STUDY
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def _threads(folder: Path, trials: int = 3, study: object = STUDY) -> bytes:
     with ThreadPoolExecutor(2) as executor:
-        return run(study, folder, executor, trials=trials, progress=Progress()).read_bytes()  # type: ignore[arg-type]
+        path = run(study, folder, executor, trials=trials, progress=Progress()).path
+        return path.read_bytes()  # type: ignore[arg-type]
 
 
 def _rows(folder: Path, trials: int) -> list[dict[str, str]]:
@@ -90,7 +91,7 @@ def test_seeds_are_the_spawned_ones() -> None:
 
 def test_table_is_the_same_bytes_whichever_executor_ran(tmp_path: Path) -> None:
     with local_processes(2) as executor:
-        processes = run(STUDY, tmp_path / "p", executor, trials=3, progress=Progress()).read_bytes()
+        processes = run(STUDY, tmp_path / "p", executor, trials=3, progress=Progress()).path.read_bytes()
     assert processes == _threads(tmp_path / "t")
     rows = read_table(tmp_path / "p")
     assert [(row["case"], int(row["trial"])) for row in rows] == [(c.name, t) for c in STUDY.cases for t in range(3)]
@@ -347,7 +348,7 @@ def test_rows_of_other_code_are_refused_or_kept_with_their_mark(tmp_path: Path) 
         with pytest.raises(InputError, match="--accept-old-rows"):
             _threads(tmp_path, 1)
     with ThreadPoolExecutor(1) as executor:
-        table = run(STUDY, tmp_path, executor, trials=2, progress=Progress(), accept_old_rows=True)
+        table = run(STUDY, tmp_path, executor, trials=2, progress=Progress(), accept_old_rows=True).path
     found = json.loads(path.read_text())
     assert found["older_rows_by"] == [{"made_with": manifest["made_with"], "measured_by": "0" * 12}]
     assert before.splitlines()[1] in table.read_bytes().splitlines()

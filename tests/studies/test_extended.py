@@ -17,12 +17,12 @@ from analysis.extended.exact_attack import STUDY as EXACT
 from analysis.extended.guarantees import STUDY as GUARANTEES
 from analysis.extended.guarantees import shares
 from analysis.extended.sensitivity import DEFAULTS, VARIANTS
-from analysis.studies.instance import ATTACKERS, PLANNERS, Instance
-from analysis.studies.quantities import curvature_class
-from analysis.studies.statistics import column, select
-from analysis.studies.store import read_table
-from analysis.studies.study import Case, Seeds, run_trial
 from ratt_opt import AttackResult, Problem, worst_case_attack, worst_case_ratio
+from ratt_opt.studies.instance import Instance
+from ratt_opt.studies.quantities import curvature_class
+from ratt_opt.studies.statistics import column, select
+from ratt_opt.studies.store import read_table
+from ratt_opt.studies.study import Case, Seeds, run_trial
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDIES = ("guarantees", "graphs", "budgets", "sensitivity")
@@ -100,12 +100,12 @@ def test_each_plan_is_attacked_once_and_exactly(monkeypatch: pytest.MonkeyPatch)
         attacked.append(plan.tolist())
         return worst_case_attack(problem, plan)
 
-    monkeypatch.setattr("analysis.studies.instance.worst_case_attack", counting)
+    monkeypatch.setattr("ratt_opt.studies.instance.worst_case_attack", counting)
     instance = Instance.of(EXACT.cases[0], Seeds.of(1, 0))
-    plans = [PLANNERS[name](instance) for name in ("optimum", "ratt", "greedy", "ratt")]
+    plans = [instance.plan(name) for name in ("optimum", "ratt", "greedy", "ratt")]
     for plan in plans:
-        found, fresh = ATTACKERS["exact"](instance, plan), worst_case_attack(instance.problem, plan)
-        assert found is not None
+        found, fresh = instance.worst_case(plan), worst_case_attack(instance.problem, plan)
+        assert instance.strike("exact", plan) == (found.attack, found.lower)
         assert (found.lower, found.upper) == pytest.approx((fresh.lower, fresh.upper), rel=1e-9)
     assert len(attacked) == len({tuple(plan) for plan in attacked}) <= 2  # the search has attacked its own plan
 

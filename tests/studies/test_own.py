@@ -8,12 +8,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from analysis.studies.engine import run
-from analysis.studies.executors import local_processes
-from analysis.studies.progress import Progress
-from analysis.studies.store import read_table
-from analysis.studies.study import Case, Study, path_of, run_trial
 from ratt_opt import InputError
+from ratt_opt.studies.engine import run
+from ratt_opt.studies.executors import local_processes
+from ratt_opt.studies.progress import Progress
+from ratt_opt.studies.store import read_table
+from ratt_opt.studies.study import Case, Study, path_of, run_trial
 from tests.studies import toy
 from tests.studies.own import STUDY, boldest
 
@@ -39,7 +39,7 @@ def test_the_definition_names_every_function():
     definition = STUDY.definition()
     assert definition["planners"] == ["ratt", "tests.studies.own:boldest"]
     assert definition["problem"] == "tests.studies.own:cover"
-    assert set(STUDY.modules()) == {"analysis.studies.comparison", "tests.studies.own"}
+    assert set(STUDY.modules()) == {"ratt_opt.studies.comparison", "tests.studies.own"}
     assert STUDY.fingerprint() != replace(STUDY, planners=("ratt",)).fingerprint()
     assert "problem" not in toy.STUDY.definition()  # older results stay those of their study
 

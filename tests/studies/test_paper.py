@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from analysis.claims import Claim
 from analysis.paper.claims import CLAIMS
-from analysis.studies.claims import Claim
-from analysis.studies.statistics import column
-from analysis.studies.store import read_table
+from ratt_opt.studies.statistics import column
+from ratt_opt.studies.store import read_table
 
 ROOT = Path(__file__).resolve().parents[2]
 

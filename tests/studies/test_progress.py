@@ -5,8 +5,8 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
-from analysis.studies import progress
-from analysis.studies.progress import Progress
+from ratt_opt.studies import progress
+from ratt_opt.studies.progress import Progress
 
 if TYPE_CHECKING:
     import pytest

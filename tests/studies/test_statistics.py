@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.studies.statistics import Estimate, Verdict, column, estimate, judge, select
+from ratt_opt.studies.statistics import Estimate, Verdict, column, estimate, judge, select
 
 
 def test_interval_is_student_t() -> None:

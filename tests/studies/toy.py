@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from analysis.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.studies.study import Case, Cell, Seeds, Study
 
 __all__ = ["STUDY", "die", "fail", "measure", "raise_at_once"]
 

@@ -44,7 +44,7 @@ def unprotected_bound(task: AttackTask, team: PackedTeam) -> None:
 
 
 class PossibleGroups:
-    """Lower bounds from the sizes that groups of an attack may have, whichever robots are in them.
+    """Lower bounds from the sizes that groups of an attack may have, with any robots in them.
 
     ``least`` : seeing robots that are known to be left in some group, by sizes too
     """
@@ -68,7 +68,7 @@ class PossibleGroups:
     def bound(self, task: AttackTask, *, lists_sets: bool = True) -> None:
         """Raise the lower end to the least that groups of possible sizes leave.
 
-        ``lists_sets`` : also list the weak sets to :meth:`ask` about, where they are few
+        ``lists_sets`` : also list the weak sets to :meth:`ask` about, if they are few
 
         Raises
         ------

@@ -185,7 +185,7 @@ class SizeVectorSearch:
         return vectors
 
     def list_least(self) -> None:
-        """The least sets that decide, where they are listed in no time, and families around the weakest of them.
+        """The least sets that decide, if they are listed in no time, and families around the weakest of them.
 
         They often decide. Like exchanges, this costs no nodes.
         """

@@ -117,7 +117,7 @@ class VectorSearch:
         return min((node.bound for node in self._open), default=np.inf)
 
     def bound(self, budget: Budget) -> bool:
-        """List the sets and bound all families; false where that leaves nothing to search.
+        """List the sets and bound all families; false if that leaves nothing to search.
 
         Raises
         ------

@@ -37,8 +37,8 @@ def bounded_rational_attack(problem: Problem, elements: ArrayLike) -> AttackResu
     """Blind the strongest robots, then cut off the next strongest while the link budget lasts.
 
     Strength is the individual value of the chosen element; ties go to the lowest robot. Protected robots are passed
-    over when blinding, and robots with a protected link when cutting off. The first robot whose links exceed what is
-    left of the budget ends the attack. (The paper cuts off ``alpha_cs`` robots, which can exceed its own link budget.)
+    over when blinding, and robots with a protected link when cutting off. The attack ends at the first robot whose
+    links exceed the remaining budget. (The paper cuts off ``alpha_cs`` robots, which can exceed its own link budget.)
 
     Raises
     ------

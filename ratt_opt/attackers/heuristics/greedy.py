@@ -23,8 +23,8 @@ def greedy_attack(problem: Problem, elements: ArrayLike, *, budget: Budget | Non
     """Blind robots one by one, then cut robots off one by one, each time leaving the least team value.
 
     Ties go to the step that cuts the fewest links, then to the lowest robot. A blinded robot may
-    be cut off too: it relays. Steps are taken as long as the budgets allow one, and the time of ``budget``: then the
-    attack so far is returned, with the reason.
+    be cut off too: it relays. It stops if no step fits the budgets, or if the time of ``budget`` is over, and returns
+    the attack so far with the reason.
 
     Raises
     ------

@@ -40,9 +40,9 @@ measured."""
 class BestLinks(Shown):
     """Claim: ``lower <= worst case of the plan with the best k links <= upper`` [unit of the objective].
 
-    ``links`` : at most k, ascending; with them the plan keeps ``lower``. ``before`` : the worst attack on the team as
-    it is; ``after`` : on the team that has these links. ``attacks`` : exact attacks made, ``nodes`` of them. ``stop``
-    is ``CLOSED`` where the ends meet but for rounding.
+    ``links`` : at most k, ascending; with them the worst case is ``lower``. ``before`` : the worst attack on the team
+    as it is; ``after`` : on the team that has these links. ``attacks`` : exact attacks made, ``nodes`` of them.
+    ``stop`` is ``CLOSED`` if the ends meet up to rounding.
     """
 
     links: tuple[Link, ...]
@@ -89,10 +89,10 @@ def links_to_protect(
 ) -> BestLinks:
     """Choose the k links whose protection raises the worst case of a plan most.
 
-    A protected link cannot be cut. Attacks are gathered until no k links spoil all of those that leave less than the
-    best choice keeps: exact as far as the exact attacker closes (up to 20 robots always), a bracket otherwise. Relies
-    on a non-decreasing objective (not checked). The plan, the robots' sensors and the adversary's budgets stay as they
-    are: ``alpha_c`` counts links, however many are protected.
+    A protected link cannot be cut. The search collects attacks until no k links prevent all attacks that are worse
+    than the best choice's. The answer is exact if the exact attacker closes (up to 20 robots always), and a bracket
+    otherwise. Relies on a non-decreasing objective (not checked). The plan, the robots' sensors and the adversary's
+    budgets stay as they are: ``alpha_c`` counts links, also if some are protected.
 
     Parameters
     ----------
@@ -127,15 +127,14 @@ def links_to_add(
 ) -> BestLinks:
     """Choose the k links whose addition raises the worst case of a plan most.
 
-    A new link lets its ends pool what they see, and can be cut like any other: it spoils an attack only where the
-    adversary cannot afford to cut it too. The plan and the robots' sensors stay as they are, and so does ``alpha_c``,
-    however many links there are: a budget that is a share of the links is the caller's to scale. Otherwise as
-    :func:`links_to_protect`.
+    A new link lets its ends pool what they see, and can be cut like any other. So it prevents an attack only if the
+    adversary cannot cut it too. The plan, the robots' sensors and ``alpha_c`` stay as they are; if the budget is a
+    share of the links, scale it yourself. Otherwise as :func:`links_to_protect`.
 
     Parameters
     ----------
     candidates : pairs of robots without a link, to choose from; all by default. Those within radio range of each
-        other where positions are known: :meth:`ratt_opt.scenario.model.Scenario.pairs_within`
+        other if positions are known: :meth:`ratt_opt.scenario.model.Scenario.pairs_within`
 
     Raises
     ------

@@ -13,11 +13,11 @@ __all__ = ["Verified"]
 class Verified:
     """What a certificate proves about one problem and one plan [unit of the objective].
 
-    No plan keeps more than ``upper`` under every attack (proved). The plan ``elements`` keeps
+    No plan has a worst-case value above ``upper`` (proved). The plan ``elements`` has
     at least ``lower`` under every attack: proved if ``lower_proved``, otherwise only claimed.
     ``largest_defect`` bounds how far below zero an eigenvalue of the stored information is (rounding);
     the proofs account for it. ``problem_hash`` is the SHA-256 of the problem record; ``made_from`` that of the scenario
-    or information from which the record is said to be made, ``None`` where that is not said.
+    or information from which the record is said to be made, ``None`` if that is not said.
     """
 
     lower: float
@@ -46,14 +46,14 @@ class Verified:
     def lines(self) -> list[str]:
         """Say in plain text what was proved, for which data, with which arithmetic, and what was not."""
         proved = f"proved in {self.arithmetic}"
-        lower = f"this plan keeps at least {self.lower!r} under every attack"
+        lower = f"this plan has a worst-case value of at least {self.lower!r}"
         gap = f"the plan is within {gap_text(self.lower, self.upper, 3)} (relative) of the best possible worst case"
         return [
             f"problem: {self.objective}, {self.n_robots} robots, {self.n_elements} elements, {self.n_targets} targets, "
             f"alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}; SHA-256 of its data {self.problem_hash}",
             *([f"made, as the file says, from the input with SHA-256 {self.made_from}"] if self.made_from else []),
             f"plan: {', '.join(map(str, self.elements))}",
-            f"{proved}: no plan keeps more than {self.upper!r} under every attack ({self.upper_leaves} leaves)",
+            f"{proved}: no plan has a worst-case value above {self.upper!r} ({self.upper_leaves} leaves)",
             f"{proved}: {lower} ({self.lower_method}, {self.lower_leaves} leaves)"
             if self.lower_proved
             else f"NOT proved: {lower} (outcomes enumerated in floating point)",

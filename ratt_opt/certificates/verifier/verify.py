@@ -36,7 +36,7 @@ def verify_certificate(
     ----------
     time_limit : seconds; no limit when ``None``
     expected_problem : the problem record it must be about (``problem_document(problem)``), or a function of the
-        record that says how it differs from the one expected, and nothing where it does not (``differences``); any
+        record that says how it differs from the one expected, and nothing if it does not (``differences``); any
         when ``None``
 
     Raises

@@ -1,4 +1,4 @@
-"""Compiled loops over contexts and cuts, imported where a search needs them; the plain versions are in the tests."""
+"""Compiled loops over contexts and cuts, imported if a search needs them; the plain versions are in the tests."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def descend(parts: Any, ends: Any, total: Any, added: Any, sign: float, picks: A
 
 @numba.njit(cache=True)
 def descend_pairs(parts: Any, ends: Any, total: Any, added: Any, sign: float, picks: Any) -> None:  # noqa: PLR0917
-    """As :func:`descend`, but two owners at a time, and over all pairs once."""
+    """Like :func:`descend`, with two owners at a time, and over all pairs once."""
     rest, one = np.zeros_like(total), np.zeros_like(total)
     value = sign * _marginal(total, rest, added)
     for i in range(len(picks)):

@@ -1,7 +1,7 @@
 """Branch and bound for one element's smallest, or largest, marginal of the max-eigenvalue criterion in the plane.
 
 What a region of the contexts is and how it is bounded: :mod:`ratt_opt.curvatures.planar.regions`. A region is split by
-halving its sector or one owner's options, whichever its bound owes more to.
+halving its sector or one owner's options: the one that its bound depends on more.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ __all__ = ["PlanarSearch"]
 SLOPES = 4
 """Most slopes tried for one region: with 2, a fifth more regions and time; 8 change nothing."""
 SLOPE_SHARE = 0.1
-"""Another slope is tried where it could close more than this share of the gap; 0.03 to 0.3 do as well within 5 %."""
+"""Another slope is tried if it could close more than this share of the gap; 0.03 to 0.3 do as well within 5 %."""
 NARROWEST = 1e-3
 """Sectors narrower than this are not halved again."""
 LARGEST_LEAF = 2048
 """Regions with at most this many contexts are enumerated, which takes no longer than a linear program; with 10 robots
 256 and 8192 change nothing, small teams end sooner."""
 HALVING_SHARE = 0.4
-"""A sector is halved where that could close this share of what its mixture leaves open; 0.2 and 0.8 need up to 3 % more
+"""A sector is halved if that could close this share of what its mixture leaves open; 0.2 and 0.8 need up to 3 % more
 regions."""
 
 

@@ -73,7 +73,7 @@ def _smallest(total: FloatArray) -> FloatArray:
 class PlanarDescent:
     """``value`` is the marginal of an element in the context ``picks`` (R,), the smallest of those seen.
 
-    Or the largest where ``sign`` is -1. Descent is over one and two owners at a time. ``base``, ``added`` : (3, M).
+    Or the largest if ``sign`` is -1. Descent is over one and two owners at a time. ``base``, ``added`` : (3, M).
     """
 
     def __init__(self, options: Options, base: FloatArray, added: FloatArray, *, sign: float) -> None:

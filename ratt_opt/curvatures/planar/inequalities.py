@@ -20,7 +20,8 @@ def least_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, hi
     """Smallest ``1/P - 1/Q`` with ``P <= highest``, ``Q >= P + added`` and ``P - slope Q <= ceiling``, elementwise.
 
     Along ``Q = P + added`` it falls with ``P``; along ``Q = (P - ceiling) / slope`` it is stationary where
-    ``P - ceiling = sqrt(slope) P``. So it is smallest there, where the two lines meet, or at ``highest``.
+    ``P - ceiling = sqrt(slope) P``. So it is smallest there, at the point
+    at which the two lines meet, or at ``highest``.
     """
     with np.errstate(all="ignore"):
         end = np.full_like(ceiling, highest)
@@ -36,7 +37,7 @@ def most_marginal(ceiling: FloatArray, added: FloatArray, slope: FloatArray, low
     """Largest ``1/P - 1/Q`` with ``P >= lowest``, ``Q <= P + added`` and ``Q - slope P <= ceiling``, elementwise.
 
     Along ``Q = P + added`` it falls with ``P``; along ``Q = ceiling + slope P`` it is stationary where
-    ``Q = sqrt(slope) P``. So it is largest there, where the two lines meet, or at ``lowest``.
+    ``Q = sqrt(slope) P``. So it is largest there, at the point at which the two lines meet, or at ``lowest``.
     """
     with np.errstate(all="ignore"):
         places = [lowest, (added - ceiling) / (slope - 1), -ceiling / (slope - np.sqrt(slope))]

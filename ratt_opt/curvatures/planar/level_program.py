@@ -1,8 +1,8 @@
 """How far the smallest level of all targets can rise above one target's own: a linear program over mixtures.
 
-For contexts ``S`` (one option an owner) let ``t(S)`` be the smallest level over all targets of ``base + S``, and
-``own(S)`` the level of target ``j`` of ``own_base + S``, where its weakest direction, at double angle ``a``, lies in a
-sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V >= t(S) - slope own(S)``.
+For contexts ``S`` (one option an owner) let ``t(S)`` be the smallest level over all targets of ``base + S``. Let
+``own(S)`` be the level of target ``j`` of ``own_base + S``, if its weakest direction, at double angle ``a``, lies in a
+sector ``|a - middle| <= half < pi/2``. Then :class:`LevelProgram` finds a number ``V >= t(S) - slope own(S)``.
 
 - ``t`` is at most every target's quadratic form in every direction, so at most any average of them (*cuts*).
 - With ``y = -(even, odd)`` of target ``j``, the level is ``mean - |y|``, ``y`` points to ``a``, so in the sector
@@ -10,7 +10,7 @@ sector ``|a - middle| <= half < pi/2``. :class:`LevelProgram` finds a number ``V
 - In the sector ``y . v >= 0`` for the two unit vectors ``v`` at ``middle +- (pi/2 - half)``.
 
 All are linear in ``S``. Whatever multipliers the linear program has, clipped and normalised, give a valid ``V``: a sum
-over owners of their best option (``compiled.py``). Where the sector holds no mixture at all ``V`` is merely low, as
+over owners of their best option (``compiled.py``). If the sector holds no mixture at all ``V`` is merely low, as
 the multipliers of its edges are capped.
 """
 
@@ -39,7 +39,7 @@ NEW_CUTS = 6
 VIOLATION = 3e-2
 """Cuts violated by less than this, relative to ``|t - own|``, are left."""
 FIRST_CUTS = 10
-"""Targets that get a cut where there is none to start from."""
+"""Targets that get a cut if there is none to start from."""
 SMALLEST_SHARE = 1e-9
 """Targets with a smaller share of the average to start from get no cut at once."""
 EDGES = 2
@@ -171,7 +171,7 @@ class LevelProgram:
         self._add(targets, np.arctan2(start[2, targets], start[1, targets]))
 
     def bound(self, slope: float, budget: Budget, enough: float = -np.inf) -> Relaxed:
-        """The bound with one slope; ``enough`` : a ceiling low enough to stop at. It holds wherever it stops."""
+        """The bound with one slope; ``enough`` : a ceiling low enough to stop at. It holds at every stop."""
         from ratt_opt.curvatures.planar.compiled import ceiling, violated
 
         self._program.change_slope(slope)

@@ -33,7 +33,7 @@ STUCK = 8
 """Parts bounded on one side before pairs of owners are tried for a better context: they take long.
 4 and 16 change the regions bounded by 2 %."""
 CONTENDER, LONG_STUCK = 1.1, 40
-"""The same where the ratio is more than so many times the smallest one seen; 20 to 80 are alike with 10 robots."""
+"""The same if the ratio is more than this many times the smallest one seen; 20 to 80 are alike with 10 robots."""
 MOST_SPARE = 1e100
 """Finite, so that no product with an end that is 0 or infinite is undefined."""
 PATIENCE = 20

@@ -193,7 +193,7 @@ class ContextSearch:
 
 
 class FloorSearch:
-    """Claim: ``floor <= smallest marginal of x over contexts <= attained.value``, where no more than that is known.
+    """Claim: ``floor <= smallest marginal of x over contexts <= attained.value``, if no more than that is known.
 
     ``single`` : (n,) values alone; the descent starts from the most valuable element of every other owner.
     """

@@ -1,6 +1,6 @@
 """Few links whose cut leaves no group above a size, by simulated annealing over the robots' groups, in compiled code.
 
-Imported only where compiled loops are used.
+Imported only if compiled loops are used.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ __all__ = ["annealed_cut"]
 HOT, COLD, OVERSIZE = 3.0, 0.15, 2.0
 """Temperatures and the price of a robot too many in a group, in links."""
 MOVES, MOVES_AT_ONCE = 1_500, 20_000
-"""Of a cooling for each robot, and between two looks at the clock. At 50 to 200 robots more find nothing better."""
+"""Moves for each robot in a cooling, and moves between two looks at the clock. At 50 to 200 robots more find no better
+cut."""
 MISSES = 4
 """Sizes in a row that are not met before annealing gives up."""
 SPARE_GROUPS = (0.0, 0.05, 0.15, 0.3, 0.6, 1.0)
@@ -35,7 +36,7 @@ robots none are needed, at 200 a third or more."""
 def annealed_cut(
     threat: Threat, cut: frozenset[Link], lower: int, budget: Budget, *, ignoring: Collection[int] = ()
 ) -> frozenset[Link]:
-    """A cut that leaves a smaller largest group than ``cut`` does, where annealing finds one.
+    """A cut that leaves a smaller largest group than ``cut`` does, if annealing finds one.
 
     Sizes are bisected first; as annealing may miss one size and meet a smaller one, the next few are tried after that.
 

@@ -114,7 +114,7 @@ def _lightened(robots: int, hanging: list[_Hanging], most: int, cuts: Cuts) -> i
 
 
 def _are_few(threat: Threat, beside: int) -> bool:
-    """Whether all choices of so many links beside bridges can be tried."""
+    """Whether all choices of that many links beside bridges can be tried."""
     return sum(comb(beside, k) for k in range(min(threat.n_cut, _cycles(threat) + 1))) <= MOST_CHOICES
 
 

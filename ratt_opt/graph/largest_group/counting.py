@@ -36,7 +36,7 @@ class LargestGroup:
     """Claim: ``lower <= n_max``, and ``cut`` leaves a largest group of ``upper`` robots, so ``n_max <= upper``.
 
     ``upper`` is recomputed on the graph. ``reason`` says why ``lower`` holds. ``claimed_lower`` is what a
-    solver claims beyond that and nothing has checked (equal to ``lower`` where no solver was asked).
+    solver claims beyond that and nothing has checked (equal to ``lower`` if no solver was asked).
     """
 
     lower: int
@@ -52,9 +52,9 @@ class LargestGroup:
 
     @property
     def n_max(self) -> int | None:
-        """The smallest possible size, where it is known: proved (``is_exact``), or by a solver's claim.
+        """The smallest possible size, if it is known: proved (``is_exact``), or by a solver's claim.
 
-        ``None`` where it is only known to be from ``lower`` to ``upper``.
+        ``None`` if it is only known to be from ``lower`` to ``upper``.
         """
         return self.upper if self.claimed_lower == self.upper else None
 

@@ -19,7 +19,7 @@ __all__ = ["cheapest_cut", "heuristic_cut"]
 
 LARGEST_CUT = 200
 """Larger groups lose the robot with the fewest links: a cheapest cut of 200 robots takes a tenth of a second, a hundred
-of them may be asked for, and where links are many the cheapest cut is a robot's anyway."""
+of them may be asked for, and if links are many the cheapest cut is a robot's anyway."""
 
 
 def heuristic_cut(threat: Threat, budget: Budget | None = None, *, ignoring: Collection[int] = ()) -> frozenset[Link]:

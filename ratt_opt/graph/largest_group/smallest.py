@@ -1,8 +1,8 @@
-"""The smallest possible largest group by the way asked for, or by the first that settles it; ways by enumeration.
+"""The smallest possible largest group by the way that is named, or by the first that settles it; ways by enumeration.
 
 Cutting at most ``alpha_c`` links of a communication graph leaves groups; how small can the attacker make the largest
 one? ``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Small teams are decided over all
-their subsets; larger ones get a bracket from annealing and a linear program first, and where that does not close are
+their subsets; larger ones get a bracket from annealing and a linear program first. If that does not close, they are
 partitioned into separable groups of at most p robots, for p = 1, 2, ... in turn, or given to the integer program.
 """
 
@@ -69,7 +69,7 @@ def smallest_largest_group(
     ----------
     graph : on robots ``0..N-1``
     method : ``"caa"`` (Algorithm 2; complete graphs), ``"partitions"`` (integer partitions; complete graphs),
-        ``"enumeration"`` (partitions into connected groups; any graph up to 14 robots, and up to 60 where a link
+        ``"enumeration"`` (partitions into connected groups; any graph up to 14 robots, and up to 60 if a link
         budget allows few groups, as on sparse graphs), ``"milp"`` (any graph), ``"spreading"`` (hundreds of robots;
         a bracket), ``"counting"`` (any size; a bound and a heuristic cut only), or ``"auto"``: of caa, enumeration,
         spreading and milp what applies, until one is exact; if few cuts are possible, all of them, and if the graph is
@@ -120,7 +120,7 @@ def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
 
 
 def by_few_cuts(threat: Threat, budget: Budget) -> LargestGroup:
-    """Try every cut; the bracket by counting, and the best cut tried, where the budget ends before."""
+    """Try every cut; the bracket by counting, and the best cut tried, if the budget ends before."""
     best, smallest = frozenset[Link](), threat.graph.n_robots
     try:
         for cut, groups in partitions_by_few_cuts(threat, budget):
@@ -132,7 +132,7 @@ def by_few_cuts(threat: Threat, budget: Budget) -> LargestGroup:
 
 
 def by_search(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup:
-    """The first of the exact ways that applies, from what is ``known``; that, or counting, where none does."""
+    """The first of the exact ways that applies, from what is ``known``; that, or counting, if none does."""
     if threat.links_alike:
         return by_caa(threat)
     if threat.graph.n_robots <= LARGEST_LATTICE:
@@ -146,7 +146,7 @@ def by_search(threat: Threat, budget: Budget, known: LargestGroup | None = None)
 
 
 def bound_soon(threat: Threat, budget: Budget) -> int:
-    """No cut leaves a smaller largest group; the smallest one itself up to 14 robots and where groups are soon listed.
+    """No cut leaves a smaller largest group; the smallest one itself up to 14 robots and if groups are soon listed.
 
     Seconds at hundreds of robots, and without a limit of time the same on every machine: listing and trees end after
     a fixed amount of work.
@@ -183,7 +183,7 @@ def _by_enumeration(threat: Threat, budget: Budget) -> LargestGroup:
     if found is None:
         rule = 'must be "milp" (or "caa" on a complete graph) for more than 60 robots, or a graph'
         value = f"enumeration of {threat.graph.n_robots} robots"
-        raise InputError("method", f"{rule} that an attack can split in so many ways", value)
+        raise InputError("method", f"{rule} that an attack can split in that many ways", value)
     return found
 
 
@@ -191,7 +191,7 @@ MOST_GROUPS = 300_000
 """Groups listed before this way is given up: a second on sparse graphs of 50 robots, four on dense ones."""
 PAIRS_A_SECOND = 8_000_000
 """Of a set of robots and a group in it, of which a team has 3^N: they are listed without a look at the clock, so not at
-all where that would take longer than there is."""
+all if that would take longer than there is."""
 SUBSETS_SOON = 12
 """Robots up to which all subsets are a tenth of a second; beyond, groups are mostly listed sooner."""
 NODES_AT_ONCE = 100_000
@@ -216,7 +216,7 @@ def by_subsets(threat: Threat, budget: Budget) -> LargestGroup:
 
 
 def by_separable_groups(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup | None:
-    """Smallest largest group, or the bracket that the budget allows; ``None`` where the groups are too many to list."""
+    """Smallest largest group, or the bracket that the budget allows; ``None`` if the groups are too many to list."""
     from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups  # compiles
 
     groups = separable_groups(threat, MOST_GROUPS, budget)

@@ -1,14 +1,15 @@
-"""A lower bound on the heaviest group of seeing robots, by a linear program over links with tree inequalities.
+"""A lower bound on the heaviest group of unblinded robots, by a linear program over links with tree inequalities.
 
 Let ``x[e]`` say that link e is cut, ``b[v]`` that robot v is blinded, and ``a[v] >= 0`` be weights, 1 for the number of
 robots. For a tree of links with root r, the group of r keeps every robot v of the tree that sees and whose path to r is
 whole:
 
-    sum over v of a[v] (1 - b[v] - sum of x[e] on the path from r to v)  <=  weight of the seeing robots of r's group.
+    sum over v of a[v] (1 - b[v] - sum of x[e] on the path from r to v)  <=  weight of the unblinded robots of r's
+    group.
 
 The program asks for the x and b within the budgets that make the largest left side least; its inequalities come from
 shortest-path trees. What it says is not taken: for any multipliers ``y >= 0`` of the inequalities an attack leaves a
-group of at least their mean left side, which is least where the attack takes the links and the robots of the largest
+group of at least their mean left side, which is least if the attack takes the links and the robots of the largest
 coefficients. That is computed in integers, so weights are integers too.
 
 Source: spreading metrics; Even, Naor, Rao and Schieber, Journal of the ACM 47 (2000), here for cuts within a budget.
@@ -52,7 +53,7 @@ links up to which it is asked: paths from every robot are what a program begins 
 
 
 def forced_size(threat: Threat, budget: Budget, enough: int) -> int:
-    """A number of seeing robots that every attack leaves in some group; looks no further than ``enough``.
+    """A number of unblinded robots that every attack leaves in some group; looks no further than ``enough``.
 
     What was found out about the last few threats is kept, and gone on with.
     """
@@ -65,7 +66,7 @@ def _size_program(threat: Threat) -> TreeProgram:
 
 
 def forced_size_soon(threat: Threat, budget: Budget) -> int:
-    """:func:`forced_size` as far as a fixed amount of work gets: the same whenever and wherever it is asked."""
+    """:func:`forced_size` as far as a fixed amount of work gets: the same in every call."""
     links, n_robots = len(threat.graph.links), threat.graph.n_robots
     if links == 0 or links * n_robots > LARGEST_SOON or budget.is_over:
         return 0
@@ -80,7 +81,7 @@ def forced_size_trees(threat: Threat, budget: Budget) -> tuple[int, list[tuple[i
 
 
 def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int) -> int:
-    """A weight that every attack leaves to the seeing robots of some group; looks no further than ``enough``.
+    """A weight that every attack leaves to the unblinded robots of some group; looks no further than ``enough``.
 
     ``weights`` : (N,) of the robots, in [0, 2^20], not all 0
     """
@@ -203,12 +204,12 @@ class TreeProgram:
 
     @property
     def reachable(self) -> int:
-        """No weight above this can be proved: the best point known keeps no more in any group."""
+        """No weight above this can be proved: the best point known has no more in any group."""
         return ceil((self.needed - SLACK) * self.unit)
 
     @property
     def proved(self) -> int:
-        """From the last multipliers, in integers: every attack leaves some group seeing robots of this weight."""
+        """From the last multipliers, in integers: every attack leaves some group unblinded robots of this weight."""
         used = self._combined()
         if not used:
             return 0

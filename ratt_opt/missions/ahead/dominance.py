@@ -1,9 +1,9 @@
 """Dominated elements are dropped: another one of the same robot tells at least as much, by a proof in exact arithmetic.
 
-Information of two rows differs by ``[[a, b], [b, c]]``, positive semidefinite where ``a >= 0``, ``c >= 0`` and
+Information of two rows differs by ``[[a, b], [b, c]]``, positive semidefinite if ``a >= 0``, ``c >= 0`` and
 ``a c >= b^2``. The difference of two floats has the exact difference's sign, and is off by one rounding; so are both
-products by three roundings more. Where ``a c`` and ``b^2`` are farther apart than that, floats decide and
-are right; where they are not, fractions do.
+products by three roundings more. If ``a c`` and ``b^2`` are farther apart than that, floats decide and
+are right; if they are not, fractions do.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ NO, OPEN, YES = range(3)
 def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dict[int, int]]:
     """Drop dominated elements; no plan loses value by that.
 
-    Element ``e`` is dominated by ``f`` where ``information[f] - information[e]`` is positive semidefinite for every
+    Element ``e`` is dominated by ``f`` if ``information[f] - information[e]`` is positive semidefinite for every
     target and step: criteria do not decrease, so ``f`` in the place of ``e`` keeps any plan's value under any
     attack. Of equal elements the first stays. Semidefiniteness is decided exactly, on the floats as they are.
 

@@ -99,7 +99,7 @@ def joint_position_covariance(beliefs: list[Belief], motion: TargetMotion, perio
 
 
 def output_matrix(output: str, horizon: int) -> FloatArray | None:
-    """(q, 2 H) the part of all steps' positions that counts; ``None`` where that is the whole of one position.
+    """(q, 2 H) the part of all steps' positions that counts; ``None`` if that is the whole of one position.
 
     ``"last"`` : the position at the last step; ``"mean"`` : those of all steps, over the root of their number: the
     trace is then the mean of theirs, and the largest eigenvalue that of the joint covariance over their number.

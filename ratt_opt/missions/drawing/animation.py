@@ -23,7 +23,7 @@ __all__ = ["save_gif"]
 MILLISECONDS = 250
 """Each picture is shown so long."""
 WIDTH = 6.4
-"""Of the picture [inch]."""
+"""Size of the picture [inch]."""
 ROLES = {"best group": (SURVIVING, "o"), "cut off": (LOST, "s"), "blinded": (BLINDED, "X")}
 
 

@@ -21,16 +21,22 @@ if TYPE_CHECKING:
 
 __all__ = ["mission_figure"]
 
+FEW_TICKS = 20.0
+"""Of an axis that spans less than this factor the ticks between powers of ten have numbers too."""
+
 
 def mission_figure(missions: Sequence[FlownMission]) -> Figure:
-    """RMSE above NEES, step by step; of several seeds the mean with its 95 % interval (Student's t)."""
+    """RMSE above NEES, step by step; of several seeds the mean with its 95 % interval (Student's t).
+
+    NEES has a logarithmic axis: a filter that claims ten times too much is as far off as one that claims a tenth.
+    """
     first = missions[0]
     figure: Figure = imported_whole("matplotlib.figure").Figure(figsize=(8, 6.5), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     steps = np.arange(1, len(first.steps) + 1)
     _curve(above, steps, np.array([m.rmse for m in missions]), "error (RMSE)")
     believed = np.sqrt(np.mean([m.traces for m in missions], axis=0))
-    above.plot(steps, believed, color=INK, linestyle=":", label="what the filter believes (root of the mean trace)")
+    above.plot(steps, believed, color=INK, linestyle=":", label="what the filter states (root of the mean trace)")
     above.set_ylabel("RMSE [m]")
     above.set_ylim(bottom=0)
     _curve(below, steps, np.array([m.nees for m in missions]), "NEES")
@@ -40,7 +46,10 @@ def mission_figure(missions: Sequence[FlownMission]) -> Figure:
     below.set_ylabel("NEES, mean over targets")
     below.set_xlabel("step")
     below.xaxis.get_major_locator().set_params(integer=True)
-    below.set_ylim(bottom=0)
+    below.set_yscale("log")
+    below.yaxis.set_major_formatter("{x:g}")
+    low, high = below.get_ylim()
+    below.yaxis.set_minor_formatter("{x:g}" if high < FEW_TICKS * low else "")
     for axes in (above, below):
         axes.legend(frameon=False, fontsize=8.5)
         axes.grid(visible=True, color="#eeeeee", linewidth=0.8)
@@ -53,6 +62,7 @@ def _curve(axes: Axes, steps: Any, values: FloatArray, label: str) -> None:
     mean, n = values.mean(axis=0), len(values)
     if n > 1:
         half = float(stdtrit(n - 1, 0.975)) * values.std(axis=0, ddof=1) / n**0.5
-        axes.fill_between(steps, mean - half, mean + half, color=SURVIVING, alpha=0.2)
+        lowest = np.maximum(mean - half, 0.0)  # neither is ever negative, so the interval loses nothing
+        axes.fill_between(steps, lowest, mean + half, color=SURVIVING, alpha=0.2)
         label = f"{label}, mean of {n} seeds with 95 % interval"
     axes.plot(steps, mean, color=SURVIVING, marker=".", markersize=4, label=label)

@@ -2,9 +2,46 @@
 const data = JSON.parse(document.getElementById("mission").textContent);
 const canvas = document.getElementById("map"), pen = canvas.getContext("2d");
 const slider = document.getElementById("step"), button = document.getElementById("play"), text = document.getElementById("text");
-const [x0, x1, y0, y1] = data.view, size = canvas.width;
-const scale = size / Math.max(x1 - x0, y1 - y0);
-const X = (x) => (x - x0) * scale, Y = (y) => size - (y - y0) * scale;
+const [x0, x1, y0, y1] = data.view;
+const LEFT = 44, BOTTOM = 34, TOP = 8, RIGHT = 8;  // of the frame, in pixels of the page, for the axes
+let width = 0, height = 0, scale = 1;
+const X = (x) => LEFT + (x - x0) * scale, Y = (y) => height - BOTTOM - (y - y0) * scale;
+
+// The frame is as wide as the page and as high as the action: nothing of it is empty.
+function fit() {
+  const dots = window.devicePixelRatio || 1;
+  width = canvas.clientWidth; scale = (width - LEFT - RIGHT) / (x1 - x0);
+  const tallest = Math.max(240, 0.8 * window.innerHeight);
+  scale = Math.min(scale, (tallest - TOP - BOTTOM) / (y1 - y0));
+  height = Math.round((y1 - y0) * scale + TOP + BOTTOM);
+  canvas.style.height = height + "px";
+  canvas.width = Math.round(width * dots); canvas.height = Math.round(height * dots);
+  pen.setTransform(dots, 0, 0, dots, 0, 0);
+}
+
+function ticks(low, high, room) {
+  const rough = (high - low) / Math.max(2, Math.floor(room / 60)), power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * [1, 2, 5, 10].find((s) => s * power >= rough), found = [];
+  for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(Number((k * step).toPrecision(12)));
+  return found;
+}
+
+function axes() {
+  const right = X(x1), top = Y(y1), left = X(x0), foot = Y(y0);
+  pen.font = "11px sans-serif"; pen.fillStyle = data.colours.ink; pen.lineWidth = 1; pen.setLineDash([]);
+  for (const x of ticks(x0, x1, right - left)) {
+    pen.strokeStyle = data.colours.grid; pen.beginPath(); pen.moveTo(X(x), foot); pen.lineTo(X(x), top); pen.stroke();
+    pen.textAlign = "center"; pen.textBaseline = "top"; pen.fillText(String(x), X(x), foot + 4);
+  }
+  for (const y of ticks(y0, y1, foot - top)) {
+    pen.strokeStyle = data.colours.grid; pen.beginPath(); pen.moveTo(left, Y(y)); pen.lineTo(right, Y(y)); pen.stroke();
+    pen.textAlign = "right"; pen.textBaseline = "middle"; pen.fillText(String(y), left - 4, Y(y));
+  }
+  pen.strokeStyle = data.colours.ink; pen.strokeRect(left, top, right - left, foot - top);
+  pen.textAlign = "center"; pen.textBaseline = "bottom"; pen.fillText("x [m]", (left + right) / 2, height - 1);
+  pen.save(); pen.translate(10, (top + foot) / 2); pen.rotate(-Math.PI / 2); pen.textBaseline = "middle";
+  pen.fillText("y [m]", 0, 0); pen.restore();
+}
 
 function counted(number, noun) { return `${number} ${noun}${number === 1 ? "" : "s"}`; }
 
@@ -15,7 +52,7 @@ function line(a, b, colour, dash) {
 
 function draw(k) {
   const f = data.frames[k];
-  pen.clearRect(0, 0, size, size); pen.lineWidth = 1;
+  pen.clearRect(0, 0, width, height); axes(); pen.lineWidth = 1;
   for (const [i, j] of f.links) line(f.robots[i], f.robots[j], data.colours.link, []);
   for (const [i, j] of f.cut) line(f.robots[i], f.robots[j], data.colours.cut, [5, 4]);
   f.estimates.forEach((p, j) => {
@@ -55,4 +92,7 @@ button.addEventListener("click", () => {
   timer = setInterval(() => draw((Number(slider.value) + 1) % data.frames.length), 250);
 });
 slider.addEventListener("input", () => { stop(); draw(Number(slider.value)); });
-draw(0);
+let shown = 0;
+function refit() { if (canvas.clientWidth !== shown) { shown = canvas.clientWidth; fit(); draw(Number(slider.value)); } }
+window.addEventListener("resize", refit);
+refit();

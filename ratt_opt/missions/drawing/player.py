@@ -23,8 +23,9 @@ COLOURS = {
     "link": LOST,
     "target": TARGET,
     "ink": INK,
+    "grid": "#eeeeee",
 }
-STYLE = "body{font-family:sans-serif;max-width:46rem;margin:1rem auto}canvas{width:100%;border:1px solid #ccc}"
+STYLE = "body{font-family:sans-serif;max-width:46rem;margin:1rem auto;padding:0 .6rem}canvas{width:100%;display:block}"
 
 
 def player_page(mission: FlownMission) -> str:
@@ -46,10 +47,11 @@ def player_page(mission: FlownMission) -> str:
     key += f"lines: links, dashed: cut ones (at most {MOST_LINKS} of a kind are drawn); "
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{escape(title)}</title><style>{STYLE}</style></head><body><h1>{escape(title)}</h1>"
-        f'<p>{escape(about)}</p><canvas id="map" width="800" height="800" role="img" aria-label="Map"></canvas>'
+        f'<p>{escape(about)}</p><canvas id="map" role="img" aria-label="Map"></canvas>'
         f'<p><button id="play">Play</button> <input id="step" type="range" min="0" max="{len(frames) - 1}" value="0" '
         f'aria-label="Step" style="width:70%"></p><p id="text" role="status"></p>'
-        f"<p>{escape(key)}stars: targets; ellipses: where the team believes them with 95 %.</p>"
+        f"<p>{escape(key)}stars: targets; ellipses: the team's estimates, 95 %.</p>"
         f'<script type="application/json" id="mission">{text}</script><script>{script}</script></body></html>\n'
     )

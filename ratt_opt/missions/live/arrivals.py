@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Arrivals"]
 
 MOST_PERIODS = 10_000
-"""That may pass between two steps: each is predicted on its own; after so many nothing is known of a target."""
+"""Most periods between two steps. Each is predicted on its own; after that many nothing is known of a target."""
 ROUNDING = 1e-9
 """Largest asymmetry and most negative eigenvalue of a pose's covariance, relative to its largest entry."""
 
@@ -51,7 +51,7 @@ class Arrivals:
         return now - before, now
 
     def poses(self, poses: ArrayLike | None, covariances: ArrayLike | None) -> tuple[FloatArray, FloatArray]:
-        """(N, 3) poses, where the last plan led by default, and (N, 3, 3) their covariances, zero by default."""
+        """(N, 3) poses (default: those that the last plan led to), and (N, 3, 3) their covariances, zero by default."""
         shape = self.state.poses.shape
         places = self.state.poses if poses is None else check_finite("poses", poses, ndim=2)
         if places.shape != shape:

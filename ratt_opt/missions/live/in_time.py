@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["InTime", "Planned"]
 
 SEARCH_SHARE = 0.7
-"""Of a step's time left, for a search: it looks at the clock between nodes, which take a while themselves."""
+"""Share of a step's remaining time for a search. It looks at the clock between nodes, and a node takes a while."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +44,7 @@ class InTime:
     _running: Future[IntArray] | None = field(default=None, init=False, repr=False)
 
     def __call__(self, problem: Problem, start: IntArray, began: float) -> Planned:
-        """Plan one step. A search begins from ``start``, what is left of the last plan, and from RATT's plan."""
+        """Plan one step. A search begins from ``start``, the rest of the last plan, and from RATT's plan."""
         if self.time_limit is None:
             return Planned(self._whole(problem, start), late=False)
         known = ratt(problem).elements

@@ -35,7 +35,7 @@ def without_robot(world: World, state: TrackerState, robot: int) -> TrackerState
 
 
 def with_attack(world: World, state: TrackerState, attack: Attack) -> TrackerState:
-    """The state once an attack is seen. InputError : it is none, or names robots that there are not."""
+    """The state once an attack is seen. InputError : it is none, or names robots that do not exist."""
     if not isinstance(attack, Attack):
         raise InputError("attack", "must be an Attack", type(attack).__name__)
     for robot in {*attack.sensing, *(i for link in attack.links for i in link)}:

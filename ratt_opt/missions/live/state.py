@@ -33,7 +33,7 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Moment(ByValue):
-    """What is known of one time [s]: ``poses`` (N, 3) and their covariances (N, 3, 3), and what was measured then.
+    """One time [s] with its data: ``poses`` (N, 3) and their covariances (N, 3, 3), and what was measured then.
 
     ``belief`` : of the targets, the measurements of this time taken in.
     """
@@ -77,10 +77,10 @@ class Moment(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TrackerState(ByValue, Shown):
-    """All that a tracker knows: ``time`` [s] since it began, and the caller's clock ``now`` [s] if there was one.
+    """The whole state of a tracker: ``time`` [s] since it began, and the caller's clock ``now`` [s] if there was one.
 
     ``poses`` : (N, 3) expected at the next measurements; ``moments`` : times of which late measurements are still taken
-    in, the last one now; ``controls`` : (N, H, 2) what is left of the last plan; ``steps``, ``missed`` : how many there
+    in, the last one now; ``controls`` : (N, H, 2) the rest of the last plan; ``steps``, ``missed`` : how many there
     were, and in how many the planner was late. ``targets`` : (M,) their numbers; ``born`` : (M,) when each appeared
     [s]; ``next_target`` : the number of the next one to appear. ``lost`` : robots that are, and since when [s];
     ``attack`` : what is known to be blinded and cut.

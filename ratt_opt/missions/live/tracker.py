@@ -48,16 +48,17 @@ class Tracker:
     Parameters
     ----------
     scenario : the team as it starts, what is believed of the targets, and the adversary's budgets
-    planner : as in :func:`run_mission`; a callable's work goes on in a thread when it is late, and is thrown away
+    planner : as in :func:`run_mission`; if a callable is late, its work goes on in a thread and is discarded
     horizon : steps that a plan looks ahead
-    time_limit : seconds for a step; ``None`` waits for the planner. If the planner is late, that counts in ``missed``,
-        and RATT's plan is used, which is made first and takes some milliseconds.
+    time_limit : seconds for a step; ``None`` waits for the planner. If the planner is late, ``missed`` counts it, and
+        RATT's plan is used; that one is made first and takes some milliseconds.
     model : motions, sensors and filter, as in :func:`run_mission`
     state : where to go on; the scenario's start by default
     lag : seconds that a measurement may come late; ten sampling periods by default
 
-    ``state`` : all it knows; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot executes next.
-    ``scenario`` : the team with the targets that there are now; whoever goes on from ``state`` needs it.
+    ``state`` : the tracker's whole state; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot
+    executes next.
+    ``scenario`` : the team with its present targets; needed to go on from ``state``.
 
     Raises
     ------
@@ -121,7 +122,7 @@ class Tracker:
             time, in whatever order they arrive. One that tells nothing is not used, and a ``RuntimeWarning`` says so.
         now : the caller's clock [s]; it must not run backwards, and the belief is predicted by what has passed.
             ``None`` is one sampling period after the last step.
-        poses : (N, 3) where the robots know to be; where the last plan led them by default
+        poses : (N, 3) poses that the robots know of themselves; by default those that the last plan led to
         pose_covariances : (N, 3, 3) of these poses [m^2], [m rad], [rad^2]; exact by default. They are taken for
             further noise of every measurement made from there.
 
@@ -163,11 +164,11 @@ class Tracker:
     def attacked(self, attack: Attack) -> None:
         """Say which sensors are known to be blinded and which links to be cut, in place of what was said before.
 
-        Plans do without them, and against what is left of the budgets. ``Attack()`` : nothing is, any more.
+        Plans do without them, and against the remaining budgets. ``Attack()`` : nothing is attacked any more.
 
         Raises
         ------
-        InputError : it is no attack, or names robots that there are not.
+        InputError : it is no attack, or names robots that do not exist.
         """
         self.state = with_attack(self.world, self.state, attack)
 
@@ -266,7 +267,7 @@ def _recent(moments: tuple[Moment, ...], oldest: float) -> tuple[Moment, ...]:
 def _within_reach(state: TrackerState) -> TrackerState:
     """Return the state after checking that what is computed with it stays finite.
 
-    Raises ``InputError`` : a robot or target is where no scenario could place it, as after a range of 1e300 m.
+    Raises ``InputError`` : a robot or target is outside every scenario, as after a range of 1e300 m.
     """
     for name, numbers in (("poses", state.poses), ("estimates", state.belief.mean)):
         if not np.abs(numbers).max() <= LARGEST:
@@ -275,6 +276,6 @@ def _within_reach(state: TrackerState) -> TrackerState:
 
 
 def _nearest(offered: Sequences, wanted: FloatArray) -> IntArray:
-    """(N,) elements whose controls are those wanted (N, H, 2), or nearest to them where they are not offered."""
+    """(N,) elements whose controls are those wanted (N, H, 2), or nearest to them if they are not offered."""
     apart = np.abs(offered.controls - wanted[offered.owner]).sum(axis=(1, 2))
     return np.array([(own := np.flatnonzero(offered.owner == i))[np.argmin(apart[own])] for i in range(len(wanted))])

@@ -1,7 +1,6 @@
-"""How targets and robots move during a mission, and what sensors measure.
+"""How targets and robots move during a mission, and which robot measures what.
 
-Open ``sensor_model.py`` first: the base class that a sensor of your own subclasses. ``range_bearing.py`` has the
-scenario's sensor and its two halves, ``own_information.py`` sensors that state their information themselves,
-``sensors.py`` positions as measurements and who has which sensor. ``targets.py`` has the motion models of targets
-(position, constant velocity, coordinated turn), ``robots.py`` the two ways in which a robot executes a control.
+Open ``targets.py`` first: the motion models of targets (position, constant velocity, coordinated turn). ``robots.py``
+has the two ways in which a robot executes a control, ``sensors.py`` who has which sensor; the sensors themselves are
+in ``scenario/sensors``.
 """

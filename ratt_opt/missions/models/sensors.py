@@ -1,64 +1,26 @@
-"""The position as a measurement, and which robot has which sensor."""
+"""Which robot has which sensor in a mission."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt._validation import readonly
-from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
-from ratt_opt.missions.models.range_bearing import BearingOnly, RangeBearing, RangeOnly
-from ratt_opt.missions.models.sensor_model import SensorModel
+from ratt_opt.scenario.sensor import Sensor
+from ratt_opt.scenario.sensors.kinds import made, sensor_kinds
+from ratt_opt.scenario.sensors.model import SensorModel
+from ratt_opt.scenario.sensors.range_bearing import BearingOnly, RangeBearing, RangeOnly
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import IntArray
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["COMPONENTS", "PositionSensor", "check_sensor", "robots_by_sensor", "sensors_of"]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class PositionSensor(ByValue, SensorModel):
-    """The position x, y [m] itself, with standard deviation ``std`` per axis [m]; ``max_range`` [m] or ``None``."""
-
-    std: float = 1.0
-    max_range: float | None = None
-    size: ClassVar[int] = 2
-
-    def __post_init__(self) -> None:
-        if not self.std > 0:
-            raise InputError("std", "must be positive", self.std)
-
-    def measure(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., 2)."""
-        return np.asarray(points + 0.0 * poses[..., :2])
-
-    def jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., 2, 2) identities."""
-        return np.broadcast_to(np.eye(2), (*np.broadcast_shapes(poses.shape[:-1], points.shape[:-1]), 2, 2))
-
-    def hessian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., 2, 2, 2) zeros."""
-        return np.zeros((*np.broadcast_shapes(poses.shape[:-1], points.shape[:-1]), 2, 2, 2))
-
-    def noise(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., 2) [m^2]."""
-        return np.full((*np.broadcast_shapes(poses.shape[:-1], points.shape[:-1]), 2), self.std**2)
-
-    def pointed_at(self, poses: FloatArray, measured: FloatArray) -> FloatArray:  # noqa: ARG002
-        """(..., 2) what was measured."""
-        return measured
-
-    def sees(self, poses: FloatArray, points: FloatArray) -> BoolArray:
-        """Within the range."""
-        apart = np.linalg.norm(points - poses[..., :2], axis=-1)
-        return np.asarray(apart <= (np.inf if self.max_range is None else self.max_range))
+__all__ = ["COMPONENTS", "check_sensor", "robots_by_sensor", "sensors_of"]
 
 
 COMPONENTS: dict[str, type[RangeBearing]] = {
@@ -70,36 +32,52 @@ COMPONENTS: dict[str, type[RangeBearing]] = {
 
 
 def check_sensor(sensor: object) -> None:
-    """InputError : it is neither ``None``, nor a name, nor a SensorModel, nor several of these."""
+    """InputError : it is neither ``None``, nor a name, nor a sensor, nor several of these."""
     several = tuple(sensor) if isinstance(sensor, Iterable) and not isinstance(sensor, str) else (sensor,)
     if sensor is None or (isinstance(sensor, str) and sensor in COMPONENTS):
         return
-    if not several or not all(isinstance(one, SensorModel) for one in several):
+    if isinstance(sensor, str) and sensor in sensor_kinds():
+        made(sensor, {})
+        return
+    if not several or not all(isinstance(one, (Sensor, SensorModel)) for one in several):
         shown = sensor if isinstance(sensor, str) else type(sensor).__name__
-        raise InputError("sensor", f"must be {', '.join(COMPONENTS)}, a SensorModel, or one for each robot", shown)
+        known = ", ".join(dict.fromkeys([*COMPONENTS, *sensor_kinds()]))
+        raise InputError("sensor", f"must be {known}, a SensorModel, or one for each robot", shown)
 
 
 def sensors_of(
-    scenario: Scenario, sensor: str | SensorModel | Sequence[SensorModel] | None = None
+    scenario: Scenario, sensor: str | Sensor | SensorModel | Sequence[Sensor | SensorModel] | None = None
 ) -> tuple[SensorModel, ...]:
     """Every robot's sensor: the given one, the given ones robot by robot, or the scenario's, by what it measures.
 
-    ``sensor`` : also ``"range and bearing"`` (the default), ``"range"`` or ``"bearing"``
+    ``sensor`` : also ``"range and bearing"`` (the default), ``"range"`` or ``"bearing"``, parts of what the scenario's
+    range-and-bearing sensors measure; or a registered kind, as it is without settings
 
     Raises
     ------
-    InputError : ``sensor`` is none of these.
+    InputError : ``sensor`` is none of these, or a part of what a sensor of another class measures.
     """
     check_sensor(sensor)
-    if sensor is None or isinstance(sensor, str):
-        kind = COMPONENTS["range and bearing" if sensor is None else sensor]
-        return tuple(kind(robot.sensor or scenario.sensor) for robot in scenario.robots)
-    several = tuple(sensor) if isinstance(sensor, Iterable) else ()
-    given = (sensor,) * scenario.n_robots if isinstance(sensor, SensorModel) else several
+    if sensor is None or (isinstance(sensor, str) and sensor in COMPONENTS):
+        return tuple(_part(robot.sensor or scenario.sensor, sensor, i) for i, robot in enumerate(scenario.robots))
+    if isinstance(sensor, str):
+        sensor = made(sensor, {})
+    several = tuple(sensor) if isinstance(sensor, Iterable) and not isinstance(sensor, Sensor) else ()
+    given = (sensor,) * scenario.n_robots if isinstance(sensor, (Sensor, SensorModel)) else several
     if len(given) != scenario.n_robots:
         rule = f"must be a SensorModel, or one for each of {scenario.n_robots} robots"
         raise InputError("sensor", rule, type(sensor).__name__)
-    return given
+    return tuple(RangeBearing(one) if isinstance(one, Sensor) else one for one in given)
+
+
+def _part(own: Sensor | SensorModel, part: str | None, robot: int) -> SensorModel:
+    """What of a scenario's sensor is measured."""
+    if isinstance(own, SensorModel):
+        if part is not None:
+            rule = f"must be absent, or {type(own).__name__} of robots[{robot}] a range-and-bearing Sensor"
+            raise InputError("sensor", rule, part)
+        return own
+    return COMPONENTS["range and bearing" if part is None else part](own)
 
 
 def robots_by_sensor(sensors: Sequence[SensorModel]) -> tuple[tuple[SensorModel, IntArray], ...]:

@@ -71,7 +71,7 @@ class KnownVelocity(ByValue, TargetMotion):
     deviation per axis of the noise of one ``sampling_period`` [m], [s]. The heading advances with the turn rate, so
     that a target circles; the first period is the one of :attr:`Scenario.predicted_targets`.
 
-    Within a period, counted from time 0, a target moves straight along the heading of that period. So where it is does
+    Within a period, counted from time 0, a target moves straight along the heading of that period. So its place does
     not depend on how often it is predicted.
     """
 
@@ -113,7 +113,7 @@ class ConstantVelocity(ByValue, TargetMotion):
     """States x, y [m], velocity [m/s]; white acceleration.
 
     ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in a ``sampling_period`` [m].
-    ``velocity_std`` : of what is believed of the velocity at first [m/s].
+    ``velocity_std`` : standard deviation of the first estimate of the velocity [m/s].
 
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.2.
     """
@@ -150,8 +150,8 @@ class ConstantVelocity(ByValue, TargetMotion):
 class CoordinatedTurn(ByValue, TargetMotion):
     """States x, y [m], velocity [m/s], turn rate [rad/s]; white acceleration and a drifting turn rate.
 
-    ``process_std``, ``velocity_std`` : as for :class:`ConstantVelocity`; ``turn_std`` : of what is believed of the turn
-    rate at first [rad/s]; ``turn_noise`` : of its drift in one second [rad/s].
+    ``process_std``, ``velocity_std`` : as for :class:`ConstantVelocity`; ``turn_std`` : standard deviation of the
+    first estimate of the turn rate [rad/s]; ``turn_noise`` : of its drift in one second [rad/s].
 
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 11.7.
     """
@@ -240,7 +240,7 @@ def target_motion(motion: str | TargetMotion, scenario: Scenario) -> TargetMotio
 
 
 def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """``sin(wT)/w`` and ``(1 - cos(wT))/w`` with their derivatives by ``w``, by series where ``wT`` is small."""
+    """``sin(wT)/w`` and ``(1 - cos(wT))/w`` with their derivatives by ``w``, by series if ``wT`` is small."""
     small = np.abs(rate * period) < STRAIGHT
     w = np.where(small, 1.0, rate)
     sine, cosine = np.sin(w * period), np.cos(w * period)

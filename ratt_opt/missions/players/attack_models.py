@@ -20,7 +20,7 @@ __all__ = ["ATTACK_MODELS", "AttackModel", "PermanentFailures", "PersistentAttac
 
 
 class AttackModel(ABC):
-    """What is in force when a plan is made, and what may strike then; ``before`` is what was in force a step ago."""
+    """Attacks in force when a plan is made, and attacks that may follow; ``before`` : in force a step ago."""
 
     @abstractmethod
     def threatened(self, step: int, before: Attack, scenario: Scenario) -> Threatened:
@@ -42,7 +42,8 @@ class RenewedAttacks(AttackModel):
 
 @dataclass(frozen=True, slots=True)
 class PersistentAttacks(AttackModel):
-    """An attack stays for ``hold`` steps, is lifted, and is renewed; meanwhile the team knows it, and none is added."""
+    """An attack stays for ``hold`` steps and is then replaced by another. Meanwhile the team knows it, and none is
+    added."""
 
     hold: int = 5
 
@@ -50,7 +51,7 @@ class PersistentAttacks(AttackModel):
         check_integer("hold", self.hold, low=1)
 
     def threatened(self, step: int, before: Attack, scenario: Scenario) -> Threatened:
-        """All budgets where an attack begins, else what is in force and no more."""
+        """All budgets if an attack begins, else what is in force and no more."""
         if step % self.hold == 0:
             return Threatened(Attack(), scenario.alpha_s, scenario.alpha_c)
         return Threatened(before, 0, 0)
@@ -58,10 +59,11 @@ class PersistentAttacks(AttackModel):
 
 @dataclass(frozen=True, slots=True)
 class PermanentFailures(AttackModel):
-    """Failures stay and add up until the budgets are spent; the team knows them and plans against what is left.
+    """Failures stay and add up until the budgets are spent. The team knows them and plans against the remaining
+    budgets.
 
-    In each step every working sensor fails with probability ``sensor_rate`` and every link with ``link_rate``:
-    that decides how many fail, and the attacker which ones.
+    In each step every working sensor fails with probability ``sensor_rate`` and every link with ``link_rate``. These
+    draws say how many fail; the attacker chooses which.
     """
 
     sensor_rate: float = 0.02

@@ -40,14 +40,14 @@ class AnytimePlanner(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MaxMinPlanner:
-    """The max-min plan with a bracket, as good as its limits allow; by ``max_nodes`` alone it is reproducible."""
+    """The max-min plan with a bracket, within limits. With ``max_nodes`` alone it is reproducible."""
 
     gap: float = 1e-3
     time_limit: float | None = None
     max_nodes: int | None = 30
 
     def __call__(self, problem: Problem, start: IntArray | None = None) -> MaxMinResult:
-        """Search until closed to the gap or out of limits, from a plan ``start`` where one is known."""
+        """Search until closed to the gap or out of limits, from a plan ``start`` if one is known."""
         return solve_maxmin(problem, gap=self.gap, time_limit=self.time_limit, max_nodes=self.max_nodes, start=start)
 
     def within(self, problem: Problem, budget: Budget, start: IntArray) -> MaxMinResult:
@@ -57,7 +57,7 @@ class MaxMinPlanner:
 
 @dataclass(frozen=True, slots=True)
 class RefinedPlanner:
-    """RATT's plan, improved against the attacks that hurt it; limited by kicks alone it is the same on every run."""
+    """RATT's plan, improved against the attacks that hurt it; reproducible with a limit of kicks alone."""
 
     time_limit: float | None = None
     max_kicks: int | None = 20
@@ -73,7 +73,7 @@ class RefinedPlanner:
 
 @dataclass(frozen=True, slots=True)
 class RandomPlanner:
-    """A random plan; the numbers of a step depend on the seed and on how much the robots have to choose from."""
+    """A random plan; the numbers of a step depend on the seed and on the numbers of elements."""
 
     seed: int = 0
 

@@ -29,17 +29,17 @@ if TYPE_CHECKING:
 __all__ = ["FittedSensor", "Residuals", "fit_sensor", "mrclam_residuals"]
 
 ROUNDS = 30
-"""Of expectation and maximisation; the noise no longer moves in the fourth digit after some ten."""
+"""Rounds of expectation and maximisation; after some ten the fourth digit of the noise no longer moves."""
 SMALLEST = 1e-9
 """Standard deviations and variances are at least this, so that a perfect sensor has a likelihood."""
 FEWEST = 20
 
 
 class FittedSensor(Sensor):
-    """A sensor with what else the data said.
+    """A sensor fitted to data, with the outliers of the data.
 
-    ``outliers`` : share of measurements that are none of the Gaussian; ``gate`` : normalised squared error of range
-    and bearing together, above which a measurement is more likely an outlier. ``labels`` : which labelling of a
+    ``outliers`` : share of measurements that the Gaussian does not explain; ``gate`` : normalised squared error of
+    range and bearing together, above which a measurement is more likely an outlier. ``labels`` : which labelling of a
     dataset's landmarks it was fitted with, and who decided that.
     """
 
@@ -102,7 +102,7 @@ def fit_sensor(
     corrections : of a folder's labels, see :func:`read_mrclam`; by default the sightings decide, and ``labels`` of the
         result says what
 
-    The reach is not estimated: what was never seen may have been out of reach or not there.
+    The reach is not estimated: a target that was never seen may have been out of reach or absent.
 
     Raises
     ------
@@ -178,7 +178,7 @@ class _Fit:
         return cls(law, of_range, of_bearing, outliers, likelihood, box)
 
     def gate(self, r: Residuals) -> float:
-        """Where both densities are equal, at the median geometry; at least the 95 % ellipse."""
+        """The point at which both densities are equal, at the median geometry; at least the 95 % ellipse."""
         range_std = float(_std(self.of_range, np.median(r.distance, keepdims=True), self.law)[0])
         bearing_std = float(_std(self.of_bearing, np.median(np.abs(r.bearing), keepdims=True), self.law)[0])
         odds = (1 - self.outliers) * self.box / (2 * np.pi * range_std * bearing_std * self.outliers)

@@ -72,7 +72,7 @@ class Replay(ByValue):
 
     @property
     def nees(self) -> FloatArray:
-        """(T,) mean over the landmarks; 2 where the filter is consistent."""
+        """(T,) mean over the landmarks; 2 if the filter is consistent."""
         return readonly(np.array([step.belief.nees(step.belief.mean - step.errors).mean() for step in self.steps]))
 
     @property
@@ -89,9 +89,9 @@ class ReplaySettings:
 
     ``start`` : seconds since all poses have begun; ``period`` : of a step [s], in which every running camera gives its
     last sighting of each landmark (successive ones have correlated errors); ``cameras`` : how many may run;
-    ``prior_std`` : by which landmarks are believed elsewhere at first [m]; ``drift_std`` : by which landmarks are taken
-    to move in a step [m], which keeps the filter from trusting errors that do not average out; ``seed`` : of the first
-    beliefs and of random players.
+    ``prior_std`` : standard deviation of the first beliefs about the landmarks [m]; ``drift_std`` : assumed standard
+    deviation of the landmarks' motion in a step [m], so that the filter does not trust errors that do not average out;
+    ``seed`` : of the first beliefs and of random players.
     """
 
     start: float = 60.0
@@ -125,7 +125,7 @@ def replay_mrclam(
     """Track the landmarks with the dataset's own measurements, under attack.
 
     Each group keeps its own belief; they are merged without double counting when links return. The team is the group
-    that knows most.
+    with the smallest uncertainty.
 
     Parameters
     ----------

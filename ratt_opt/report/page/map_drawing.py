@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.report.description import describe
+from ratt_opt.report.description import describe, named
 from ratt_opt.report.fields import FIELD_WORDS, LOST_WORDS, WATCH_WORDS, field_of, watched_pairs
+from ratt_opt.report.spots import SPOTS, best_spot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -16,19 +17,30 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.findings.bound import AssessedPlan, Findings
     from ratt_opt.report.picture import Picture
+    from ratt_opt.report.spots import Box
 
 __all__ = ["legend_html", "map_svg"]
 
-WIDTH, HEIGHT, MARGIN = 800.0, 560.0, 40.0
+BROAD, NARROW, MARGIN = (800.0, 560.0), (390.0, 460.0), 40.0
+"""Width and height of a drawing for desks and of one for telephones, on which words would be too small."""
 SIGMAS = 2.4477
 """Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
+MARK = 11.0
+"""Half the width of a robot or target."""
+LETTER, LINE, BELOW, SPREAD = 6.8, 14.0, 3.5, 1.3
+"""Of words: width of a letter, height of a line, what is below its foot, and offsets over those on paper."""
 MOST_LINKS = 400
 """More links of groups than this are not drawn: they would be one blot, and make the page large. Cut ones are."""
 
 
 def map_svg(picture: Picture, report: Findings, view: AssessedPlan) -> str:
-    """Return one drawing; lengths are in proportion, north is up."""
-    place = _frame(picture)
+    """Return the map drawn twice, of which the page shows one; lengths are in proportion, north is up."""
+    sizes = {"broad": BROAD, "narrow": NARROW}
+    return "".join(_drawing(picture, report, view, size, kind) for kind, size in sizes.items())
+
+
+def _drawing(picture: Picture, report: Findings, view: AssessedPlan, size: tuple[float, float], kind: str) -> str:
+    place = _frame(picture, size)
     at = [place(x) for x in picture.places]
     parts = [
         *_fields(picture, at, place),
@@ -36,11 +48,12 @@ def map_svg(picture: Picture, report: Findings, view: AssessedPlan) -> str:
         *_watching(picture, at, place),
         *_targets(picture, place),
         *_robots(picture, at, report, view),
+        *_words(picture, at, place),
+        *(() if picture.is_layout else _scale_bar(place)),
     ]
     label = escape(f"Map of {len(at)} robots under attack; tab through robots and targets for their details")
-    return (
-        f'<svg class="map" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="group" aria-label="{label}">{"".join(parts)}</svg>'
-    )
+    box = f'viewBox="0 0 {size[0]:g} {size[1]:g}" role="group" aria-label="{label}"'
+    return f'<svg class="map {kind}" {box}>{"".join(parts)}</svg>'
 
 
 def legend_html(pictures: Sequence[Picture]) -> str:
@@ -91,27 +104,27 @@ def _target_words(pictures: Sequence[Picture]) -> str:
 class _Frame:
     """Metres to places on the page."""
 
-    def __init__(self, points: FloatArray) -> None:
-        self.low = points.min(axis=0)
+    def __init__(self, points: FloatArray, size: tuple[float, float]) -> None:
+        self.low, self.size = points.min(axis=0), size
         span = np.maximum(points.max(axis=0) - self.low, 1e-9)
-        self.scale = float(min((WIDTH - 2 * MARGIN) / span[0], (HEIGHT - 2 * MARGIN) / span[1]))
+        self.scale = float(min((size[0] - 2 * MARGIN) / span[0], (size[1] - 2 * MARGIN) / span[1]))
         if float(span.max()) <= 1e-9:
             self.scale = 1.0
-        self.rest = (np.array([WIDTH, HEIGHT]) - self.scale * span) / 2
+        self.rest = (np.array(size) - self.scale * span) / 2
 
     def __call__(self, point: FloatArray) -> tuple[float, float]:
         x, y = self.scale * (point - self.low) + self.rest
-        return float(x), HEIGHT - float(y)
+        return float(x), self.size[1] - float(y)
 
 
-def _frame(picture: Picture) -> _Frame:
+def _frame(picture: Picture, size: tuple[float, float]) -> _Frame:
     """Around all places, and around the ellipses of targets."""
     points = [picture.places]
     if picture.targets is not None:
         prior = picture.prior if picture.prior is not None else np.zeros((len(picture.targets), 2, 2))
         half = SIGMAS * np.sqrt(np.diagonal(prior, axis1=1, axis2=2))
         points += [picture.targets - half, picture.targets + half]
-    return _Frame(np.vstack(points))
+    return _Frame(np.vstack(points), size)
 
 
 def _fields(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> Iterator[str]:
@@ -155,8 +168,7 @@ def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
         return
     for j, target in enumerate(picture.targets):
         x, y = place(target)
-        text = f"target {j}"
-        text += f" {picture.target_names[j]}" if picture.target_names and picture.target_names[j] else ""
+        text = f"target {named(j, picture.target_names[j] if picture.target_names else '', 'target')}"
         text += "" if picture.weights is None else f", weight {picture.weights[j]:g}"
         if picture.prior is not None and picture.posterior is not None:
             for kind, covariance in (("before", picture.prior[j]), ("after", picture.posterior[j])):
@@ -167,7 +179,6 @@ def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
         kind = "target unseen" if j in picture.unseen else "target"
         mark = f'<path d="M{x:.1f} {y - 8:.1f}l8 14h-16Z" class="{kind}"/>'
         yield f'<g tabindex="0" role="img" aria-label="{escape(text)}"><title>{escape(text)}</title>{mark}</g>'
-        yield f'<text x="{x + 9:.1f}" y="{y + 12:.1f}" class="small">{escape(picture.target_label(j))}</text>'
 
 
 def _ellipse(x: float, y: float, covariance: FloatArray, scale: float, kind: str) -> str:
@@ -183,7 +194,7 @@ def _robots(picture: Picture, at: list[tuple[float, float]], report: Findings, v
     for i, (x, y) in enumerate(at):
         hit, best = i in picture.attack.sensing, i in picture.best
         watches = ", ".join(f"T{j}" for _, j in watched_pairs(picture, [i]))
-        role = "blinded" if hit else "sees, in the best group" if best else "cut off from the best group"
+        role = view.role(i)
         guarded = ", protected" if i in picture.protected_robots else ""
         text = f"robot {known.robot(i)}: {known.label(int(view.elements[i]))}; {role}{guarded}"
         text += f"; measures {watches or 'no target'}" if picture.watched is not None else ""
@@ -201,5 +212,45 @@ def _robots(picture: Picture, at: list[tuple[float, float]], report: Findings, v
         inside = "number light" if best and not hit else "number" if hit else "number dark"
         shift = -17 if hit else 0
         yield f'<text x="{x + shift:.1f}" y="{y + 4:.1f}" class="{inside}">{i}</text>'
-        if picture.names[i]:
-            yield f'<text x="{x + 12:.1f}" y="{y - 10:.1f}" class="small">{escape(picture.names[i])}</text>'
+
+
+def _words(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> Iterator[str]:
+    """The names of robots and targets, each at the place at which it covers least.
+
+    A name that would cover others is left out; the page shows it to a reader who points there. A target's number stays.
+    """
+    targets = [] if picture.targets is None else [place(x) for x in picture.targets]
+    words: list[tuple[tuple[str, ...], tuple[float, float]]]
+    words = [((picture.target_label(j), f"T{j}"), spot) for j, spot in enumerate(targets)]
+    words += [((name,), spot) for name, spot in zip(picture.names, at, strict=True) if name]
+    taken: list[Box] = [(x - MARK, y - MARK, x + MARK, y + MARK) for x, y in (*at, *targets)]
+    taken += [(at[i][0] - 2 * MARK, at[i][1] - MARK, *at[i]) for i in picture.attack.sensing]  # their numbers
+    inside = (0.0, 0.0, *place.size)
+    for texts, (x, y) in words:
+        for text in texts:
+            boxes = [_box(text, x, y, spot) for spot in SPOTS]
+            chosen, covered = best_spot(boxes, taken, inside)
+            if covered <= 0 or text is not texts[0]:
+                taken.append(boxes[chosen])
+                left, _, _, bottom = boxes[chosen]
+                yield f'<text x="{left:.1f}" y="{bottom - BELOW:.1f}" class="small">{escape(text)}</text>'
+                break
+
+
+def _box(text: str, x: float, y: float, spot: tuple[float, float, str]) -> Box:
+    """Where a word would be in a spot beside its place."""
+    dx, dy, side = spot
+    width = LETTER * len(text)
+    left = x + SPREAD * dx - {"left": 0.0, "center": width / 2, "right": width}[side]
+    middle = y - SPREAD * dy
+    return left, middle - LINE / 2, left + width, middle + LINE / 2
+
+
+def _scale_bar(place: _Frame) -> Iterator[str]:
+    """A length in metres in the lower left corner."""
+    longest = place.size[0] / 4 / place.scale
+    power = 10.0 ** np.floor(np.log10(longest))
+    length = float(power * max(step for step in (1, 2, 5) if step * power <= longest))
+    x, y = 12.0, place.size[1] - 12.0
+    yield f'<path d="M{x:g} {y - 5:g}v5h{length * place.scale:.1f}v-5" class="scale"/>'
+    yield f'<text x="{x + 4:g}" y="{y - 6:g}" class="small">{length:g} m</text>'

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt._values import counted
+from ratt_opt._version import CITATION
 from ratt_opt.report.bars import bar_ends
 from ratt_opt.report.description import describe
 from ratt_opt.report.notebook import html_table
 from ratt_opt.report.page.map_drawing import legend_html, map_svg
-from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, look_of
+from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, looks_of
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, verdict_text
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["report_page"]
 
 GUARANTEE_COLUMNS = ("guarantee", "share", "needs", "proved at")
+LONG = 5
+"""Letters of a unit that is put into brackets: it is words, not a symbol."""
 VIEW_TITLES = {
     "worst": "worst attack",
     "next worst": "next worst: spares a part of the worst attack",
@@ -51,14 +54,14 @@ def report_page(report: Findings) -> str:
 
 def _sections(report: Findings) -> Iterator[str]:
     plan = report.recommended
-    unit = f" {report.unit}" if report.unit else ""
+    unit = f" {report.unit}" if len(report.unit) < LONG else f" [{report.unit}]"
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
     share = share_text(plan.worst_case.lower, report.upper)
     yield (
-        f"<p>This plan keeps <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}) under the worst "
-        f"attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
-        f"{counted(report.problem.alpha_c, 'link')}: of what any plan could keep that "
-        f"is {escape(share)}, and no plan keeps more than {up(report.upper, 10)}.</p>"
+        f"<p>This plan has a worst-case value of <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}), "
+        f"under the worst attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
+        f"{counted(report.problem.alpha_c, 'link')}. {escape(_share_sentence(share))} "
+        f"No plan has more than {up(report.upper, 10)}.</p>"
     )
     yield from _map_section(report)
     yield from _planner_section(report)
@@ -66,11 +69,18 @@ def _sections(report: Findings) -> Iterator[str]:
     yield from _plan_section(report)
     seconds = [(name, f"{value:.2f}") for name, value in report.seconds.items()]
     yield html_table("Seconds of each step", ("step", "seconds"), seconds)
-    yield f"<footer>ratt-opt, {escape(report.created)}. Every number in full precision: report.json.</footer>"
+    yield f"<footer>Made {escape(report.created)}. Every number in full precision: report.json. "
+    yield f"To cite: {escape(CITATION)}.</footer>"
+
+
+def _share_sentence(share: str) -> str:
+    if share.startswith("optimal"):
+        return f"It is {share}."
+    return f"That is {share} of the best possible."
 
 
 def _map_section(report: Findings) -> Iterator[str]:
-    """The map once for each attack, of which one is shown; on paper the worst."""
+    """One map for each attack. The page shows one of them; on paper, the worst."""
     yield '<section aria-labelledby="map-h"><h2 id="map-h">Map</h2><fieldset><legend>Show the team under</legend>'
     for k, name in enumerate(report.views):
         checked = " checked" if k == 0 else ""
@@ -102,10 +112,14 @@ def _caption(name: str, view: AssessedPlan, report: Findings) -> str:
 def _planner_section(report: Findings) -> Iterator[str]:
     """A bar a planner: filled as far as it is sure, half-tone as far as it is not decided."""
     missing, brackets, longest = bar_ends(report)
-    what = "shortfall from the best possible" if missing else "kept"
-    yield '<section aria-labelledby="planners"><h2 id="planners">What each planner keeps</h2><div class="wide"><table>'
-    yield '<thead><tr><th scope="col">planner</th><th scope="col">worst-case value</th><th scope="col">of the best '
-    yield f'possible</th><th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
+    what = "shortfall from the best possible" if missing else "worst-case value"
+    yield '<section aria-labelledby="planners"><h2 id="planners">Planners under their worst attacks</h2>'
+    yield '<div class="wide"><table>'
+    unit = escape(f" [{report.unit}]" if report.unit else "")
+    looks = looks_of([plan.name for plan in report.plans])
+    yield f'<thead><tr><th scope="col">planner</th><th scope="col">worst-case value{unit}</th>'
+    yield '<th scope="col">share of the best possible</th>'
+    yield f'<th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
     for plan, bracket in zip(report.plans, brackets, strict=True):
         low, high = plan.worst_case.lower, plan.worst_case.upper
         ends = [100 * min(max(x / longest, 0.0), 1.0) for x in bracket]
@@ -113,14 +127,16 @@ def _planner_section(report: Findings) -> Iterator[str]:
         bar = (
             f'<svg class="bar" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">'
             f'<rect width="100" height="8" class="room"/><rect width="{ends[1]:.3f}" height="8" class="open"/>'
-            f'<rect width="{ends[0]:.3f}" height="8" fill="{look_of(plan.name).colour}"/></svg>'
+            f'<rect width="{ends[0]:.3f}" height="8" fill="{looks[plan.name].colour}"/></svg>'
         )
         yield (
-            f'<tr><th scope="row">{escape(plan.name + mark)}</th><td data-lower="{low!r}" data-upper="{high!r}">'
-            f"{bracket_text(low, high)}</td><td>{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
+            f'<tr><th scope="row">{escape(plan.name + mark)}</th>'
+            f'<td data-column="worst-case value{unit}" data-lower="{low!r}" data-upper="{high!r}">'
+            f'{bracket_text(low, high)}</td><td data-column="share of the best possible">'
+            f"{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"
         )
     yield "</tbody></table></div>"
-    for text in omitted_texts(report):
+    for text in (*omitted_texts(report), *report.remarks):
         yield f"<p>{escape(text[0].upper() + text[1:])}.</p>"
     yield "</section>"
 

@@ -1,4 +1,4 @@
-"""The criteria, compiled: of planar targets as ``two_by_two.py`` has them; imported only where such loops are used.
+"""The criteria, compiled: of planar targets as ``two_by_two.py`` has them; imported only if such loops are used.
 
 ``code`` is a criterion's ``compiled_code``; symmetric matrices are packed by rows of the lower triangle, so that planar
 ones are ``(a, b, c)`` triples of ``[[a, b], [b, c]]``.
@@ -137,7 +137,7 @@ def team_criteria(code: int, weights: Any, matrices: Any) -> Any:
 
 @numba.njit(cache=True)
 def target_value(code: int, weight: float, prior: Any, matrix: Any) -> float:
-    """One target's value, trace or log-det, of a triple; minus infinity where it is not positive definite."""
+    """One target's value, trace or log-det, of a triple; minus infinity if it is not positive definite."""
     a, b, c = matrix
     determinant = _determinant(a, b, c)
     if not (determinant > 1e-12 * (a + c) ** 2 and a + c > 0):

@@ -156,7 +156,7 @@ class MaxEigenvalueObjective(StateCriterion):
         return np.clip(eigenvalues[..., 0] * (1 - MARGIN) - MARGIN * eigenvalues[..., -1], 0.0, None)
 
     def largest_alone(self) -> FloatArray:
-        """(n, M) no marginal of an element exceeds this where target ``j`` is the worst before it is added."""
+        """(n, M) no marginal of an element exceeds this if target ``j`` is the worst before it is added."""
         a, level = np.linalg.eigvalsh(self.information)[..., -1].clip(0.0), self.weights / self._baseline
         return np.asarray(self.weights * a / (level * (level + a)))
 
@@ -229,7 +229,7 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
         return False
 
     def least_levels(self) -> FloatArray:
-        """(n, M) ``l(X)`` of each element's information, from below; 0 where that is singular."""
+        """(n, M) ``l(X)`` of each element's information, from below; 0 if that is singular."""
         eigenvalues = np.linalg.eigvalsh(self.information)
         slack = MARGIN * eigenvalues[..., -1]
         regular = eigenvalues[..., 0] > 2 * slack

@@ -9,7 +9,7 @@ over all contexts. For any weights ``mu_c >= 0`` with sum 1, targets ``i_c`` and
 
     tau <= sum_c mu_c v_c' L_{i_c} v_c / w_{i_c},
 
-which splits into one maximum an owner. A linear program finds good ones; the bound is evaluated afresh. Where
+which splits into one maximum an owner. A linear program finds good ones; the bound is evaluated afresh. If
 ``w_j tau < lambda_min(prior information_j) + delta_j`` target ``j`` can never be the worst one.
 
 **Its largest marginals.** Let ``j`` be the worst target before ``x`` is added, ``v`` the vector of
@@ -49,7 +49,7 @@ MARGIN = 1e-9
 
 
 class Levels(Protocol):
-    """What is asked of a criterion whose value is one over its lowest level (``maxeig.py``)."""
+    """What a criterion needs whose value is one over its lowest level (``maxeig.py``)."""
 
     @property
     def n(self) -> int:
@@ -72,7 +72,7 @@ class Levels(Protocol):
         """(n, M) levels of each element's information, from below."""
 
     def largest_alone(self) -> FloatArray:
-        """(n, M) no marginal of an element exceeds this where target ``j`` is the worst before it is added."""
+        """(n, M) no marginal of an element exceeds this if target ``j`` is the worst before it is added."""
 
 
 def marginal_ends(f: Levels, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:

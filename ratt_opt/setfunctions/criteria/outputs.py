@@ -19,7 +19,7 @@ __all__ = ["StateCriterion"]
 class StateCriterion(InformationObjective):
     """A criterion of targets' whole states or, with ``output``, of a part of them.
 
-    The latter has formulas of its own: a class that is made where ``output`` is given.
+    The latter has formulas of its own: a class that is made if ``output`` is given.
     """
 
     __slots__ = ("output",)

@@ -17,7 +17,7 @@ concave as a matrix, so ``m`` stays convex in ``P``, with ``G = W - (1 + X P0)^{
 ``(L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0`` gives ``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for any ``Y`` (d, q).
 
 **Its largest marginals.** ``m`` is convex in ``P``, hence largest at an extreme point ``P0^{1/2} V V' P0^{1/2}`` of
-``0 <= P <= P0``, ``V`` with orthonormal columns: at ``P0`` (no context), or at one of lower rank ``k``, where it is
+``0 <= P <= P0``, ``V`` with orthonormal columns: at ``P0`` (no context), or at one of lower rank ``k``; there it is
 ``tr(B'B S (1 + S)^{-1})`` with ``B = P0^{1/2} V`` and ``S = B' I B``, at most ``lambda_max(P0)`` times the sum of
 ``q / (1 + q)`` over the ``d - 1`` largest eigenvalues ``q`` of ``P0^{1/2} I P0^{1/2}`` (Poincare separation). An
 isotropic prior makes the first the larger.
@@ -123,7 +123,7 @@ class TraceObjective(StateCriterion):
 
     @property
     def output_square(self) -> FloatArray:
-        """(M, d, d) ``W = C'C``; the identity where the whole state counts."""
+        """(M, d, d) ``W = C'C``; the identity if the whole state counts."""
         return np.broadcast_to(np.eye(self.dimension), self.prior.shape)
 
     def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:

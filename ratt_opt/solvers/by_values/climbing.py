@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Climbing"]
 
 MOST_KEPT = 500_000
-"""Values kept, some hundred megabytes at most; then they are asked for anew."""
+"""Stored values, some hundred megabytes at most; others are computed again."""
 
 
 class Climbing:

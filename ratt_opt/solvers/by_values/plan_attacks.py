@@ -1,4 +1,4 @@
-"""Attacks on plans of a function known by its values: which are known, and which plan keeps most."""
+"""Attacks on plans of a function known by its values: the known ones, and the plan with the best worst case."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ __all__ = ["ATTACK_SHARE", "PlanAttacks"]
 ATTACK_SHARE = 0.2
 """Of the seconds and values left, for the first attack on a plan. Not tuned."""
 FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
-"""So many seconds at least for the first attack, if that is no more than this share of those left: with a fifth of one
-second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
+"""At least this many seconds for the first attack, if that is no more than this share of those left: with a fifth of
+one second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
 
 
 class PlanAttacks:
     """``elements`` keep ``lower`` under every attack, as ``worst_case`` proved, once there is one.
 
-    ``known`` : attacks found so far, and the seeing robots of the groups that each leaves
+    ``known`` : attacks found so far, and the unblinded robots of the groups that each leaves
     """
 
     def __init__(self, problem: Problem, budget: Budget, elements: IntArray, lower: float) -> None:
@@ -53,9 +53,9 @@ class PlanAttacks:
         return self.attack(elements, self._budget.part(share, at_least=seconds))
 
     def attack(self, elements: IntArray, part: Budget | None = None, aim: float = -np.inf) -> AttackResult:
-        """Attack a plan, from where that ended; keep it where more is proved of it than of the one kept.
+        """Attack a plan, from where that ended; keep it if more is proved of it than of the one kept.
 
-        ``part`` : a share of what is left where absent; ``aim`` : what an attack has to leave at most to end it
+        ``part`` : a share of what is left if absent; ``aim`` : what an attack has to leave at most to end it
 
         Raises
         ------
@@ -81,14 +81,14 @@ class PlanAttacks:
         return result
 
     def go_on(self, elements: IntArray) -> None:
-        """Attack a plan with all that is left where a share ended its last attack."""
+        """Attack a plan with all that is left if a share ended its last attack."""
         if elements.tobytes() in self._cut_short & self._begun.keys() and not self._budget.is_over:
             self.attack(elements, self._budget.part())
 
     def settle(self, elements: IntArray, aim: float) -> AttackResult:
-        """Attack a plan exactly with all that is left, until it is known to keep no more than ``aim``.
+        """Attack a plan exactly with all that is left, until its worst case is proved to be at most ``aim``.
 
-        Where first attacks end as ``HEURISTIC`` the second one goes on to the end; so do both where nothing is limited.
+        If first attacks end as ``HEURISTIC`` the second one goes on to the end; so do both if nothing is limited.
         """
         result = self.attack(elements, self._budget.part(), aim)
         return self.attack(elements, self._budget.part(), aim) if result.stop is Stop.HEURISTIC else result

@@ -1,6 +1,6 @@
 """Bounds on all plans of a function known by its values. No plan is worth more than
 
-- what the worst attack found leaves of a team in which every robot holds all its elements (monotonicity), or, where
+- what the worst attack found leaves of a team in which every robot holds all its elements (monotonicity), or, if
   theory proves the function submodular, of the sum of the robots' largest individual values;
 - RATT's plan under any attack, divided by the share of the optimum that RATT keeps (``1 - k`` of a submodular
   function, ``(1 - c)^2`` of one that states a bound on its total curvature).
@@ -39,7 +39,7 @@ def pooling_bound(problem: Problem, attacks: PlanAttacks, budget: Budget) -> flo
 
 
 def guarantee_bound(metered: Problem, worth: float) -> float:
-    """RATT's plan keeps a share of the optimum, so the optimum is at most its value over that share.
+    """RATT's plan has a guaranteed share of the optimum, so the optimum is at most its value over that share.
 
     ``worth`` : no less than the worst case of RATT's plan
     """
@@ -55,5 +55,5 @@ def guarantee_bound(metered: Problem, worth: float) -> float:
 
 
 def _singles(metered: Problem) -> FloatArray | None:
-    """(E,) individual values where theory proves the function submodular."""
+    """(E,) individual values if theory proves the function submodular."""
     return metered.objective.singletons() if unmetered(metered.objective).is_submodular else None

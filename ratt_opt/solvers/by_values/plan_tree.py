@@ -35,7 +35,7 @@ OPEN = -1
 
 class Pooled(SetFunction):
     """Of robots: no plan's elements of them are worth more. The value of all their elements; of a submodular function
-    also the sum of the largest individual values, where that is less."""
+    also the sum of the largest individual values, if that is less."""
 
     __slots__ = ("_best", "_f", "_owners")
 
@@ -110,7 +110,7 @@ class PlanTree:
             self._push(partial, bound)
 
     def _settle(self, plan: IntArray, bound: float) -> None:
-        """Attack a plan, of which no less is known than of any other, until one is, or no more can be proved of it."""
+        """Attack the plan of the largest bound until another bound is larger, or no more can be proved of it."""
         found = self._attacks.settle(plan, min(self._largest_left(), float(np.nextafter(bound, -np.inf))))
         bound = min(bound, found.upper)
         if bound <= self._attacks.lower:

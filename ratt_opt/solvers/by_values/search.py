@@ -42,10 +42,10 @@ ENUMERATION_SHARE, SINGLES_SHARE, PLAN_SHARE, CLIMB_SHARE = 0.5, 0.7, 0.3, 0.5
 begin with and first bounds need, for the rest of RATT's plan, and for climbing from plan to plan with attacks on each;
 then those that their share ended go on. Not tuned."""
 MOST_OUTCOMES = 200_000
-"""Outcomes that are gone through: some seconds where plans are few."""
+"""Outcomes that are gone through: some seconds if plans are few."""
 ROUNDS, NODES, SOON_VALUED = 50, 200, 12
-"""Times that plans are climbed to, where no limit ends it before, and nodes of plans where nothing is limited, of teams
-of so many robots (80 took 46 s for these nodes, and proved nothing)."""
+"""Times that plans are climbed to, if no limit ends it before, and nodes of plans if nothing is limited, of teams
+of that many robots at most (80 took 46 s for these nodes, and proved nothing)."""
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
@@ -69,11 +69,11 @@ def check_small_monotone(problem: Problem, budget: Budget) -> None:
 def search_any(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: int | None = None) -> MaxMinResult:
     """Bracket the optimum of any non-decreasing function; ``alpha_cs`` : what RATT was asked before, if it was.
 
-    Relies on that (checked where it is small). A spent budget or an interrupt returns the bracket.
+    Relies on that (checked if it is small). A spent budget or an interrupt returns the bracket.
 
     Raises
     ------
-    InputError : the function falls, where that is checked, or a value is no finite number.
+    InputError : the function falls, if that is checked, or a value is no finite number.
     """
     search = None
     try:
@@ -91,7 +91,7 @@ def search_any(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: in
 
 
 def _enumerated(problem: Problem, budget: Budget) -> MaxMinResult | None:
-    """What the enumeration of plans and outcomes says within its share; ``None`` where there are too many."""
+    """What the enumeration of plans and outcomes says within its share; ``None`` if there are too many."""
     if problem.threat.links_alike and count_outcomes(problem.threat, enough=MOST_OUTCOMES) > MOST_OUTCOMES:
         return None
     try:
@@ -139,7 +139,7 @@ class _Search:
         return self._divided(gap)
 
     def _divided(self, gap: float) -> Stop:
-        """Divide the plans that are left; where nothing is limited, for a fixed number of nodes."""
+        """Divide the plans that are left; if nothing is limited, for a fixed number of nodes."""
         budget, tree = self._budget, PlanTree(self._given, self._attacks, self._climbing.worth, self.upper)
         has_limit = min(budget.seconds_left, budget.evaluations_left, budget.max_nodes or np.inf) < np.inf
         last = np.inf if has_limit else NODES if self._given.n_robots <= SOON_VALUED else 0
@@ -166,7 +166,7 @@ class _Search:
         return current
 
     def _planned(self, alpha_cs: int | None) -> IntArray | None:
-        """RATT's plan; ``None`` where its shares of the budget do not do for it; as far as it came it is a plan."""
+        """RATT's plan; ``None`` if its shares of the budget do not do for it; as far as it came it is a plan."""
         single = self._individual(self._budget.part(SINGLES_SHARE))
         part = self._budget.part(PLAN_SHARE)
         alpha_cs = alpha_cs_in_share(self._given, part) if alpha_cs is None else alpha_cs
@@ -176,7 +176,7 @@ class _Search:
         return None if part.is_over or not np.isfinite(single).all() else elements
 
     def _individual(self, part: Budget) -> FloatArray:
-        """(E,) individual values, ``-inf`` where the part does not do for it: of as many elements of each robot."""
+        """(E,) individual values, ``-inf`` if the part does not do for it: of as many elements of each robot."""
         objective, choices = metered_problem(self._attacks.problem, part).objective, self._given.choices
         single, nothing = np.full(objective.n, -np.inf), np.array([], dtype=np.int64)
         try:

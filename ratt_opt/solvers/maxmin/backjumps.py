@@ -1,8 +1,8 @@
 """Divisions that a proof does not rely on are taken back (conflict-directed backjumping; Prosser 1993).
 
-A node is divided on the winner of an outcome. Where everything below one of its children is closed and no leaf there
-uses a cut on that outcome, the child's proof is one for the whole node: whoever wins. Its siblings need no search then.
-The same holds for elements that were left out: where the leaves below still close with them, leaving them out was
+A node is divided on the winner of an outcome. If everything below one of its children is closed and no leaf there
+uses a cut on that outcome, the child's proof is one for the whole node, for every winner. Its siblings need no search
+then. The same holds for elements that were left out: if the leaves below still close with them, leaving them out was
 needless, and so was what that relied on.
 """
 
@@ -52,7 +52,7 @@ class Backjumps:
     def _closes_wider(self, split: Split, parent: TreeNode, node: TreeNode) -> bool:
         """Whether a closed child stays so with all elements of the robot that divides its parent; then it has them.
 
-        Tried only where its siblings are open, or rely on more than it does.
+        Tried only if its siblings are open, or rely on more than it does.
         """
         needed = node.relies_on or frozenset()
         others = [child.relies_on for _, child in split.parts if child is not node]
@@ -96,7 +96,7 @@ class Backjumps:
 
 
 def _relied_on(split: Split) -> frozenset[int] | None:
-    """The outcomes that the proof of a divided node relies on; ``None`` where something below is open."""
+    """The outcomes that the proof of a divided node relies on; ``None`` if something below is open."""
     needed: frozenset[int] = frozenset()
     for _, child in split.parts:
         if child.relies_on is None:

@@ -2,7 +2,7 @@
 
 What a tree costs depends on how far above the best plan it has to look. A floor halfway between that plan and the bound
 closes most nodes at once and decides winners early: groups that could be above the plan only are left out. The outcomes
-found on the way hurt the strongest plans, and the next tree meets them at its root, where the one before had met
+found on the way hurt the strongest plans, and the next tree meets them at its root; the one before had met
 them in some deep node. It halves what is left, until the last one has no floor.
 
 Trees after the first are searched in depth: below a node that is closed, divisions that its proof does not rely on are
@@ -31,26 +31,26 @@ if TYPE_CHECKING:
 
 __all__ = ["Descent"]
 
-# Measured at 20 robots, max-eigenvalue, (0, 180), (0, 134) and (0, 156): docs/what_resists.md.
+# Measured at 20 robots, max-eigenvalue, (0, 180), (0, 134) and (0, 156): docs/researchers/open_problems.md.
 FIRST_NODES = 100
 """Nodes of the first tree, which has no floor: most searches end within. With 20, ten robots took a third longer."""
 NEARLY, MORE_NODES = 5e-3, 500
-"""Relative width at which that tree is nearly done, and then goes on to so many nodes: log-det, (3, 107) and (5, 107),
-end after 220 and 471 nodes, and not within 15 seconds where they are given up at 100."""
+"""Relative width at which that tree is nearly done, and then goes on to this many nodes: log-det, (3, 107) and (5,
+107), end after 220 and 471 nodes, and not within 15 seconds if they are given up at 100."""
 TREE_NODES, GROWTH = 100, 1.5
 """Nodes of a later tree before it is given up, and how many times as many the next one then has."""
 SHARE = 0.5
 """Of what the bound is above the best plan, the share that a floor is above it. With 0.75 (0, 180) took longer."""
 NARROW = 2e-4
-"""Where no larger share of the bound is left, floors save nothing."""
+"""If no larger share of the bound is left, floors save nothing."""
 MOST_FLOORS = 20
-"""Trees with a floor that end, at most: where the optimum is 0 the share left does not become small."""
+"""Trees with a floor that end, at most: if the optimum is 0 the share left does not become small."""
 
 
 class Descent:
     """The search of one problem by such trees; it may be interrupted at any point, as each of them may.
 
-    ``crew`` : who helps with each of them; nobody where ``None``.
+    ``crew`` : who helps with each of them; nobody if ``None``.
     """
 
     def __init__(self, known: Known, crew: Crew | None = None) -> None:
@@ -88,7 +88,7 @@ class Descent:
         return self._known.incumbent.budget.nodes >= self._until
 
     def _shared(self) -> BranchAndBound | SharedSearch:
-        """The search of the tree in work: by the crew, where there is one."""
+        """The search of the tree in work: by the crew, if there is one."""
         return self._current if self._crew is None else SharedSearch(self._current, self._crew)
 
     def _lowest(self) -> BranchAndBound:
@@ -100,7 +100,7 @@ class Descent:
         return lambda nodes, lower, upper: progress(nodes, lower, min(upper, self._best.upper))
 
     def _begin_next(self, *, has_ended: bool) -> None:
-        """Put a tree in place of the one in work, lower where that one has ended, else with more nodes."""
+        """Put a tree in place of the one in work, lower if that one has ended, else with more nodes."""
         if has_ended:
             self._floors -= 1
         elif self._current is not self.first:

@@ -23,7 +23,7 @@ FLAT = 1e-2
 """Mixtures that cost less than this share of the gap in every cut do not explain it; known outcomes that a rounded plan
 falls short in may. 0 and 0.1 take as many nodes in teams of ten."""
 SHORT_OUTCOMES = 16
-"""Outcomes that a rounded plan falls short in most, looked at where mixtures explain nothing. 4 and 64 take as many
+"""Outcomes that a rounded plan falls short in most, looked at if mixtures explain nothing. 4 and 64 take as many
 nodes in teams of ten."""
 NEGLIGIBLE = 1e-12
 """Multipliers below this are left out of a leaf."""
@@ -47,7 +47,7 @@ class Division:
             self.frontier.push(child)
 
     def _by_winner(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
-        """Children by the winner of an outcome; none where no undecided one would cut the relaxed plan off."""
+        """Children by the winner of an outcome; none if no undecided one would cut the relaxed plan off."""
         level = np.inf if relaxed is None else relaxed.level - CUT_OFF * abs(relaxed.level)
         best = self.frontier.rule.plans.best
         of_robot = self.task.objective.information[best] if relaxed is None else self.task.mixed(relaxed.selection)
@@ -55,7 +55,7 @@ class Division:
         return [] if outcome is None else self.by_winner.divide(node, outcome)
 
     def _by_elements(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
-        """Children by the elements of one robot; none where the node is divided already or no robot has a choice."""
+        """Children by the elements of one robot; none if the node is divided already or no robot has a choice."""
         open_robots = [i for i, choice in enumerate(node.choices) if len(choice) > 1]
         if node.split or not open_robots:
             return []
@@ -80,7 +80,7 @@ class Division:
     def _most_mixed(
         self, node: TreeNode, relaxed: RelaxedPlan | None, open_robots: list[int]
     ) -> tuple[int, tuple[IntArray, ...]]:
-        """The robot to branch on and the parts of its elements; any robot with a choice where none is mixed."""
+        """The robot to branch on and the parts of its elements; any robot with a choice if none is mixed."""
         if relaxed is None:
             choice = node.choices[open_robots[0]]
             return open_robots[0], (choice[:1], choice[1:])
@@ -95,7 +95,7 @@ class Division:
     def _most_gained(
         self, node: TreeNode, relaxed: RelaxedPlan, open_robots: list[int]
     ) -> tuple[int, tuple[IntArray, ...]]:
-        """The robot whose mixture gains most where the rounded plan falls short of the relaxed level."""
+        """The robot whose mixture gains most if the rounded plan falls short of the relaxed level."""
         objective, singles = self.task.objective, self.task.singles
         points = self.pool.group_points(self.task.mixed(relaxed.selection))
         groups, weights = self._short(node, relaxed)

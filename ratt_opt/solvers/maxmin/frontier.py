@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["ClosingRule", "Frontier"]
 
 WIDEST_GAP = 0.5
-"""Relative gaps count as at most this where they say above which level a plan would have to be."""
+"""Relative gaps count as at most this if they say above which level a plan would have to be."""
 
 MARGINS = 8
 """Roundings of a value that a bound may stay above a level it cannot be told from: tangents carry margins for their own
@@ -26,7 +26,7 @@ the winners of dozens of outcomes, without end."""
 
 
 class ClosingRule:
-    """A bound closes a node where no plan below it can be better than the best known, by more than the gap.
+    """A bound closes a node if no plan below it can be better than the best known, by more than the gap.
 
     Below that plan's level, proved or not, no better one is to be found. A new outcome may lower the level; then what
     was closed may have to be opened again.
@@ -53,7 +53,7 @@ class ClosingRule:
         return bool(np.isfinite(bound)) and self.missing(bound) >= 0
 
     def missing(self, bound: float) -> float:
-        """What has to be added to a bound until it no longer closes; negative where it does not close."""
+        """What has to be added to a bound until it no longer closes; negative if it does not close."""
         return self.level + self.gap * abs(bound) + self._rounding - bound
 
 
@@ -119,7 +119,7 @@ class Frontier:
         return node
 
     def lend(self, most: int) -> list[TreeNode]:
-        """Take so many open nodes of largest bound out of the queue that do not close, for others to search."""
+        """Take that many open nodes of largest bound that do not close out of the queue, for others to search."""
         nodes: list[TreeNode] = []
         while len(nodes) < most and not self.is_closed:
             node = self._queue[0][2]
@@ -143,7 +143,7 @@ class Frontier:
         return chain(queued, current, self.lent, self._closed, settled)
 
     def finish(self, node: TreeNode) -> None:
-        """Close a node where its bound closes it, else queue it."""
+        """Close a node if its bound closes it, else queue it."""
         if self.rule.closes(node.bound):
             self.close(node)
         else:
@@ -171,7 +171,7 @@ class Frontier:
     def reopen(self) -> bool:
         """Queue nodes that were closed against a better level than there is now; whether there are any.
 
-        Also single plans above that level, where outcomes were found since: one of them may be their worst.
+        Also single plans above that level, if outcomes were found since: one of them may be their worst.
         """
         again = [node for node in self._closed if not self.rule.closes(node.bound)]
         if again:

@@ -2,7 +2,7 @@
 
 No plan gives a group more information than all elements of its robots together, and the criteria do not decrease with
 information. As a proof it is one tangent a group, which touches there: what a plan lacks of that information
-only lowers it. Several groups are the cases of which one wins.
+only lowers it. Several groups are cases; one of them wins.
 """
 
 from __future__ import annotations

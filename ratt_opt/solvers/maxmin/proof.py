@@ -77,7 +77,7 @@ class MarginalLeaf:
     """Under one attack no group is worth more, for a submodular function: log-determinants.
 
     A group is worth at most what its robots of one element left are worth together, and of each other robot the
-    largest gain that an element adds to these alone. Of elements of which one dominates the others it alone counts.
+    largest gain that an element adds to these alone. If one element dominates others, it alone counts.
     """
 
     attack: int

@@ -3,7 +3,7 @@
 At a node, tangent cuts of the groups' values and a linear program bound the relaxed plans that remain
 (``relaxed/``). Outcomes enter when a plan or a relaxed plan is attacked (``plans/``). An attack that leaves several
 groups bounds a plan by the best of them, which is not concave: groups that never win are closed by bounds of
-their own, and where that fails the node branches on which group wins (``groups/``).
+their own, and if that fails the node branches on which group wins (``groups/``).
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ class BranchAndBound:
         return self.frontier.is_closed and not self.frontier.reopen()
 
     def explore_next(self, turns: Turns) -> Stop | None:
-        """Bound the open node of largest bound, then close it or divide it; why to stop where it is neither."""
+        """Bound the open node of largest bound, then close it or divide it; why to stop if it is neither."""
         node = self.frontier.take()
         turns.budget.nodes += 1
         stop = self._explore(node, turns)
@@ -152,7 +152,7 @@ class BranchAndBound:
         return stop
 
     def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
-        """Bound one node by rounds of cuts, then close it or divide it; why to stop where it is neither."""
+        """Bound one node by rounds of cuts, then close it or divide it; why to stop if it is neither."""
         narrowed = self._narrow(node) if self.rule.level > 0 else node
         if narrowed is None:
             return None
@@ -187,9 +187,9 @@ class BranchAndBound:
                 return None
 
     def _narrow(self, node: TreeNode) -> TreeNode | None:
-        """What remains without any linear program; ``None`` where the node is divided, or closed.
+        """What remains without any linear program; ``None`` if the node is divided, or closed.
 
-        The whole node is attacked where some outcome's winner is open: elsewhere relaxed plans find what hurts.
+        The whole node is attacked if some outcome's winner is open: elsewhere relaxed plans find what hurts.
         """
         better = self.rule.better
         if self.pairs is not None:
@@ -204,7 +204,7 @@ class BranchAndBound:
         return self.small.narrow(left, better) if self.node_attacks.learn(left.choices, better) else left
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
-        """Derive the node's bound from the multipliers, keeping the old one where it is better.
+        """Derive the node's bound from the multipliers, keeping the old one if it is better.
 
         Returns the leaf of these multipliers, its bound and its combined scores (E,).
         """

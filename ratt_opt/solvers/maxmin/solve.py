@@ -67,7 +67,7 @@ def solve_maxmin(
     Relies on a non-decreasing objective (not checked). For the information criteria: outer approximation
     and branch and bound, in the coordinates that are measured (:func:`measured_coordinates`). Every bound is derived
     from the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
-    the multipliers are used. Other set functions are enumerated where that is possible, and bracketed where it is not
+    the multipliers are used. Other set functions are enumerated if that is possible, and bracketed if it is not
     (``solvers/by_values``).
 
     Parameters
@@ -76,12 +76,12 @@ def solve_maxmin(
     time_limit : seconds; the bracket is valid whenever the search stops; 0 returns what is known at once
     max_nodes : search nodes; with it (and no time limit) the result is reproducible
     progress : called as ``progress(nodes, lower, upper)``
-    alpha_cs : sensing attacks that the link attacks are worth, where RATT was asked before
-    max_evaluations : values of an objective that is no information criterion (a few are asked for whatever the limit)
+    alpha_cs : sensing attacks that the link attacks are worth, if RATT was asked before
+    max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
         problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
-    workers : processes on this machine (started where a search takes longer than a second), or an executor that runs
+    workers : processes on this machine (started if a search takes longer than a second), or an executor that runs
         anything, such as a Dask client's; ``None`` or 1 searches alone. A worker that dies costs what it was at, a
         second of work. Which of equally good plans is found, and how many nodes that takes, may differ from run to
         run. Set functions that are no information criterion are searched alone
@@ -89,8 +89,8 @@ def solve_maxmin(
     Raises
     ------
     InputError : a limit is negative, ``start`` is a plan but not one element per robot, ``workers`` is neither a number
-        nor an executor or cannot receive the problem, or the objective is no information criterion and falls where it
-        was looked at.
+        nor an executor or cannot receive the problem; or the objective is no information criterion, and one of its
+        values that the search computed falls.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
@@ -150,7 +150,7 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
 def _first_plans(
     problem: Problem, first: IntArray, warm: WarmStart, pairs: PairOutcomes | None, budget: Budget
 ) -> list[IntArray]:
-    """RATT's plan, and one that was best a step before; the plans of other planners where there is none."""
+    """RATT's plan, and one that was best a step before; the plans of other planners if there is none."""
     if warm.plan is not None:
         return [first, warm.plan]
     plans = [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
@@ -223,7 +223,7 @@ def nonrobust_optimum(
     max_evaluations: int | None = None,
     budget: Budget | None = None,
 ) -> NonrobustPlan:
-    """Best plan when nobody attacks, to 1e-9 relative; the best found, with its bracket, where a limit ends the search.
+    """Best plan when nobody attacks, to 1e-9 relative; the best found, with its bracket, if a limit ends the search.
 
     Parameters
     ----------
@@ -245,9 +245,9 @@ def nonrobust_optimum(
 def nonrobust_search(
     problem: Problem, *, time_limit: float | None = None, budget: Budget | None = None
 ) -> MaxMinResult:
-    """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan where few.
+    """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan if few.
 
-    ``time_limit`` : seconds; the plan is proved best where ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
+    ``time_limit`` : seconds; the plan is proved best if ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
     ``budget`` : an outer search's budget: its seconds and interrupts count too
     """
     unattacked = replace(check_problem(problem), alpha_s=0, alpha_c=0)

@@ -1,4 +1,4 @@
-"""The upper ends of a search in turns: concave relaxations, and a search in depth where robots see few targets."""
+"""The upper ends of a search in turns: concave relaxations, and a search in depth if robots see few targets."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class UpperEnds:
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:
-    """The search where robots see few targets, if the criterion is a sum over targets: trace or log-det."""
+    """The search if robots see few targets, if the criterion is a sum over targets: trace or log-det."""
     objective = known.task.objective
     if objective.compiled_code not in SUMS:
         return None

@@ -1,7 +1,7 @@
 """What an earlier plan or result still says about a problem: a plan, outcomes, cuts.
 
 Nothing is believed. A plan is attacked again, an attack has to be within the budgets, and of a cut only the point is
-used at which it touched: a tangent at any point bounds every plan (``bounds/cuts.py``). Where the scenario moved by a
+used at which it touched: a tangent at any point bounds every plan (``bounds/cuts.py``). If the scenario moved by a
 step, such tangents are nearly as good as those the search would find again.
 """
 

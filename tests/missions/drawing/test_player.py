@@ -27,13 +27,14 @@ def browser(mission, tmp_path_factory):
 
 
 def show(browser, step: int) -> np.ndarray:
-    """(800, 800, 4) pixels of the map after the slider was moved."""
+    """(height, width, 4) pixels of the map after the slider was moved."""
     script = (
         "const s = document.getElementById('step'); s.value = arguments[0]; s.dispatchEvent(new Event('input'));"
         "const c = document.getElementById('map');"
-        "return Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)"
+        "return [c.height, c.width, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]"
     )
-    return np.array(browser.execute_script(script, step), dtype=np.uint8).reshape(800, 800, 4)
+    height, width, pixels = browser.execute_script(script, step)
+    return np.array(pixels, dtype=np.uint8).reshape(height, width, 4)
 
 
 def test_it_loads_without_an_error_and_fetches_nothing(browser) -> None:
@@ -67,14 +68,13 @@ def test_cut_links_are_counted_whole_where_too_many_are_drawn() -> None:
 
 def test_robots_are_where_the_mission_had_them(browser, mission) -> None:
     """A mark of the role's colour around every robot that sees, next to its heading's line."""
-    view = browser.execute_script("return [data.view, data.colours]")
-    (x0, x1, y0, y1), colours = view
-    scale = 800 / max(x1 - x0, y1 - y0)
+    colours = browser.execute_script("return data.colours")
     picture = show(browser, 3)
     step = mission.steps[3]
     for i, (x, y, heading) in enumerate(step.poses):
         colour = [int(colours[step.role(i)][k : k + 2], 16) for k in (1, 3, 5)]
-        column, row = (x - x0) * scale - 5 * np.cos(heading), 800 - (y - y0) * scale + 5 * np.sin(heading)
+        column, row = browser.execute_script("return [X(arguments[0]), Y(arguments[1])]", float(x), float(y))
+        column, row = column - 5 * np.cos(heading), row + 5 * np.sin(heading)
         near = picture[int(row) - 4 : int(row) + 5, int(column) - 4 : int(column) + 5, :3].reshape(-1, 3).astype(int)
         assert np.abs(near - colour).sum(axis=1).min() < 12, step.role(i)
 

@@ -54,7 +54,7 @@ def test_the_toggles_show_one_map_each(browser, saved):
 def test_each_map_shows_its_attack(browser, saved):
     for name, view in saved[0].views.items():
         key, attack = name.replace(" ", "-"), view.worst_case.attack
-        drawn = browser.find_element("id", f"view-{key}")
+        drawn = browser.find_element("css selector", f"#view-{key} .broad")
         assert len(drawn.find_elements("css selector", "path.cross")) == len(attack.sensing)
         assert len(drawn.find_elements("css selector", "line.cut")) == len(attack.links)
         roles = [mark.get_attribute("aria-label") for mark in drawn.find_elements("css selector", "g[tabindex]")]

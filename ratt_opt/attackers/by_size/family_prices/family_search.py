@@ -135,7 +135,7 @@ class FamilySearch:
                 self._learn(groups)
 
     def dive(self) -> None:
-        """Attacks from prices, where sets are found quickly.
+        """Attacks from prices, if sets are found quickly.
 
         With log-det dives found no better attacks than annealing from random families, and took time from the bound.
         """

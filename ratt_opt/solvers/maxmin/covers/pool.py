@@ -16,7 +16,7 @@ FIRST_ROOM, GROWTH = 256, 2
 MOST_VIOLATED = 8
 NEGLIGIBLE = 1e-6
 MOST_CHOICES = 64
-"""Elements of one robot: what is left out of them is a mask of so many bits."""
+"""Elements of one robot: those that are left out are a mask of this many bits."""
 
 
 class Places(NamedTuple):
@@ -62,7 +62,7 @@ class CoverPool:
         return int(self.covers.size[0])
 
     def grow(self, groups: int = 0) -> None:
-        """Make room for as many covers again, or for partitions into so many groups."""
+        """Make room for twice the covers, or for partitions into that many groups."""
         old = self.covers
         room = len(old.left_out) * (1 if groups > old.sums.shape[1] else GROWTH)
         wide = max(groups, old.sums.shape[1])

@@ -1,6 +1,6 @@
 """The linear program of the covers known: is there a relaxed plan that meets them all?
 
-Minimise ``v``, where every cover counts at least ``enough - v`` and each robot's shares of its elements sum to 1. If
+Minimise ``v`` so that every cover counts at least ``enough - v`` and each robot's shares of its elements sum to 1. If
 ``v > 0``, no plan of the node is worth more than the level. Of the program only the multipliers are used: normalised,
 they combine covers into one condition, of which a plan counts at most the sum of its robots' largest terms.
 """
@@ -71,7 +71,7 @@ class CoverProgram:
         return len(fresh)
 
     def solve(self, allowed: BoolArray, seconds: float) -> Relaxed | None:
-        """The program over the elements allowed (E,); ``None`` where HiGHS claims no optimum in time."""
+        """The program over the elements allowed (E,); ``None`` if HiGHS claims no optimum in time."""
         self._forget()
         self._program.bound_columns(np.zeros(self._n), allowed.astype(np.float64))
         answer = self._program.solve(seconds)

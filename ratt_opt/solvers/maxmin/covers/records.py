@@ -1,4 +1,4 @@
-"""The proof that the record of a dive is, written when it is asked for."""
+"""The proof from the record of a dive, written when it is needed."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Proof that one group never exceeds a level, whatever its robots choose.
 
-A small depth-first search of its own: tangent cuts at improving mixtures of the group's elements bound it, and where
+A small depth-first search of its own: tangent cuts at improving mixtures of the group's elements bound it, and if
 one cut is not enough the robot whose mixture gains most is divided. One plan above the level ends it without a proof.
 """
 

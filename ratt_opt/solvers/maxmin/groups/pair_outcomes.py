@@ -1,6 +1,6 @@
 """Outcomes that leave two robots together and every other one alone, used to narrow nodes of the search.
 
-Such an outcome bounds all plans by the value of one pair where the lone robots are weak whatever they do. There is one
+Such an outcome bounds all plans by the value of one pair if the lone robots are weak whatever they do. There is one
 for every pair, so a plan's worst case is at most its weakest pair's value. Plans whose pairs are all above a level are
 the solutions of a binary constraint problem, one element a robot, every two compatible:
 
@@ -58,7 +58,7 @@ class Elimination:
 class PairValues:
     """``values`` (N, N, D, D) of robots i and k with their a-th and b-th element; D the largest number of elements.
 
-    ``elements`` (N, D) repeats a robot's first element where it has fewer; infinite for i = k.
+    ``elements`` (N, D) repeats a robot's first element if it has fewer; infinite for i = k.
     """
 
     def __init__(self, objective: InformationObjective, choices: Sequence[IntArray]) -> None:
@@ -90,7 +90,7 @@ class PairValues:
         return np.array(plan)
 
     def _plan_within(self, compatible: BoolArray) -> IntArray | None:
-        """A plan all of whose pairs are compatible, depth first, or ``None`` where none is found."""
+        """A plan all of whose pairs are compatible, depth first, or ``None`` if none is found."""
         stack = [self._present]
         for _ in range(PLAN_NODES):
             if not stack:
@@ -116,7 +116,7 @@ class PairValues:
         """Elements that no plan within ``choices`` with all pairs above ``level`` has, in an order that proves it.
 
         The elements of an elimination are weak with all elements of the robot ``because`` that earlier ones leave.
-        Where such a plan does not exist, only what is needed to leave the last robot without element is returned.
+        If such a plan does not exist, only what is needed to leave the last robot without element is returned.
         """
         remaining = np.zeros_like(self._present)
         remaining[tuple(self._slot[:, np.concatenate(choices)])] = True
@@ -153,7 +153,7 @@ def _pair_values(objective: InformationObjective, elements: IntArray) -> FloatAr
 
 
 def _inconsistent(compatible: BoolArray, remaining: BoolArray) -> IntArray:
-    """(N, D) round in which each element was left out: 0 where it was not there, ``NEVER`` where it stays.
+    """(N, D) round in which each element was left out: 0 if it was not there, ``NEVER`` if it stays.
 
     Ends with the first round that leaves a robot without element.
     """
@@ -202,7 +202,7 @@ class PairOutcomes:
 
     @classmethod
     def of(cls, task: Task) -> PairOutcomes | None:
-        """``None`` where no attack leaves just one pair, robots differ to the adversary, or pairs are too many."""
+        """``None`` if no attack leaves just one pair, robots differ to the adversary, or pairs are too many."""
         threat, n_robots = task.problem.threat, task.problem.n_robots
         if not threat.is_symmetric or not PairValues.affordable(task.objective, task.choices):
             return None

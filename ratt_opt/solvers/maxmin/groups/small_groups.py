@@ -4,7 +4,7 @@ Many cut links leave pairs and threes. What a group of so few robots can reach w
 value of a table; there a plan above a level has to satisfy one condition for each outcome: *one of its groups is above
 the level*. Conditions narrow a node without any linear program (arc consistency; Mackworth 1977):
 
-- An outcome of which only one group can still be above the level has that group as its winner; of which none can, it
+- If only one group of an outcome can still be above the level, it is the winner; if none can, it
   closes the node.
 - An element with which the declared winner of an outcome cannot be above the level is left out.
 
@@ -32,7 +32,7 @@ __all__ = ["SmallGroups", "SmallTables"]
 
 WHOLE, PART = 600_000, 60_000
 """Criteria of single targets that list a group's elements once and for all, and those left at a node that are listed
-there: about ten and one milliseconds for planar targets, where the linear programs of a node take five to ten."""
+there: about ten and one milliseconds for planar targets; the linear programs of a node take five to ten."""
 NOT_PLANAR = 10
 """How many times as long a criterion takes that has no closed form."""
 LARGEST_GROUP = 8
@@ -67,7 +67,7 @@ class _Group:
         self._known: dict[tuple[int, ...], tuple[float, tuple[FloatArray, ...]]] = {}
 
     def reach(self, domains: _Domains) -> tuple[float, tuple[FloatArray, ...]] | None:
-        """The largest value, and per robot that with each of its elements; ``None`` where that is not listed."""
+        """The largest value, and per robot that with each of its elements; ``None`` if that is not listed."""
         if not self._is_small:
             return None
         if not self._is_whole and self._cost * prod(domains.sizes[i] for i in self.members) > PART:
@@ -81,7 +81,7 @@ class _Group:
         return known
 
     def most(self, domains: _Domains) -> float:
-        """The largest value; infinite where that is not listed."""
+        """The largest value; infinite if that is not listed."""
         reach = self.reach(domains)
         return np.inf if reach is None else reach[0]
 
@@ -126,9 +126,9 @@ class SmallGroups:
         """
 
     def narrow(self, node: TreeNode, better: float) -> TreeNode | None:
-        """What remains of a node for plans above the level ``better``; ``None`` where it is divided, or closed.
+        """What remains of a node for plans above the level ``better``; ``None`` if it is divided, or closed.
 
-        The node itself where all outcomes of a small team are known: linear programs over them are faster.
+        The node itself if all outcomes of a small team are known: linear programs over them are faster.
         """
         if self.pool.complete:
             return node

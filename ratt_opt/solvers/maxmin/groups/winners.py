@@ -1,6 +1,6 @@
 """Which group of an outcome bounds the team value.
 
-The team value is the best group's. A group that provably stays below the best plan can be left out: where all but one
+The team value is the best group's. A group that provably stays below the best plan can be left out: if all but one
 can, for every plan, the outcome's *winner* is decided for the whole search; elsewhere a node divides on it.
 """
 
@@ -46,11 +46,11 @@ class Winners:
 
     @property
     def decided(self) -> dict[int, int]:
-        """Outcome -> winner, where other groups were closed for all plans."""
+        """Outcome -> winner, if other groups were closed for all plans."""
         return {outcome: int(self._winner[outcome]) for outcome in self._closed}
 
     def at(self, node: TreeNode) -> IntArray:
-        """(O,) winner of each outcome at a node; negative where that is not decided."""
+        """(O,) winner of each outcome at a node; negative if that is not decided."""
         self._grow()
         winners = self._winner.copy()
         for outcome, group in node.winners.items():
@@ -97,7 +97,7 @@ class Winners:
         return float(objective.value(objective.posterior_information(plan)[None])[0])
 
     def reconsider(self) -> list[int]:
-        """After the best plan turned out worse: close again what no longer closes; the outcomes where that fails."""
+        """After the best plan turned out worse: close again what no longer closes; the outcomes if that fails."""
         if self.proofs.rule.closes(self.finished):
             return []
         failed = []
@@ -134,7 +134,7 @@ class Winners:
         self._bound_closed()
 
     def above(self, root: TreeNode) -> TreeNode:
-        """The search tree below the branches on winners that were decided for all plans, where they are relied on.
+        """The search tree below the branches on winners that were decided for all plans, if they are relied on.
 
         Those that no longer are come last, the latest above the others: only what was searched before relies on them.
         """
@@ -165,7 +165,7 @@ class WinnerDivision:
         self._proofs = winners.proofs
 
     def close(self, node: TreeNode, outcome: int) -> bool:
-        """Close a node by bounds on the winner of one outcome alone; False where that does not work."""
+        """Close a node by bounds on the winner of one outcome alone; False if that does not work."""
         winner = self.winners.of(node, outcome)
         proof = None if winner is None else self._proofs.find(winner, node.choices)
         if winner is None or proof is None:

@@ -27,7 +27,7 @@ RUN = 1000
 FIRST_RECORD, MOST_RECORDED = 1 << 14, 10_000_000
 """Nodes of a record: it grows, to 40 MB at most."""
 MOST_TRIED = 200
-"""Attacks that are tried at a node where robots have not chosen yet."""
+"""Attacks that are tried at a node if robots have not chosen yet."""
 SETS = 64
 """Sets of its seers for which the gains of each target are kept."""
 ROUNDINGS = 4

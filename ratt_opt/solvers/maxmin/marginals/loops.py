@@ -23,7 +23,7 @@ ONE, SPREAD = np.uint64(1), np.uint64(0x9E3779B97F4A7C15)
 
 @numba.njit(cache=True)
 def dive(team: Any, attacks: Any, gains: Any, path: Any, limits: Any) -> int:
-    """Search on for so many nodes, for which the record has room; return the outcome.
+    """Search on for that many nodes, for which the record has room; return the outcome.
 
     ``limits`` : level, what a plan may be worth more than it without its being found, nodes, attacks tried at a node
     """

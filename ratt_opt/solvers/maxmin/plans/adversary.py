@@ -31,7 +31,7 @@ __all__ = ["Adversary", "LastingAttacks"]
 class LastingAttacks:
     """Exchanges the smaller groups of attacks on one problem for some that stay weak under other plans too.
 
-    Where all robots are alike to the adversary, an attack may leave any of the robots outside its largest group in the
+    If all robots are alike to the adversary, an attack may leave any of the robots outside its largest group in the
     smaller ones. Those that are weak under this plan may be strong under others, and then nobody knows beforehand which
     group of the outcome wins: the search has to divide on it. Robots that are weak whatever they do hurt the team just
     as much, and their groups can be closed once and for all.
@@ -44,7 +44,7 @@ class LastingAttacks:
     def of(self, attack: Attack) -> Attack:
         """An attack with the same largest group, whose other groups, of the same sizes, are weak at their best.
 
-        The attack itself where robots or links differ to the adversary, or there is no time.
+        The attack itself if robots or links differ to the adversary, or there is no time.
         """
         if not self._problem.threat.is_symmetric or self._budget.is_over or self._team is None:
             return attack
@@ -68,7 +68,7 @@ class LastingAttacks:
     def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...], part: Budget) -> list[frozenset[int]] | None:
         """Disjoint groups of these sizes outside ``largest``, each as weak as exchanges find, the larger ones first.
 
-        ``None`` where the part of the budget ends before: of a thousand robots there may be hundreds.
+        ``None`` if the part of the budget ends before: of a thousand robots there may be hundreds.
         """
         from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size  # compiles
 
@@ -87,7 +87,7 @@ class LastingAttacks:
 
 
 def _at_their_best(problem: Problem) -> PackedTeam | None:
-    """A team in which each robot sees every target as with whichever of its elements sees that target best.
+    """A team in which each robot sees every target with the element that sees that target best.
 
     No one element need do all of that; its ``single`` values are those of the robots' individually best elements. With
     those elements' information instead, groups counted as weak that other elements make strong: what makes the best
@@ -109,7 +109,7 @@ SEARCHED_BY_SIZE = 12
 """Larger teams with all links alike are attacked by exchanges first (``by_size``): fast and hardly ever wrong."""
 QUICK_SHARE = 0.05
 """Of the time left for one quick attack, and for exchanges next to known outcomes before: without a limit those on 100
-robots took up to two seconds each, and these all of 50 on 1,000, where an exchange takes a third of one."""
+robots took up to two seconds each, and these all of 50 on 1,000; an exchange takes a third of one."""
 SAME_VALUE = 1e-12
 """Relative difference of team values under two attacks that counts as none."""
 
@@ -176,7 +176,7 @@ class Adversary:
         return self.pool.outcome_values(self.pool.group_values(problem.information_objective.information[plan]))
 
     def _learn_near(self, plan: IntArray) -> bool:
-        """Exchange robots of known outcomes for a worse one: few descents where an attack takes hundreds."""
+        """Exchange robots of known outcomes for a worse one: few descents if an attack takes hundreds."""
         team = PackedTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
         if team is None or len(plan) <= SEARCHED_BY_SIZE:
             return False
@@ -228,7 +228,7 @@ class Adversary:
     def glance(self, plan: IntArray, budget: Budget) -> AttackResult:
         """What is known of a plan at once, with the known attack that hurts it most; teaches nothing.
 
-        An attack of its own takes half a second where a thousand robots lose hundreds of thousands of links.
+        An attack of its own takes half a second if a thousand robots lose hundreds of thousands of links.
         """
         memory, values, objective = AttackMemory(), self._known_values(self.problem, plan), self.problem.objective
         if len(values):
@@ -238,7 +238,7 @@ class Adversary:
         return strongest_attack(self.problem, plan, time_limit=0, budget=budget, memory=memory)
 
     def _memory(self, plan: IntArray) -> AttackMemory:
-        """Of earlier exact attacks on the plan, where it is one of the last few attacked."""
+        """Of earlier exact attacks on the plan, if it is one of the last few attacked."""
         memory = self._memories.pop(plan.tobytes(), None) or AttackMemory()
         self._memories[plan.tobytes()] = memory
         if len(self._memories) > REMEMBERED:
@@ -246,12 +246,12 @@ class Adversary:
         return memory
 
     def heed(self, result: AttackResult) -> None:
-        """Stop the search where the user interrupted an attack, once what the attack proved is kept."""
+        """Stop the search if the user interrupted an attack, once what the attack proved is kept."""
         if result.stop is Stop.INTERRUPTED:
             raise OutOfBudget(self.budget.interrupt())
 
     def _remember(self, problem: Problem, plan: IntArray, attack: Attack) -> None:
-        """Add an attack on a plan to the pool; the lasting one in its place where that hurts this plan as much."""
+        """Add an attack on a plan to the pool; the lasting one in its place if that hurts this plan as much."""
         lasting = self._lasting.of(attack)
         self.pool.add(lasting)
         if lasting is attack:

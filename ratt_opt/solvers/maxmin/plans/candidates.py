@@ -19,7 +19,7 @@ __all__ = ["Candidates", "climb"]
 def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget, softness: float = 0.0) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
-    ``plan`` : (N,) element of each robot to start from; not changed. Where the time is up, the pass ends where it is.
+    ``plan`` : (N,) element of each robot to start from; not changed. If the time is up, the pass ends where it is.
     ``softness`` : of the mean of small values that judges; 0 for the smallest value
     """
     objective = pool.objective
@@ -98,7 +98,7 @@ class Candidates:
         return better
 
     def _top(self) -> tuple[float, int, int, IntArray]:
-        """The best candidate; a stored value is out of date, and too large, where outcomes were found since."""
+        """The best candidate; a stored value is out of date, and too large, if outcomes were found since."""
         known = len(self.pool)
         while self._ranked and self._ranked[0][2] < known:
             _, serial, _, plan = self._ranked[0]

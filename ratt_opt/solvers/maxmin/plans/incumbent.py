@@ -23,7 +23,7 @@ __all__ = ["PROVED", "Incumbent", "ProvedPlan"]
 
 PROVED = 2e-10
 """Relative difference between a plan's known and its proved value that counts as none. The search leaves it out of its
-own gap, so that both together stay within 1e-9, the smallest gap that is asked for."""
+own gap, so that both together stay within 1e-9, the smallest gap that a caller may set."""
 
 
 class ProvedPlan:
@@ -41,7 +41,7 @@ class ProvedPlan:
         self.unproved_stop = Stop.HEURISTIC
 
     def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> None:
-        """Attack a plan exactly within a budget, and keep it where more is proved of it than of the one kept.
+        """Attack a plan exactly within a budget, and keep it if more is proved of it than of the one kept.
 
         An attack that leaves it no more than that, or than ``aim``, ends it: it is of no use then.
 
@@ -54,7 +54,7 @@ class ProvedPlan:
         self.adversary.heed(result)
 
     def glance(self, plan: IntArray, budget: Budget) -> None:
-        """Keep a plan where more is known of it at once than is proved of the one kept.
+        """Keep a plan if more is known of it at once than is proved of the one kept.
 
         The attack that comes with it teaches nothing: of the outcomes a search begins with, these are not the worst.
 
@@ -76,11 +76,11 @@ FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time left, spent at once on attacks that bound the first plan, and the best one, from below.
 Nearly all attacks on teams of up to 30 robots close in less."""
 NETWORK_SHARE = 0.02
-"""The same share on networks, where attacks go on later where they ended. With a tenth (and 500,000 nodes) 20 of 120
+"""The same share on networks, if attacks go on later where they ended. With a tenth (and 500,000 nodes) 20 of 120
 seconds went into two such attacks at 30 robots of hubs, with a third blinded and 30 % of the links cut."""
 FIRST_SECONDS, SHORT_SHARE = 1.0, 0.95
-"""So many seconds at least, if that is no more than this share of those left: a tenth of a second proves little, and
-what a search of one second is asked for is what is proved of RATT's plan."""
+"""At least this many seconds, if that is no more than this share of those left: a tenth of a second proves little, and
+a search of one second mostly serves for what is proved of RATT's plan."""
 IMPROVED_SHARE = 0.1
 """Of the time left for the local search from one plan, as at 100 robots each attack on the way takes up to two seconds,
 and for attacks on one plan that is offered."""
@@ -116,7 +116,7 @@ class Incumbent:
         """Attack the first of some plans, improve the most promising one, beat all of them, and attack the best one.
 
         Whatever ends the rest, what the first attack proved is kept, and what is known of the others at once: it can be
-        more where time is short.
+        more if time is short.
         """
         self.proved.attack(plans[0], self._first_part())
         for plan in plans[1:]:
@@ -155,7 +155,7 @@ class Incumbent:
     def improve(self, plan: IntArray) -> None:
         """Local search from a plan, judged by the known outcomes.
 
-        Only where no step is left the plan is attacked, and the search goes on against what that attack adds.
+        Only if no step is left the plan is attacked, and the search goes on against what that attack adds.
         """
         if (key := plan.tobytes()) in self._started:
             return
@@ -175,7 +175,7 @@ class Incumbent:
     def prove(self) -> bool:
         """Attack the best plan exactly in the time left; return whether the search can go on with what was learnt.
 
-        Where the attacks at the start proved more of another plan, that one is attacked once more before. On networks
+        If the attacks at the start proved more of another plan, that one is attacked once more before. On networks
         the first plan and the best one are for a while, and then the one of which more is proved.
         """
         if self.is_proved or self.budget.stop() not in {None, Stop.NODES}:

@@ -26,11 +26,11 @@ FIRST = 100
 """Nodes before the first kick: most searches end before. With 20, best plans of 20 robots took a fifth longer."""
 KICK_NODES, ATTACK_NODES, PROOF_NODES = 2, 8, 25
 """Nodes until the next kick, and how many more for each quick and each exact attack on the way. A kick takes as long as
-a node; at (2, 350) of 30 robots, where exact attacks took a second each, a kick at every node left time for 200 nodes a
-minute."""
+a node; at (2, 350) of 30 robots, at which exact attacks took a second each, a kick at every node left time for 200
+nodes a minute."""
 PATIENCE = 16
 """Kicks in vain after which the next ones wait for one node more. Without, kicks took 40 % of the time at (0, 156) of
-20 robots, where the best plan is found at once."""
+20 robots; there the best plan is found at once."""
 PROOF_SHARE, PROOF_LIMIT = 0.01, 100_000
 """Share of the time left, and nodes, of an exact attack: at 20 robots one takes some hundredths of a second."""
 ROUNDS = 20
@@ -55,9 +55,9 @@ class Kicks:
         self._is_symmetric = incumbent.problem.threat.is_symmetric
 
     def are_due(self, nodes: int) -> bool:
-        """Whether so many nodes were searched that it is time for a kick.
+        """Whether enough nodes were searched for the next kick.
 
-        Never where all outcomes are known, nor where robots or links differ to the adversary: not measured there.
+        Never if all outcomes are known, nor if robots or links differ to the adversary: not measured there.
         """
         return nodes >= self._next and not self._incumbent.pool.complete and self._is_symmetric
 

@@ -1,6 +1,6 @@
 """Attacks on all plans of a node at once: outcomes that leave few groups a chance, whatever is chosen there.
 
-An outcome hurts a node where none, or hardly any, of its groups can be above the level. What a group can reach is no
+An outcome hurts a node if none, or hardly any, of its groups can be above the level. What a group can reach is no
 sum over its robots, so stand-ins are attacked, each robot with
 
 - what its elements show on average: an outcome that hurts such a team hurts most plans of the node;
@@ -55,7 +55,7 @@ class NodeAttacks:
 
     @classmethod
     def of(cls, problem: Problem, pool: OutcomePool, budget: Budget) -> NodeAttacks | None:
-        """``None`` where robots or links differ to the adversary, all outcomes are known, or loops are not compiled."""
+        """``None`` if robots or links differ to the adversary, all outcomes are known, or loops are not compiled."""
         if pool.complete or not problem.threat.is_symmetric:
             return None
         team = PackedTeam.of(problem.objective, np.array([choice[0] for choice in problem.choices]))

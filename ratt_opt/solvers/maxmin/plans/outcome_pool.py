@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["OutcomePool"]
 
 LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
-"""Up to so many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
+"""Up to this many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
 most in vain. Not measured."""
 
 
@@ -58,7 +58,7 @@ class OutcomePool:
         return self._add(self.problem.groups_left(attack), attack)
 
     def add_outcome(self, outcome: Outcome) -> int:
-        """Add an outcome that some attack has; the attack is found once it is asked for."""
+        """Add an outcome that some attack has; the attack is found when it is needed."""
         return self._add(outcome, outcome)
 
     def origin(self, outcome: int) -> Attack | Outcome:
@@ -70,7 +70,7 @@ class OutcomePool:
         return self.add(origin) if isinstance(origin, Attack) else self.add_outcome(origin)
 
     def list_all(self) -> None:
-        """Add all non-dominated outcomes where there are few."""
+        """Add all non-dominated outcomes if there are few."""
         if self.problem.n_robots > LISTED_ROBOTS or not self.problem.threat.is_symmetric:
             return
         outcomes = list(islice(non_dominated_outcomes(self.problem.threat), LISTED_OUTCOMES + 1))
@@ -94,7 +94,7 @@ class OutcomePool:
         return self._number[group]
 
     def membership(self) -> FloatArray:
-        """(G, N) 1 where the robot belongs to the group."""
+        """(G, N) 1 if the robot belongs to the group."""
         known = len(self._membership)
         if known < len(self.groups):
             rows = np.zeros((len(self.groups) - known, self.problem.n_robots))

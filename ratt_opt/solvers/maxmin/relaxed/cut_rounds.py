@@ -33,7 +33,7 @@ DEEP = 0.5
 
 
 class CutRounds:
-    """The cuts in use at a node: usable ones that were stored, and tangents where its relaxed plan violates none."""
+    """The cuts in use at a node: usable ones that were stored, and tangents if its relaxed plan violates none."""
 
     def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary) -> None:
         self.task, self.pool = cuts.task, cuts.pool
@@ -50,7 +50,7 @@ class CutRounds:
             self.use(k)
 
     def begin(self, node: TreeNode) -> None:
-        """Leave out what is not usable at a node; give it a cut on every decided outcome where it has none."""
+        """Leave out what is not usable at a node; give it a cut on every decided outcome if it has none."""
         winners = self.winners.at(node)
         usable = self.cuts.usable(winners)
         self._program.drop(lambda k: not usable[k])
@@ -64,7 +64,7 @@ class CutRounds:
                 self.use(self.cuts.tangent(outcome, winner, points[winner]))
 
     def solve(self, node: TreeNode) -> RelaxedPlan | None:
-        """The relaxed plan of a node under the cuts in use, or ``None`` where HiGHS claims none."""
+        """The relaxed plan of a node under the cuts in use, or ``None`` if HiGHS claims none."""
         self._program.allow(node.choices)
         return self._program.solve(self.adversary.budget.seconds_left)
 

@@ -1,4 +1,4 @@
-"""The cuts of a search: tangents of group values, each under an outcome where its group wins."""
+"""The cuts of a search: tangents of group values, each under an outcome if its group wins."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["CutStore"]
 
 
 class CutStore:
-    """Cut ``k`` bounds the team value under outcome ``outcomes[k]`` where its group ``groups[k]`` wins.
+    """Cut ``k`` bounds the team value under outcome ``outcomes[k]`` if its group ``groups[k]`` wins.
 
     Cuts are never removed: leaves refer to them. Scores are stored element by element, because a
     relaxed plan has few elements.
@@ -68,7 +68,7 @@ class CutStore:
         return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
 
     def copied(self, outcome: int, group: int, point: FloatArray, target: int | None) -> int:
-        """The index of a tangent that another search had; added where it is met for the first time."""
+        """The index of a tangent that another search had; added if it is met for the first time."""
         key = outcome, group, target, point.tobytes()
         if key not in self._copied:
             self._copied[key] = self.tangent(outcome, group, point, target)

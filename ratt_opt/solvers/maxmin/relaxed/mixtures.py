@@ -3,11 +3,11 @@
 A relaxed plan mixes elements. At its level ``t`` all cuts with a multiplier are tight, and a robot that takes one
 element ``e`` of its mixture while the others do not adapt lowers cut ``k`` by ``sum_e' z_e' s_ke' - s_ke``. (The
 *combined* scores say nothing here: at an optimum all elements in a mixture have the same.) What the robot loses at
-least, whichever element it takes, is about what deciding it takes off the bound:
+least, for any element that it takes, is about what deciding it takes off the bound:
 
     loss_i = min over e in the mixture of max_k [ sum_e' z_e' s_ke' - s_ke ].
 
-Where cuts do not tell elements apart, the criteria do: they are concave, so a mixture is worth more to a group than
+If cuts do not tell elements apart, the criteria do: they are concave, so a mixture is worth more to a group than
 its elements on average, over groups ``k`` with weights ``w_k`` by
 
     gain_i = sum_k w_k [ value_k(Lambda_k) - sum_e z_e value_k(Lambda_k + I_e - sum_e' z_e' I_e') ].

@@ -100,7 +100,7 @@ class NodeProgram:
         self._allowed = allowed
 
     def solve(self, seconds: float = np.inf) -> RelaxedPlan | None:
-        """Solve within so many seconds and return what HiGHS claims, or ``None`` when it claims no optimum."""
+        """Solve within that many seconds and return what HiGHS claims, or ``None`` when it claims no optimum."""
         self._add_fresh()
         claim = self._program.solve(seconds)
         if not claim.is_optimal:

@@ -56,7 +56,7 @@ class Crew:
 
     @property
     def is_gone(self) -> bool:
-        """Whether work is lost whoever is asked."""
+        """Whether work is lost with every worker."""
         return self._lost >= LOSSES
 
     def ask(self, work: Work, nodes: list[TreeNode]) -> None:
@@ -69,7 +69,7 @@ class Crew:
         self._at_work[future] = work, nodes
 
     def answers(self, seconds: float) -> Iterator[tuple[list[TreeNode], Searched | None]]:
-        """Nodes that came back within so many seconds, and what was found; ``None`` where it was lost."""
+        """Nodes that came back within that many seconds, and what was found; ``None`` if it was lost."""
         done, _ = wait(self._at_work, timeout=seconds, return_when=FIRST_COMPLETED)
         for future in done:
             _, nodes = self._at_work.pop(future)
@@ -104,7 +104,7 @@ def check_workers(problem: Problem, workers: int | Executor | None) -> None:
 
 @contextmanager
 def open_crew(workers: int | Executor | None) -> Iterator[Crew | None]:
-    """The crew for one search, ``None`` where it is alone; own processes are ended with the block.
+    """The crew for one search, ``None`` if it is alone; own processes are ended with the block.
 
     If this process may start no others, the search is alone, with a warning.
     """
@@ -131,12 +131,12 @@ def _check_sendable(problem: Problem) -> None:
     try:
         pickle.dumps(problem)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
-        rule = "must be None where the problem cannot be pickled (define its classes and functions in a module)"
+        rule = "must be None if the problem cannot be pickled (define its classes and functions in a module)"
         raise InputError("workers", rule, f"{type(error).__name__}: {error}") from None
 
 
 def _size(executor: Executor) -> int:
-    """Workers of an executor: of a pool, or of a Dask client's executor; the cores here where it does not say."""
+    """Workers of an executor: of a pool, or of a Dask client's executor; the cores here if it does not say."""
     client = getattr(executor, "_client", None)
     if client is not None:
         return max(sum(map(int, client.nthreads().values())), 1)

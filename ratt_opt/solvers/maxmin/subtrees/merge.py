@@ -62,7 +62,7 @@ def _elements(search: BranchAndBound, node: TreeNode, given: ElementBranch) -> l
 
 
 def _winners(search: BranchAndBound, node: TreeNode, outcome: int, given: WinnerBranch) -> list[TreeNode | None]:
-    """The children by the group that wins; where that is known already, the node itself in the winner's place."""
+    """The children by the group that wins; if that is known already, the node itself in the winner's place."""
     groups = {search.pool.groups[g]: g for g in search.pool.of_outcome[outcome]}
     winner = search.winners.of(node, outcome)
     if winner is not None:

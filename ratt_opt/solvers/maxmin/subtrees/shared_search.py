@@ -39,8 +39,8 @@ LEAST = 0.05
 WAIT = 0.2
 """Seconds between two looks at the clock while nobody answers."""
 GRACE = 0.3
-"""Seconds waited for work that was asked to be back by now. Where a tree is given up for its count of nodes, ``SLICE``
-more: the next one begins with the outcomes found by then, and its work with whoever is free."""
+"""Seconds waited for work that was asked to be back by now. If a tree is given up for its count of nodes, ``SLICE``
+more: the next one begins with the outcomes found by then, and its work with a free worker."""
 
 
 class SharedSearch:
@@ -77,7 +77,7 @@ class SharedSearch:
         return is_long and len(self._frontier) >= NODES_EACH * self._crew.size
 
     def _give_away(self, turns: Turns) -> Stop | None:
-        """Give whoever is idle its share of the open nodes; what nobody else can do is done here."""
+        """Give idle workers their shares of the open nodes; the work that they cannot do is done here."""
         seconds = min(SLICE, DEADLINE_SHARE * turns.seconds_left)
         while self._crew.idle > 0 and not self._crew.is_gone and not self._frontier.is_closed:
             granted = self._nodes_left(turns.budget)
@@ -126,7 +126,7 @@ class SharedSearch:
         )
 
     def _take(self, seconds: float, budget: Budget) -> None:
-        """Take back what is finished within so many seconds; nodes that were lost are queued again."""
+        """Take back what is finished within that many seconds; nodes that were lost are queued again."""
         for nodes, found in self._crew.answers(seconds):
             if found is None:
                 self._queue_again(nodes)
@@ -148,7 +148,7 @@ class SharedSearch:
         self._frontier.take_back(nodes)
 
     def _call_back(self, budget: Budget, patience: float) -> None:
-        """Take what comes back within so many seconds, as far as there are so many; what does not is queued again."""
+        """Take the work that comes back within that many seconds, if there are as many left; queue the rest again."""
         until = monotonic() + min(patience, max(budget.seconds_left, GRACE))
         while self._frontier.lent and (left := until - monotonic()) > 0 and budget.stop() is not Stop.INTERRUPTED:
             self._take(left, budget)

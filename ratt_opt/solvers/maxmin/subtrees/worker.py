@@ -83,7 +83,7 @@ def search_nodes(work: Work) -> Searched:
 
 
 _MEMORY = threading.local()
-"""The worker of the last search that this process, or thread, was asked about."""
+"""The worker of the last search in this process or thread."""
 
 
 class _Worker:

@@ -151,7 +151,7 @@ def test_what_cannot_be_sent_is_refused_by_name():
         pass
 
     hidden = replace(problem, objective=Hidden(problem.objective.prior, problem.objective.information))
-    with pytest.raises(InputError, match="workers must be None where the problem cannot be pickled"):
+    with pytest.raises(InputError, match="workers must be None if the problem cannot be pickled"):
         solve_maxmin(hidden, workers=2)
     with ThreadPoolExecutor(1) as executor:  # threads need nothing sent
         assert solve_maxmin(hidden, gap=1e-2, workers=executor).lower > 0

@@ -22,7 +22,7 @@ NONE, ONE = np.uint64(0), np.uint64(1)
 def blind(team: Any, strongest: Any, members: Any, level: float, most: int, blinded: Any) -> int:  # noqa: PLR0917
     """How many robots of a group to blind until it is worth at most the level: greedily, then by exchanges.
 
-    More than ``most`` where that is not enough. ``blinded`` : (N,) set to these robots
+    More than ``most`` if that is not enough. ``blinded`` : (N,) set to these robots
     """
     robots, values, sums = len(members), np.empty(len(team.prior)), team.prior.copy()
     for i in range(robots):
@@ -59,7 +59,7 @@ def blind(team: Any, strongest: Any, members: Any, level: float, most: int, blin
 
 @numba.njit(cache=True)
 def _exchanged(team: Any, strongest: Any, sums: Any, values: Any, back: int, blinded: int) -> float:  # noqa: PLR0917
-    """What is left of a group where one more robot is blinded, in exchange for one that sees again, or N."""
+    """The rest of a group if one more robot is blinded, in exchange for one that sees again, or N."""
     total, matrix = 0.0, np.empty(sums.shape[1])
     for j in range(len(values)):
         if tells(strongest[blinded], j) or (back < len(strongest) and tells(strongest[back], j)):

@@ -1,6 +1,6 @@
 """Elements that covers and sums of covers forbid in a frame, and what that depends on, compiled.
 
-If a cover asks for as many robots as can still meet it, each of them must choose among what the cover leaves out. Sums
+If a cover needs all robots that can still meet it, each of them must choose among what the cover leaves out. Sums
 of covers forbid likewise. Masks of elements, one a robot, say what a step depends on: elements that were forbidden
 before.
 """

@@ -14,7 +14,7 @@ class Team(NamedTuple):
     """The data of a problem over E elements.
 
     ``code`` : the criterion's; ``weights``, ``baseline`` (M,) : of targets; ``prior`` (M, T), ``information`` (E, M, T)
-    ``sees`` (E, M) : where there is information; ``owner``, ``bit``, ``element`` : as :class:`Places` has them
+    ``sees`` (E, M) : whether there is information; ``owner``, ``bit``, ``element`` : as :class:`Places` has them
     ``count`` (N,) : what a robot counts in a cover; ``safe`` (N,) : whether it cannot be blinded
     """
 

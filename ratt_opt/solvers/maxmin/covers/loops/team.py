@@ -27,7 +27,7 @@ __all__ = [
 PLANAR = 3
 TRACE = TraceObjective.compiled_code
 SWEEPS = 8
-"""Of Jacobi's rotations; what is left of other entries is rounding."""
+"""Rounds of Jacobi's rotations; the remaining other entries are rounding."""
 ONE = np.uint64(1)
 
 
@@ -120,7 +120,7 @@ def bound_robot(team: Any, robot: int, mask: Any, out: Any) -> None:
 
 @numba.njit(cache=True)
 def value_of(team: Any, j: int, matrix: Any) -> float:
-    """What is gained about a target (trace or log-det) where its posterior information is a packed matrix."""
+    """What is gained about a target (trace or log-det) if its posterior information is a packed matrix."""
     if len(matrix) == PLANAR:
         a, c = matrix[0], matrix[2]
         determinant = a * c - matrix[1] * matrix[1]

@@ -1,0 +1,57 @@
+"""The problem of a mission's first step, as data: what a plan is made for when nobody has moved yet."""
+
+from __future__ import annotations
+
+from ratt_opt.errors import InputError
+from ratt_opt.missions.memory import Memory
+from ratt_opt.missions.planning import plan_team
+from ratt_opt.missions.world import MissionModel, Threatened, World
+from ratt_opt.problem import Attack
+from ratt_opt.scenario.information_input import InformationInput, nested
+from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.problem_record import near_pairs
+from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["first_step"]
+
+
+def first_step(scenario: object, model: MissionModel) -> InformationInput:
+    """What the team plans with in the first step of a mission with this model: its sensors, motions and filter.
+
+    Raises
+    ------
+    InputError : it is no scenario, or the model does not fit it.
+    """
+    if not isinstance(scenario, Scenario):
+        rule = "must be absent, or come with a Scenario: its sensors and motions need poses"
+        raise InputError("model", rule, type(scenario).__name__)
+    world = World(scenario, model, 1)
+    memory = Memory.start(world.motion, world.period, world.motion.initial(scenario), scenario.n_robots)
+    threatened = Threatened(Attack(), scenario.alpha_s, scenario.alpha_c)
+    team = plan_team(world, memory, scenario.poses, 0, threatened)
+    objective, sequences = team.problem.objective, team.sequences
+    assert isinstance(objective, InformationObjective)
+    targets = memory.belief(0).predicted(world.motion, world.period, 0.0).positions
+    controls, poses = sequences.controls[:, 0], sequences.poses[:, 0]
+    near = scenario.communication_range
+    return InformationInput(
+        prior=nested(objective.prior),
+        information=nested(objective.information),
+        robot=tuple(sequences.owner.tolist()),
+        alpha_s=scenario.alpha_s,
+        alpha_c=scenario.alpha_c,
+        weights=tuple(target.weight for target in scenario.targets),
+        labels=tuple(f"{speed:g} m/s, {turn:.4g} rad/s" for speed, turn in controls),
+        links=scenario.links if near is None else near_pairs(scenario.poses, near),
+        protected_robots=scenario.protected_robots,
+        protected_links=scenario.protected_links,
+        notes=(*scenario.notes, "the first step of a mission with a model of its own"),
+        robot_names=tuple(robot.name for robot in scenario.robots),
+        target_names=tuple(target.name for target in scenario.targets),
+        robot_positions=nested(scenario.poses[:, :2]),
+        element_positions=nested(poses[:, :2]),
+        element_headings=tuple(poses[:, 2].tolist()),
+        element_controls=nested(controls),
+        target_positions=nested(targets),
+        units=("m",) * objective.dimension,
+    )

@@ -1,0 +1,164 @@
+"""Reports show what they say: words that do not overlap, phones, scale, ellipses of tracks, axes, intervals."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.missions.drawing.figures import mission_figure
+from ratt_opt.report.page.map_drawing import BROAD, LETTER, LINE, NARROW, map_svg
+from ratt_opt.report.picture import picture_of
+from ratt_opt.report.spots import best_spot, overlap
+from tests.report.browser import opened
+
+QUICK = {"guarantees": "none", "time_limit": 10}
+
+
+def crowded(seed: int) -> ro.Scenario:
+    """Long names and weights in a square of 100 m."""
+    drawn = ro.random_scenario(9, 9, alpha_s=2, alpha_c=5, seed=seed)
+    robots = tuple(robot.replace(name=f"Demosthenes-{i}") for i, robot in enumerate(drawn.robots))
+    targets = tuple(t.replace(name=f"Leviathan {j}0", weight=1.0 + j % 2) for j, t in enumerate(drawn.targets))
+    return drawn.replace(robots=robots, targets=targets)
+
+
+@pytest.fixture(scope="module")
+def reports() -> list[ro.BoundReport]:
+    return [ro.bound(crowded(seed), **QUICK) for seed in range(3)]
+
+
+def word_boxes(svg: str) -> list[tuple[float, float, float, float]]:
+    found = re.findall(r'<text x="([-\d.]+)" y="([-\d.]+)" class="small">([^<]+)</text>', svg)
+    return [(float(x), float(y) - LINE, float(x) + LETTER * len(text), float(y)) for x, y, text in found]
+
+
+def test_words_of_a_page_do_not_overlap(reports) -> None:
+    for report in reports:
+        broad, narrow = map_svg(picture_of(report.source, report), report, report.recommended).split("</svg>")[:2]
+        for svg, size in ((broad, BROAD), (narrow, NARROW)):
+            words = word_boxes(svg)
+            assert len(words) >= 10  # every target's number, and the length of the scale
+            shared = [overlap(a, b) for a, b in combinations(words, 2)]
+            assert sum(area > 1 for area in shared) <= (0 if size == BROAD else 2)
+            assert all(box[0] >= 0 and box[2] <= size[0] for box in words)
+
+
+def test_words_of_a_figure_do_not_overlap(reports) -> None:
+    for report in reports:
+        figure = report.plot()
+        figure.draw_without_rendering()
+        axes = figure.axes[0]
+        words = [text.get_window_extent() for text in axes.texts if len(text.get_text()) > 3]
+        boxes = [(box.x0, box.y0, box.x1, box.y1) for box in words]
+        assert len(boxes) == 18
+        assert all(overlap(a, b) <= 0.02 * (a[2] - a[0]) * (a[3] - a[1]) for a, b in combinations(boxes, 2))
+
+
+def test_the_best_spot_is_the_first_that_covers_nothing() -> None:
+    taken, inside = [(0.0, 0.0, 2.0, 2.0)], (0.0, 0.0, 10.0, 10.0)
+    boxes = [(1.0, 1.0, 3.0, 3.0), (-1.0, 4.0, 1.0, 6.0), (4.0, 4.0, 5.0, 5.0), (6.0, 6.0, 7.0, 7.0)]
+    assert best_spot(boxes, taken, inside) == (2, 0.0)
+    assert best_spot(boxes[:2], taken, inside) == (0, 1.0)
+
+
+def test_the_scale_bar_is_as_long_as_it_says(reports) -> None:
+    report = reports[0]
+    picture = picture_of(report.source, report)
+    svg = map_svg(picture, report, report.recommended).split("</svg>")[0]
+    length = float(re.search(r'class="scale"/><text [^>]*>([\d.]+) m<', svg)[1])
+    pixels = float(re.search(r'<path d="M12 543v5h([\d.]+)v-5" class="scale"/>', svg)[1])
+    discs = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="10" class="seeing"/>', svg)
+    seeing = sorted(picture.seeing)
+    a, b = (np.array(discs[k], dtype=float) for k in (0, -1))
+    metres = np.linalg.norm(picture.places[seeing[0]] - picture.places[seeing[-1]])
+    assert np.linalg.norm(a - b) / pixels == pytest.approx(metres / length, rel=0.01)
+
+
+def test_a_phone_shows_the_whole_report(tmp_path, reports) -> None:
+    reports[0].save(tmp_path, certificate=False)
+    with opened(tmp_path / "report.html", tmp_path / "profile") as browser:
+        metrics = {"width": 390, "height": 800, "deviceScaleFactor": 2, "mobile": True}
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        assert browser.execute_script("return document.documentElement.scrollWidth") <= 390
+        sizes = browser.execute_script(
+            "return [...document.querySelectorAll('td, th, p, figcaption, svg.narrow text')]"
+            ".filter(e => e.getClientRects().length && e.textContent.trim())"
+            ".map(e => parseFloat(getComputedStyle(e).fontSize) *"
+            " (e.closest('svg') ? e.closest('svg').getBoundingClientRect().width / 390 : 1))"
+        )
+        assert min(sizes) >= 10
+        shown = browser.execute_script(
+            "return ['broad', 'narrow'].map(k => document.querySelector('svg.' + k).getClientRects().length)"
+        )
+        assert shown == [0, 1]
+        wide = browser.execute_script(
+            "return [...document.querySelectorAll('td, th, p, svg.narrow')]"
+            ".filter(e => e.getClientRects().length).map(e => e.getBoundingClientRect().right)"
+        )
+        assert max(wide) <= 390
+
+
+TRACK = {
+    "prior": [np.diag([4.0, 1.0, 9.0, 2.0]).tolist()],
+    "information": [[np.diag([1.0, 0.0, 0.5, 0.0]).tolist()], [np.diag([0.2, 0.0, 2.0, 0.0]).tolist()]],
+    "robot": [0, 1],
+    "alpha_s": 0,
+    "alpha_c": 0,
+    "robot_positions": [[0.0, 0.0], [5.0, 5.0]],
+    "target_positions": [[2.0, 3.0]],
+}
+
+
+def test_tracks_of_four_coordinates_have_ellipses_of_their_positions() -> None:
+    report = ro.bound(ro.InformationInput(**TRACK, units=("m", "m/s", "m", "m/s")), **QUICK)
+    picture = picture_of(report.source, report)
+    np.testing.assert_allclose(picture.prior, [np.diag([4.0, 9.0])])
+    np.testing.assert_allclose(picture.posterior, [np.diag([1 / (0.25 + 1.2), 1 / (1 / 9 + 2.5)])])
+    assert "<ellipse" in map_svg(picture, report, report.recommended)
+    unknown = ro.bound(ro.InformationInput(**TRACK), **QUICK)
+    assert picture_of(unknown.source, unknown).posterior is None  # which coordinates are positions is not told
+
+
+@pytest.fixture(scope="module")
+def missions() -> list[ro.Mission]:
+    scenario = ro.random_scenario(4, 2, alpha_s=1, alpha_c=1, seed=2)
+    return [ro.run_mission(scenario, steps=6, seed=seed) for seed in range(2)]
+
+
+def test_missions_show_consistency_on_a_logarithmic_axis_and_intervals_from_zero(missions) -> None:
+    wild = [replace(missions[0], steps=missions[k].steps) for k in (0, 1)]
+    figure = mission_figure(wild)
+    above, below = figure.axes
+    assert below.get_yscale() == "log"
+    ends = [path.vertices[:, 1] for axes in (above, below) for c in axes.collections for path in c.get_paths()]
+    assert ends
+    assert min(end.min() for end in ends) >= 0  # of two seeds Student's t alone would go far below
+
+
+def test_the_player_has_axes_and_the_action_fills_its_frame(tmp_path, missions) -> None:
+    path = missions[0].animate(tmp_path / "player.html")
+    script = (
+        "const c = document.getElementById('map');"
+        "const at = p => [X(p[0]), Y(p[1])];"
+        "const all = data.frames.flatMap(f => [...f.robots, ...f.targets, ...f.estimates].map(at));"
+        "return [c.clientWidth, c.clientHeight, Math.min(...all.map(p => p[0])), Math.max(...all.map(p => p[0])),"
+        " Math.min(...all.map(p => p[1])), Math.max(...all.map(p => p[1])), ticks(x0, x1, 600)]"
+    )
+    with opened(path, tmp_path / "profile") as browser:
+        for width in (390, 1000):
+            metrics = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
+            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+            browser.execute_script("window.dispatchEvent(new Event('resize'))")
+            wide, high, left, right, top, bottom, ticks = browser.execute_script(script)
+            assert wide <= width
+            assert 0 < left < right < wide
+            assert 0 < top < bottom < high
+            # Margins of 6 % and the axes' numbers are all that is empty along the side that decides the scale.
+            assert max((right - left) / (wide - 52), (bottom - top) / (high - 42)) > 0.85
+            assert (bottom - top) / (high - 42) > 0.75
+            assert len(ticks) >= 3
