@@ -1,0 +1,164 @@
+"""The max-min problem of one step: an element for every combination of a node's actions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt._validation import check_integer
+from ratt_opt.errors import InputError
+from ratt_opt.interop.stonesoup.information import node_information
+from ratt_opt.problem import Problem
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
+from ratt_opt.solvers.undominated import undominated
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from datetime import datetime
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.interop.stonesoup.forecast import Forecast
+    from ratt_opt.interop.stonesoup.information import Choices
+    from ratt_opt.interop.stonesoup.network import Network
+    from ratt_opt.interop.stonesoup.nodes import Node
+    from ratt_opt.setfunctions.information import InformationObjective
+
+__all__ = ["Step", "make_step", "measured"]
+
+DIGITS = 1e-12
+"""Information that differs by less than this share of its largest entry is the same; the first action is kept."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """One step's ``problem``, and which of a node's combinations each element is (``combination``, (E,))."""
+
+    problem: Problem
+    nodes: tuple[Node, ...]
+    choices: tuple[Choices, ...]
+    combination: IntArray
+    coordinates: tuple[IntArray, ...]
+
+    def configuration(self, elements: Any) -> dict[Any, tuple[Any, ...]]:
+        """``{actionable: actions}`` of a plan, node by node."""
+        chosen: dict[Any, tuple[Any, ...]] = {}
+        for node, choices, e in zip(self.nodes, self.choices, list(elements), strict=False):
+            places = np.unravel_index(self.combination[e], tuple(map(len, choices)))
+            chosen |= {a: own[k] or () for a, own, k in zip(node.actionables, choices, places, strict=True)}
+        return chosen
+
+
+def make_step(
+    nodes: tuple[Node, ...],
+    choices: tuple[Choices, ...],
+    forecast: Forecast,
+    timestamp: datetime,
+    *,
+    network: Network,
+    alpha_s: int,
+    alpha_c: int,
+    criterion: str,
+    updater: Any = None,
+    coordinates: Sequence[int] | None = None,
+) -> Step:
+    """Build the problem in the coordinates that are measured, without elements that no plan needs.
+
+    Raises
+    ------
+    InputError : a budget is larger than the team, a track's covariance is not positive definite, or a sensor does not
+        fit the tracks.
+    """
+    _check_budgets(alpha_s, alpha_c, len(nodes), network)
+    told = [node_information(n, c, timestamp, forecast, updater) for n, c in zip(nodes, choices, strict=True)]
+    firsts = [_distinct(part) for part in told]
+    robot = np.repeat(np.arange(len(nodes)), [len(first) for first in firsts])
+    information = np.concatenate([part[first] for part, first in zip(told, firsts, strict=True)])
+    combination = np.concatenate(firsts)
+    rows = measured(information, forecast, coordinates)
+    prior, information = _in(rows, forecast, information)
+    for relay in range(len(network.relays)):
+        robot = np.append(robot, len(nodes) + relay)
+        information = np.concatenate([information, np.zeros_like(information[:1])])
+        combination = np.append(combination, 0)
+    objective = _objective(criterion, prior, information, rows, coordinates)
+    problem = Problem(objective, robot, network.graph, alpha_s, alpha_c)
+    kept = undominated(problem)
+    return Step(kept, nodes, choices, combination[kept.kept], rows)
+
+
+def _objective(
+    criterion: str, prior: FloatArray, information: FloatArray, rows: tuple[IntArray, ...], counted: Any
+) -> InformationObjective:
+    """The criterion of the coordinates that count, ``None`` for all of ``rows``."""
+    kind = criterion_called(criterion)
+    if counted is None or all(len(own) == len(counted) for own in rows):
+        return kind(prior, information)
+    if criterion not in WITH_OUTPUT:
+        rule = f"must be None with the criterion {criterion}, which counts all coordinates that are measured"
+        raise InputError("coordinates", rule, list(counted))
+    output = np.zeros((len(rows), len(counted), prior.shape[-1]))
+    for j, own in enumerate(rows):
+        output[j, np.arange(len(counted)), np.searchsorted(own, counted)] = 1
+    return WITH_OUTPUT[criterion](prior, information, output=output)
+
+
+def measured(information: FloatArray, forecast: Forecast, counted: Sequence[int] | None = None) -> tuple[IntArray, ...]:
+    """For each track the coordinates that some element tells about, or that are ``counted``, ascending.
+
+    Those of equally large states are alike.
+
+    Measurements of position tell nothing about velocity but through the position, so the position's covariance after
+    them follows from its covariance before, and the log-det of both together changes as much as the position's alone.
+    If nothing is measured, the first coordinate stands for the state.
+    """
+    told = np.einsum("emii->emi", information).any(axis=0)
+    sizes = np.array(forecast.sizes)
+    if counted is not None:
+        for axis in counted:
+            check_integer("coordinates (of the tracks' states)", axis, low=0, high=int(sizes.min()) - 1)
+        told[:, list(counted)] = True
+    rows = {size: np.flatnonzero(told[sizes == size].any(axis=0)) for size in set(forecast.sizes)}
+    return tuple(rows[size] if len(rows[size]) else np.arange(1) for size in forecast.sizes)
+
+
+def _in(
+    coordinates: tuple[IntArray, ...], forecast: Forecast, information: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Priors and information in those coordinates.
+
+    Tracks with fewer of them get further ones that nobody measures, of the smallest variance: they change no value.
+    """
+    dimension = max(map(len, coordinates))
+    prior = np.zeros((len(coordinates), dimension, dimension))
+    told = np.zeros((len(information), len(coordinates), dimension, dimension))
+    for j, rows in enumerate(coordinates):
+        block = forecast.covariances[j][np.ix_(rows, rows)]
+        block = (block + block.T) / 2
+        lowest = np.linalg.eigvalsh(block)[0]
+        if lowest <= 0:
+            raise InputError("tracks", "must have positive definite covariances where sensors measure", lowest)
+        prior[j] = np.eye(dimension) * lowest
+        prior[j, : len(rows), : len(rows)] = block
+        told[:, j, : len(rows), : len(rows)] = information[:, j][:, rows[:, None], rows]
+    return prior, told
+
+
+def _distinct(information: FloatArray) -> IntArray:
+    """The first of every set of equal combinations, ascending."""
+    rows = information.reshape(len(information), -1)
+    scale = np.abs(rows).max(axis=0, initial=0.0)
+    digits = (
+        np.round(rows / np.where(scale > 0, scale * DIGITS, 1.0)) + 0.0
+    )  # no -0, whose bytes differ from those of 0
+    firsts = {row.tobytes(): k for k, row in reversed(list(enumerate(digits)))}
+    return np.sort(list(firsts.values()))
+
+
+def _check_budgets(alpha_s: int, alpha_c: int, n_nodes: int, network: Network) -> None:
+    who = f"alpha_s (platforms and sensors that may be blinded, of {n_nodes})"
+    check_integer(who, alpha_s, low=0, high=n_nodes)
+    total = n_nodes + len(network.relays)
+    links = total * (total - 1) // 2 if network.graph is None else network.graph.number_of_edges()
+    check_integer(f"alpha_c (links that may be cut, of {links})", alpha_c, low=0, high=links)
