@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from itertools import chain
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
@@ -24,6 +26,36 @@ LARGEST_ENTRY = 1e100
 Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY), BeforeValidator(plain)]
 Matrix = tuple[tuple[Entry, ...], ...]
 Place = tuple[Number, Number]
+NUMBERS = (float, int, np.floating, np.integer)
+
+
+def _at_once(dimensions: int) -> WrapValidator:
+    """Accept entries together if NumPy reads them as numbers in range; otherwise look at each, to name the bad one."""
+
+    def accept(value: Any, one_by_one: ValidatorFunctionWrapHandler) -> Any:
+        try:
+            array = np.array(value, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            return one_by_one(value)
+        fine = array.ndim == dimensions and array.size > 0 and bool((np.abs(array) <= LARGEST_ENTRY).all())
+        if not fine or not all(issubclass(kind, NUMBERS) and kind is not bool for kind in _kinds(value, dimensions)):
+            return one_by_one(value)
+        return _as_tuples(array.tolist(), dimensions)
+
+    return WrapValidator(accept)
+
+
+def _kinds(value: Any, dimensions: int) -> set[type]:
+    """The types of the entries of nested lists or of an array: text and booleans become numbers in NumPy's hands."""
+    if isinstance(value, np.ndarray):
+        return {value.dtype.type}
+    for _ in range(dimensions - 1):
+        value = chain.from_iterable(value)
+    return set(map(type, value))
+
+
+def _as_tuples(nested: list[Any], depth: int) -> tuple[Any, ...]:
+    return tuple(nested) if depth == 1 else tuple(_as_tuples(part, depth - 1) for part in nested)
 
 
 class InformationInput(ProblemRecord):
@@ -31,6 +63,8 @@ class InformationInput(ProblemRecord):
 
     ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
     each element; ``weights`` : (M,) or ``None``; ``labels`` : (E,) what each element is, or ``None``.
+    ``payload`` : (E,) objects of your own, one for each element, such as commands to send; they stay in memory (no file
+    holds them) and count neither for equality nor for the digest.
     Links, budgets and protections are those of a scenario. For maps and tables only, each optional:
     ``robot_names`` : (N,); ``target_names`` : (M,); ``robot_positions`` : (N, 2) now,
     ``element_positions`` : (E, 2) after each element's control, ``target_positions`` : (M, 2), all x, y [m].
@@ -38,8 +72,8 @@ class InformationInput(ProblemRecord):
 
     format: Literal["ratt-opt information"] = "ratt-opt information"
     version: Literal[1] = 1
-    prior: Annotated[tuple[Matrix, ...], Field(min_length=1)]
-    information: Annotated[tuple[tuple[Matrix, ...], ...], Field(min_length=1)]
+    prior: Annotated[tuple[Matrix, ...], Field(min_length=1), _at_once(3)]
+    information: Annotated[tuple[tuple[Matrix, ...], ...], Field(min_length=1), _at_once(4)]
     robot: Annotated[tuple[Whole, ...], Field(min_length=1)]
     alpha_s: Whole
     alpha_c: Whole
@@ -54,6 +88,7 @@ class InformationInput(ProblemRecord):
     robot_positions: tuple[Place, ...] | None = None
     element_positions: tuple[Place, ...] | None = None
     target_positions: tuple[Place, ...] | None = None
+    payload: SkipJsonSchema[tuple[Any, ...] | None] = Field(default=None, exclude=True, repr=False)
 
     @model_validator(mode="after")
     def _check_whole(self) -> Self:
@@ -90,12 +125,20 @@ class InformationInput(ProblemRecord):
         """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
         return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
 
+    def replace(self, **changes: Any) -> Self:
+        """As for any record; the payload stays unless it is changed."""
+        return super().replace(**({"payload": self.payload} | changes))
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: value for name, value in super()._fields().items() if name != "payload"}
+
     def _check_lengths(self) -> None:
         for name, length, of in (
             ("robot_names", self.n_robots, "robot"),
             ("target_names", self.n_targets, "target"),
             ("robot_positions", self.n_robots, "robot"),
             ("element_positions", len(self.robot), "element"),
+            ("payload", len(self.robot), "element"),
             ("target_positions", self.n_targets, "target"),
         ):
             given = getattr(self, name)
