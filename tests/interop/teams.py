@@ -194,6 +194,18 @@ def _platform(rng: np.random.Generator, dim: int, sensors: list[Any]) -> Any:
     return FixedPlatform(movement_controller=movable, sensors=sensors)
 
 
+def grid_platform(
+    rng: np.random.Generator, sensors: list[Any], n_steps: int = 1, place: tuple[float, float] | None = None
+) -> FixedPlatform:
+    """It moves on a grid of two metres by at most ``n_steps``, and stays if that is 0."""
+    where = rng.uniform(0, 60, 2) if place is None else np.array(place)
+    states = [State(StateVector(where), timestamp=START)]
+    if n_steps == 0:
+        return FixedPlatform(states=states, position_mapping=(0, 1), sensors=sensors)
+    movable = NStepDirectionalGridMovable(states=states, position_mapping=(0, 1), resolution=2.0, n_steps=n_steps)
+    return FixedPlatform(movement_controller=movable, sensors=sensors)
+
+
 def random_team(rng: np.random.Generator, n: int, n_tracks: int) -> tuple[list[Any], list[Any], list[Track], Any]:
     """Platforms, sensors that stand alone, tracks and their predictor."""
     if rng.random() < 0.3:
