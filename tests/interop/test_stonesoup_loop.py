@@ -36,7 +36,7 @@ from stonesoup.types.state import GaussianState, State, StateVector
 from stonesoup.types.track import Track
 from stonesoup.updater.kalman import ExtendedKalmanUpdater
 
-from ratt_opt import InputError, verify_certificate
+from ratt_opt import Attack, InputError, save_scenario, verify_certificate
 from ratt_opt.interop.stonesoup import (
     CriterionReward,
     GroupTrackers,
@@ -387,3 +387,21 @@ def test_predictors_may_be_any() -> None:
     with_predictor.choose_actions(known, NEXT)
     without.choose_actions(moved, NEXT)
     np.testing.assert_array_equal(with_predictor.last_result.elements, without.last_result.elements)
+
+
+def test_a_step_is_model_free_input_whose_payload_says_what_to_do(tmp_path: Path) -> None:
+    manager = RobustSensorManager(platforms=team(18), predictor=PREDICTOR, graph=nx.path_graph(4), alpha_c=1)
+    (config,) = manager.choose_actions(tracks(18), NEXT)
+    step = manager.last_step
+    given = step.to_information()
+    assert {a: actions for e in manager.last_result.elements for a, actions in given.payload[e].items()} == config
+    plan = manager.last_result.elements
+    for blinded in range(4):
+        attack = Attack({blinded}, {(1, 2)})
+        assert given.problem().team_value(plan, attack) == manager.last_problem.team_value(plan, attack)
+    save_scenario(given, tmp_path / "step.json")
+    part = RobustSensorManager(platforms=team(18), predictor=PREDICTOR, coordinates=(0,))
+    part.choose_actions(tracks(18), NEXT)
+    assert part.last_problem.objective.output.shape == (3, 1, 2)
+    with pytest.raises(InputError, match="coordinates must be None"):
+        part.last_step.to_information()

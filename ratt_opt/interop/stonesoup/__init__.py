@@ -14,10 +14,9 @@ except ImportError as _missing:
     raise ImportError(_rule, name="stonesoup") from _missing
 
 from ratt_opt.interop.stonesoup.attacker import Aftermath, SurvivingGroup, WorstCaseAttacker
+from ratt_opt.interop.stonesoup.baselines import CriterionReward, SequentialGreedySensorManager
 from ratt_opt.interop.stonesoup.group_trackers import GroupTrackers
 from ratt_opt.interop.stonesoup.manager import RobustSensorManager
-from ratt_opt.interop.stonesoup.rewards import CriterionReward
-from ratt_opt.interop.stonesoup.sequential_greedy import SequentialGreedySensorManager
 
 __all__ = [
     "Aftermath",

@@ -10,15 +10,13 @@ from stonesoup.base import Base, Property
 
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.interop.stonesoup.manager import RobustSensorManager  # noqa: TC001  (a property's type)
-from ratt_opt.interop.stonesoup.network import Network
-from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from datetime import datetime
 
     from ratt_opt.attackers.task import AttackResult
-    from ratt_opt.interop.stonesoup.nodes import Node
+    from ratt_opt.interop.stonesoup.problem import Step
 
 __all__ = ["Aftermath", "SurvivingGroup", "WorstCaseAttacker"]
 
@@ -78,26 +76,26 @@ class WorstCaseAttacker(Base):
         """
         nodes = self.manager.nodes
         if not (tracks := list(tracks) if isinstance(tracks, (list, tuple)) else set(tracks)):
-            return _aftermath(nodes, Network.of(self.manager.graph, nodes), Attack(), None, None)
+            everyone = SurvivingGroup(
+                members=tuple(node.name for node in nodes), sensors=tuple(self.manager.sensors), value=0.0
+            )
+            return Aftermath(blinded=(), cut=(), groups=(everyone,), result=None)
         step = self.manager.step(nodes, tuple(((None,),) * len(node.actionables) for node in nodes), tracks, timestamp)
         result = worst_case_attack(step.problem, range(step.problem.n_robots), time_limit=self.time_limit)
-        return _aftermath(nodes, Network.of(self.manager.graph, nodes), result.attack, result, step.problem)
+        groups = step.problem.communication.groups(result.attack.links)
+        left = [_surviving(step, group, group - result.attack.sensing) for group in groups]
+        return Aftermath(
+            blinded=tuple(step.names[i] for i in sorted(result.attack.sensing)),
+            cut=tuple((step.names[i], step.names[j]) for i, j in sorted(result.attack.links)),
+            groups=tuple(sorted(left, key=lambda group: -group.value)),
+            result=result,
+        )
 
 
-def _aftermath(
-    nodes: tuple[Node, ...], network: Network, attack: Attack, result: AttackResult | None, problem: Any
-) -> Aftermath:
-    names = (*(node.name for node in nodes), *network.relays)
-    groups = [frozenset(range(len(names)))] if problem is None else problem.communication.groups(attack.links)
-    found = []
-    for group in groups:
-        seeing = sorted(i for i in group - attack.sensing if i < len(nodes))
-        value = 0.0 if problem is None else float(problem.objective(seeing))
-        sensors = tuple(sensor for i in seeing for sensor in nodes[i].sensors)
-        found.append(SurvivingGroup(members=tuple(names[i] for i in sorted(group)), sensors=sensors, value=value))
-    return Aftermath(
-        blinded=tuple(names[i] for i in sorted(attack.sensing)),
-        cut=tuple((names[i], names[j]) for i, j in sorted(attack.links)),
-        groups=tuple(sorted(found, key=lambda group: -group.value)),
-        result=result,
+def _surviving(step: Step, group: frozenset[int], seeing: frozenset[int]) -> SurvivingGroup:
+    nodes = [step.nodes[i] for i in sorted(seeing) if i < len(step.nodes)]
+    return SurvivingGroup(
+        members=tuple(step.names[i] for i in sorted(group)),
+        sensors=tuple(sensor for node in nodes for sensor in node.sensors),
+        value=float(step.problem.objective(sorted(seeing))),
     )

@@ -8,11 +8,8 @@ from stonesoup.base import Property
 
 from ratt_opt.certificates.write import certify
 from ratt_opt.errors import InputError
-from ratt_opt.interop.stonesoup.forecast import Forecast
-from ratt_opt.interop.stonesoup.network import Network
-from ratt_opt.interop.stonesoup.nodes import default_option, options
-from ratt_opt.interop.stonesoup.problem import Step, make_step
-from ratt_opt.interop.stonesoup.team import TeamManager
+from ratt_opt.interop.stonesoup.nodes import TeamManager, default_option, options
+from ratt_opt.interop.stonesoup.problem import Step, TeamProblem
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
 from ratt_opt.solvers.ratt import ratt
 from ratt_opt.solvers.refined import refined
@@ -22,8 +19,6 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from ratt_opt.certificates.certification import Certificate
-    from ratt_opt.interop.stonesoup.information import Choices
-    from ratt_opt.interop.stonesoup.nodes import Node
     from ratt_opt.problem import Plan, Problem
     from ratt_opt.solvers.result import MaxMinResult
 
@@ -32,7 +27,7 @@ __all__ = ["METHODS", "RobustSensorManager"]
 METHODS = ("ratt", "refined", "maxmin")
 
 
-class RobustSensorManager(TeamManager):
+class RobustSensorManager(TeamManager, TeamProblem):
     """Choose actions that keep the most information after the worst blinding of sensors and cutting of links.
 
     At most ``alpha_s`` platforms (or sensors that stand alone) are blinded and ``alpha_c`` links cut; what counts is
@@ -43,15 +38,7 @@ class RobustSensorManager(TeamManager):
     planner returned, and ``last_certificate`` the proof, if asked for (``None`` if there were no tracks).
     """
 
-    predictor: Any = Property(default=None, doc="Predicts tracks to the time of the actions; None: states as they are.")
-    updater: Any = Property(
-        default=None, doc="Unscented and cubature updaters linearise by points, others by Jacobian."
-    )
-    graph: Any = Property(default=None, doc="networkx graph, or edges of Stone Soup's networks; None: all are linked.")
-    alpha_s: int = Property(default=1, doc="Number of platforms, or sensors alone, that may be blinded at once.")
-    alpha_c: int = Property(default=0, doc="Number of links that may be cut at once.")
-    criterion: str = Property(default="trace", doc="'trace', 'logdet' or 'maxeig' of the measured coordinates.")
-    coordinates: Any = Property(default=None, doc="Those of the states that count, as (0, 2); None: all measured ones.")
+    alpha_s: int = Property(default=1, doc="Number of platforms, or sensors that stand alone, blinded at once.")
     method: str = Property(default="refined", doc="'ratt' (at once), 'refined' (better) or 'maxmin' (the best).")
     time_limit: float = Property(default=None, doc="Seconds for a plan; with it, plans may differ from run to run.")
     max_kicks: int = Property(default=40, doc="Random exchanges of 'refined': more find better plans and take longer.")
@@ -64,10 +51,15 @@ class RobustSensorManager(TeamManager):
             raise InputError("method", f"must be {', '.join(METHODS[:-1])} or {METHODS[-1]}", self.method)
         if self.proof is not None and self.method != "maxmin":
             raise InputError("proof", "needs method='maxmin'", self.method)
-        self.last_problem: Problem | None = None
+        self.last_step: Step | None = None
         self.last_result: Plan | MaxMinResult | None = None
         self.last_certificate: Certificate | None = None
         self._steps = 0
+
+    @property
+    def last_problem(self) -> Problem | None:
+        """The problem of the last step; ``last_step`` knows what its elements stand for."""
+        return None if self.last_step is None else self.last_step.problem
 
     def choose_actions(
         self, tracks: Iterable[Any], timestamp: datetime, nchoose: int = 1, **_: Any
@@ -83,32 +75,16 @@ class RobustSensorManager(TeamManager):
         if nchoose != 1:
             raise InputError("nchoose", "must be 1: the best plan is one", nchoose)
         nodes = self.nodes
-        self.last_problem = self.last_result = self.last_certificate = None
+        self.last_step = self.last_result = self.last_certificate = None
         if not (tracks := list(tracks) if isinstance(tracks, (list, tuple)) else set(tracks)):
             return [{a: default_option(a, timestamp) for node in nodes for a in node.actionables}]
         choices = tuple(tuple(options(a, timestamp) for a in node.actionables) for node in nodes)
         if all(own == [()] for node in choices for own in node):
             rule = "must have actions: use a sensor that turns (RadarRotatingBearingRange) or a platform that moves"
             raise InputError("sensors and platforms", rule, "none")
-        step = self.step(nodes, choices, tracks, timestamp)
-        self.last_problem, self._steps = step.problem, self._steps + 1
-        self.last_result = self._planned(step.problem)
-        return [step.configuration(self.last_result.elements)]
-
-    def step(self, nodes: tuple[Node, ...], choices: tuple[Choices, ...], tracks: Any, timestamp: datetime) -> Step:
-        """The problem of these choices."""
-        return make_step(
-            nodes,
-            choices,
-            Forecast.of(tracks, self.predictor, timestamp),
-            timestamp,
-            network=Network.of(self.graph, nodes),
-            alpha_s=self.alpha_s,
-            alpha_c=self.alpha_c,
-            criterion=self.criterion,
-            updater=self.updater,
-            coordinates=self.coordinates,
-        )
+        self.last_step, self._steps = self.step(nodes, choices, tracks, timestamp), self._steps + 1
+        self.last_result = self._planned(self.last_step.problem)
+        return [self.last_step.configuration(self.last_result.elements)]
 
     def _planned(self, problem: Problem) -> Plan | MaxMinResult:
         if self.method == "ratt":

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from ordered_set import OrderedSet
+from stonesoup.sensormanager.base import SensorManager
 
 from ratt_opt.errors import InputError
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from stonesoup.sensor.sensor import Sensor
     from stonesoup.sensormanager.action import Action
 
-__all__ = ["Node", "Option", "default_option", "in_order", "nodes_of", "options", "title"]
+__all__ = ["Node", "Option", "TeamManager", "default_option", "in_order", "nodes_of", "options", "title"]
 
 Option = tuple["Action", ...]
 """What one platform or sensor may do: an action for each of its actionable properties."""
@@ -81,6 +82,20 @@ def nodes_of(platforms: Iterable[Any], sensors: Iterable[Any]) -> tuple[Node, ..
     if not any(node.sensors for node in nodes):
         raise InputError("platforms and sensors", "must hold a sensor", f"{len(nodes)} platforms without any")
     return nodes
+
+
+class TeamManager(SensorManager):
+    """A manager whose platforms and sensors keep their order: a list's, or, for a set, that of their attributes."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.platforms: Any = OrderedSet(in_order(self.platforms))
+        self._property_sensors: Any = OrderedSet(in_order(self._property_sensors))
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """Who can be blinded, in order: platforms with their sensors, then sensors that stand alone."""
+        return nodes_of(self.platforms, self.sensors)
 
 
 def options(actionable: Any, timestamp: datetime) -> list[Option]:

@@ -6,26 +6,29 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from stonesoup.base import Base, Property
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
+from ratt_opt.interop.stonesoup.forecast import Forecast
 from ratt_opt.interop.stonesoup.information import node_information
+from ratt_opt.interop.stonesoup.network import Network
+from ratt_opt.interop.stonesoup.nodes import title
 from ratt_opt.problem import Problem
+from ratt_opt.scenario.information_input import InformationInput
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
-from ratt_opt.solvers.undominated import undominated
+from ratt_opt.solvers.undominated import UndominatedProblem, undominated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from datetime import datetime
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.interop.stonesoup.forecast import Forecast
     from ratt_opt.interop.stonesoup.information import Choices
-    from ratt_opt.interop.stonesoup.network import Network
     from ratt_opt.interop.stonesoup.nodes import Node
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Step", "make_step", "measured"]
+__all__ = ["Step", "TeamProblem", "measured"]
 
 DIGITS = 1e-12
 """Information that differs by less than this share of its largest entry is the same; the first action is kept."""
@@ -35,57 +38,92 @@ DIGITS = 1e-12
 class Step:
     """One step's ``problem``, and which of a node's combinations each element is (``combination``, (E,))."""
 
-    problem: Problem
+    problem: UndominatedProblem
     nodes: tuple[Node, ...]
+    relays: tuple[Any, ...]
     choices: tuple[Choices, ...]
     combination: IntArray
+    forecast: Forecast
     coordinates: tuple[IntArray, ...]
+
+    @property
+    def names(self) -> tuple[Any, ...]:
+        """The platform or sensor of each robot of the problem; then the relays."""
+        return (*(node.name for node in self.nodes), *self.relays)
+
+    def to_information(self) -> InformationInput:
+        """The step as model-free input, for reports (:func:`ratt_opt.bound`) and files.
+
+        The ``payload`` of each element is its ``{actionable: actions}``.
+
+        Raises
+        ------
+        InputError : only some of its coordinates count.
+        """
+        problem, objective = self.problem, self.problem.information_objective
+        if getattr(objective, "output", None) is not None:
+            raise InputError("coordinates", "must be None: model-free input counts all that are measured", "a part")
+        owners = problem.robot.tolist()
+        fields: dict[str, Any] = {
+            "prior": objective.prior,
+            "information": objective.information,
+            "robot": owners,
+            "links": None if problem.graph is None else sorted(problem.communication.links),
+            "robot_names": [title(name) for name in self.names],
+            "payload": [self._of_node(i, e) if i < len(self.nodes) else {} for e, i in enumerate(owners)],
+        }
+        return InformationInput(alpha_s=problem.alpha_s, alpha_c=problem.alpha_c, **fields)
 
     def configuration(self, elements: Any) -> dict[Any, tuple[Any, ...]]:
         """``{actionable: actions}`` of a plan, node by node."""
         chosen: dict[Any, tuple[Any, ...]] = {}
-        for node, choices, e in zip(self.nodes, self.choices, list(elements), strict=False):
-            places = np.unravel_index(self.combination[e], tuple(map(len, choices)))
-            chosen |= {a: own[k] or () for a, own, k in zip(node.actionables, choices, places, strict=True)}
+        for i, e in enumerate(list(elements)[: len(self.nodes)]):
+            chosen |= self._of_node(i, e)
         return chosen
 
+    def _of_node(self, i: int, e: int) -> dict[Any, tuple[Any, ...]]:
+        choices = self.choices[i]
+        places = np.unravel_index(self.combination[e], tuple(map(len, choices)))
+        return {a: own[k] or () for a, own, k in zip(self.nodes[i].actionables, choices, places, strict=True)}
 
-def make_step(
-    nodes: tuple[Node, ...],
-    choices: tuple[Choices, ...],
-    forecast: Forecast,
-    timestamp: datetime,
-    *,
-    network: Network,
-    alpha_s: int,
-    alpha_c: int,
-    criterion: str,
-    updater: Any = None,
-    coordinates: Sequence[int] | None = None,
-) -> Step:
-    """Build the problem in the coordinates that are measured, without elements that no plan needs.
 
-    Raises
-    ------
-    InputError : a budget is larger than the team, a track's covariance is not positive definite, or a sensor does not
-        fit the tracks.
-    """
-    _check_budgets(alpha_s, alpha_c, len(nodes), network)
-    told = [node_information(n, c, timestamp, forecast, updater) for n, c in zip(nodes, choices, strict=True)]
-    firsts = [_distinct(part) for part in told]
-    robot = np.repeat(np.arange(len(nodes)), [len(first) for first in firsts])
-    information = np.concatenate([part[first] for part, first in zip(told, firsts, strict=True)])
-    combination = np.concatenate(firsts)
-    rows = measured(information, forecast, coordinates)
-    prior, information = _in(rows, forecast, information)
-    for relay in range(len(network.relays)):
-        robot = np.append(robot, len(nodes) + relay)
-        information = np.concatenate([information, np.zeros_like(information[:1])])
-        combination = np.append(combination, 0)
-    objective = _objective(criterion, prior, information, rows, coordinates)
-    problem = Problem(objective, robot, network.graph, alpha_s, alpha_c)
-    kept = undominated(problem)
-    return Step(kept, nodes, choices, combination[kept.kept], rows)
+class TeamProblem(Base):
+    """What plans are judged by: how tracks are predicted, what counts, who is linked, what an adversary may do."""
+
+    predictor: Any = Property(default=None, doc="Predicts tracks to the time of the actions; None: states as they are.")
+    updater: Any = Property(
+        default=None, doc="Unscented and cubature updaters linearise by points, others by Jacobian."
+    )
+    criterion: str = Property(default="trace", doc="'trace', 'logdet' or 'maxeig' of the coordinates that count.")
+    coordinates: Any = Property(default=None, doc="Those of the states that count, as (0, 2); None: all measured ones.")
+    graph: Any = Property(default=None, doc="networkx graph, or edges of Stone Soup's networks; None: all are linked.")
+    alpha_s: int = Property(default=0, doc="Number of platforms, or sensors that stand alone, blinded at once.")
+    alpha_c: int = Property(default=0, doc="Number of links cut at once.")
+
+    def step(self, nodes: tuple[Node, ...], choices: tuple[Choices, ...], tracks: Any, timestamp: datetime) -> Step:
+        """The problem of these choices in the coordinates that are measured, without elements that no plan needs.
+
+        Raises
+        ------
+        InputError : a budget is larger than the team, a track's covariance is not positive definite, or a sensor does
+            not fit the tracks.
+        """
+        network, forecast = Network.of(self.graph, nodes), Forecast.of(tracks, self.predictor, timestamp)
+        _check_budgets(self.alpha_s, self.alpha_c, len(nodes), network)
+        told = [
+            node_information(node, own, timestamp, forecast, self.updater)
+            for node, own in zip(nodes, choices, strict=True)
+        ]
+        relay = np.zeros((1, *forecast.covariances.shape))
+        told += [relay] * len(network.relays)
+        firsts = [_distinct(part) for part in told]
+        information = np.concatenate([part[first] for part, first in zip(told, firsts, strict=True)])
+        rows = measured(information, forecast, self.coordinates)
+        prior, information = _in(rows, forecast, information)
+        objective = _objective(self.criterion, prior, information, rows, self.coordinates)
+        robot = np.repeat(np.arange(len(told)), list(map(len, firsts)))
+        kept = undominated(Problem(objective, robot, network.graph, self.alpha_s, self.alpha_c))
+        return Step(kept, nodes, network.relays, choices, np.concatenate(firsts)[kept.kept], forecast, rows)
 
 
 def _objective(

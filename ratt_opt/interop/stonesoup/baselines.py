@@ -1,7 +1,11 @@
-"""This package's criteria as a reward for Stone Soup's own managers."""
+"""For comparison: this package's criteria as a reward for Stone Soup's own managers, and a greedy one that is fair.
+
+Stone Soup's greedy manager scores every platform and sensor alone; the one here scores what each adds to those before.
+"""
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,34 +15,24 @@ from stonesoup.types.prediction import GaussianStatePrediction
 from stonesoup.types.track import Track
 
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.interop.stonesoup.forecast import Forecast
-from ratt_opt.interop.stonesoup.network import Network
-from ratt_opt.interop.stonesoup.nodes import nodes_of
-from ratt_opt.interop.stonesoup.problem import Step, make_step
+from ratt_opt.errors import InputError
+from ratt_opt.interop.stonesoup.nodes import TeamManager, nodes_of, options
+from ratt_opt.interop.stonesoup.problem import Step, TeamProblem
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from datetime import datetime
 
-__all__ = ["CriterionReward"]
+__all__ = ["CriterionReward", "SequentialGreedySensorManager"]
 
 
-class CriterionReward(RewardFunction):
+class CriterionReward(RewardFunction, TeamProblem):
     """What a configuration tells about the tracks: of the whole team, or of what the worst attack leaves.
 
     Stone Soup's own rewards look at the sensors of a configuration; here a platform's sensors count too, so that moving
     alone has a value. With ``alpha_s`` or ``alpha_c`` the reward is the worst case.
     """
 
-    predictor: Any = Property(default=None, doc="Predicts tracks to the time of the actions; None: states as they are.")
-    updater: Any = Property(
-        default=None, doc="Unscented and cubature updaters linearise by points, others by Jacobian."
-    )
-    criterion: str = Property(default="trace", doc="'trace', 'logdet' or 'maxeig' of the measured coordinates.")
-    coordinates: Any = Property(default=None, doc="Those of the states that count, as (0, 2); None: all measured ones.")
-    graph: Any = Property(default=None, doc="networkx graph, or edges of Stone Soup's networks; None: all are linked.")
-    alpha_s: int = Property(default=0, doc="Number of platforms, or sensors alone, that may be blinded at once.")
-    alpha_c: int = Property(default=0, doc="Number of links that may be cut at once.")
     return_tracks: bool = Property(default=False, doc="Return (reward, tracks), as Stone Soup's tree search needs.")
 
     def __call__(
@@ -53,21 +47,9 @@ class CriterionReward(RewardFunction):
             return (0.0, tracks) if self.return_tracks else 0.0
         nodes = nodes_of(platforms, list(dict.fromkeys([*carried, *alone])))
         choices = tuple(tuple((_option(config, a),) for a in node.actionables) for node in nodes)
-        forecast = Forecast.of(tracks, self.predictor, metric_time)
-        step = make_step(
-            nodes,
-            choices,
-            forecast,
-            metric_time,
-            network=Network.of(self.graph, nodes),
-            alpha_s=self.alpha_s,
-            alpha_c=self.alpha_c,
-            criterion=self.criterion,
-            updater=self.updater,
-            coordinates=self.coordinates,
-        )
+        step = self.step(nodes, choices, tracks, metric_time)
         value = self._value(step)
-        return (value, _updated(step, forecast)) if self.return_tracks else value
+        return (value, _updated(step)) if self.return_tracks else value
 
     def _value(self, step: Step) -> float:
         everyone = range(step.problem.n_robots)
@@ -80,9 +62,9 @@ def _option(config: Mapping[Any, Sequence[Any]], actionable: Any) -> Any:
     return tuple(config[actionable]) if actionable in config else None
 
 
-def _updated(step: Step, forecast: Forecast) -> set[Any]:
+def _updated(step: Step) -> set[Any]:
     """The tracks after measurements as predicted: the means stay, the covariances shrink."""
-    told = step.problem.information_objective.information.sum(axis=0)
+    forecast, told = step.forecast, step.problem.information_objective.information.sum(axis=0)
     found = set()
     for j, rows in enumerate(step.coordinates):
         n, k = forecast.sizes[j], len(rows)
@@ -94,3 +76,34 @@ def _updated(step: Step, forecast: Forecast) -> set[Any]:
         )
         found.add(Track([*forecast.tracks[j].states, state]))
     return found
+
+
+class SequentialGreedySensorManager(TeamManager):
+    """Node by node, choose the actions with the largest ``reward_function`` of all chosen so far; not robust.
+
+    A node is a platform with its sensors, or a sensor that stands alone. Among equal rewards the first action is taken.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        if self.reward_function is None:
+            raise InputError("reward_function", "must be given, as CriterionReward(predictor)", None)
+
+    def choose_actions(
+        self, tracks: Iterable[Any], timestamp: datetime, nchoose: int = 1, **_: Any
+    ) -> list[dict[Any, tuple[Any, ...]]]:
+        """Return ``[{actionable: actions}]``.
+
+        Raises
+        ------
+        InputError : ``nchoose`` is not 1, or there is no sensor.
+        """
+        if nchoose != 1:
+            raise InputError("nchoose", "must be 1: the greedy choice is one", nchoose)
+        chosen: dict[Any, tuple[Any, ...]] = {}
+        for node in self.nodes:
+            every = product(*(options(actionable, timestamp) for actionable in node.actionables))
+            tried = [chosen | dict(zip(node.actionables, choice, strict=True)) for choice in every]
+            rewards = [self.reward_function(config, tracks, timestamp) for config in tried]
+            chosen = tried[max(range(len(tried)), key=rewards.__getitem__)]
+        return [chosen]
