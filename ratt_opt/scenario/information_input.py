@@ -16,6 +16,8 @@ from ratt_opt.scenario.problem_record import Link, ProblemRecord
 from ratt_opt.scenario.record import Number, Positive, Text, Whole, plain
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["InformationInput"]
@@ -40,7 +42,7 @@ def _at_once(dimensions: int) -> WrapValidator:
         fine = array.ndim == dimensions and array.size > 0 and bool((np.abs(array) <= LARGEST_ENTRY).all())
         if not fine or not all(issubclass(kind, NUMBERS) and kind is not bool for kind in _kinds(value, dimensions)):
             return one_by_one(value)
-        return _as_tuples(array.tolist(), dimensions)
+        return _as_tuples(array)
 
     return WrapValidator(accept)
 
@@ -54,8 +56,12 @@ def _kinds(value: Any, dimensions: int) -> set[type]:
     return set(map(type, value))
 
 
-def _as_tuples(nested: list[Any], depth: int) -> tuple[Any, ...]:
-    return tuple(nested) if depth == 1 else tuple(_as_tuples(part, depth - 1) for part in nested)
+def _as_tuples(array: FloatArray) -> tuple[Any, ...]:
+    """Nested tuples of Python's floats: each dimension takes that many neighbours of the one below together."""
+    parts: Iterator[Any] = iter(array.ravel().tolist())
+    for size in reversed(array.shape[1:]):
+        parts = zip(*[parts] * size, strict=True)
+    return tuple(parts)
 
 
 class InformationInput(ProblemRecord):

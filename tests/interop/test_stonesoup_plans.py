@@ -158,6 +158,28 @@ def test_stone_soups_managers_run_on_the_same_reward(seed: int) -> None:
     assert robust(config, tracks, NEXT) == pytest.approx(manager.last_result.lower, rel=1e-6, abs=1e-6)
 
 
+def test_greedy_plans_are_ratts_without_an_adversary_and_with_everyone_as_bait() -> None:
+    """So the benchmark may represent greedy managers by faster ones."""
+    rng = np.random.default_rng(54)
+    for _ in range(20):
+        manager, tracks, _ = small_case(rng, method="ratt")
+        manager.graph, manager.alpha_c = None, 0
+        team = {"platforms": set(manager.platforms), "sensors": set(manager.sensors)}
+        reward = CriterionReward(manager.predictor, criterion=manager.criterion)
+        for alpha_s, kind in ((0, SequentialGreedySensorManager), (len(manager.nodes), GreedySensorManager)):
+            manager.alpha_s = alpha_s
+            parts = team if alpha_s else {"platforms": manager.platforms, "sensors": manager.sensors}
+            (quick,) = manager.choose_actions(tracks, NEXT)
+            (slow,) = kind(**parts, reward_function=reward).choose_actions(tracks, NEXT)
+            if alpha_s == 0:
+                assert reward(quick, tracks, NEXT) == pytest.approx(reward(slow, tracks, NEXT), rel=1e-9, abs=1e-9)
+                continue
+            for node in manager.nodes:  # greedy scores each alone
+                alone = [{a: config[a] for a in node.actionables} for config in (quick, slow)]
+                values = [reward(config, tracks, NEXT) for config in alone]
+                assert values[0] >= values[1] - 1e-9 * (1 + abs(values[1]))
+
+
 def test_optimisers_of_sensors_run_on_the_same_reward() -> None:
     rng = np.random.default_rng(48)
     sensors = [radar(rng, WHERE, 4, fov=60.0, dwells=12, position=rng.uniform(0, 60, (2, 1))) for _ in range(2)]

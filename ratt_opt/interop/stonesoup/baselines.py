@@ -79,9 +79,9 @@ def _updated(step: Step) -> set[Any]:
 
 
 class SequentialGreedySensorManager(TeamManager):
-    """Node by node, choose the actions with the largest ``reward_function`` of all chosen so far; not robust.
+    """Add the node and actions with which the ``reward_function`` of all chosen so far is largest; not robust.
 
-    A node is a platform with its sensors, or a sensor that stands alone. Among equal rewards the first action is taken.
+    A node is a platform with its sensors, or a sensor that stands alone. Among equal rewards the first is taken.
     """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -101,9 +101,13 @@ class SequentialGreedySensorManager(TeamManager):
         if nchoose != 1:
             raise InputError("nchoose", "must be 1: the greedy choice is one", nchoose)
         chosen: dict[Any, tuple[Any, ...]] = {}
+        left = []
         for node in self.nodes:
             every = product(*(options(actionable, timestamp) for actionable in node.actionables))
-            tried = [chosen | dict(zip(node.actionables, choice, strict=True)) for choice in every]
-            rewards = [self.reward_function(config, tracks, timestamp) for config in tried]
-            chosen = tried[max(range(len(tried)), key=rewards.__getitem__)]
+            left.append([dict(zip(node.actionables, choice, strict=True)) for choice in every])
+        while left:
+            tried = [(k, chosen | choice) for k, choices in enumerate(left) for choice in choices]
+            rewards = [self.reward_function(config, tracks, timestamp) for _, config in tried]
+            best, chosen = tried[max(range(len(tried)), key=rewards.__getitem__)]
+            del left[best]
         return [chosen]
