@@ -3,9 +3,9 @@
 Run as ``python -m analysis.benchmarks.stonesoup [--platforms 3 4 10] [--views 30 60 360] [--attackers exact none]
 [--managers ratt ...] [--runs 60] [--steps 6] [--log FILE]``, or with ``--quick`` (2 runs of 2 steps). Each row is one
 team, view, attacker and manager: the root mean square error of positions over ``runs`` missions with its 95 % interval,
-the difference from sequential greedy in the same missions, and seconds a step. A view of 30 or 60 degrees turns to 13
-directions; one of 360 degrees is on a platform that moves to 13 places. Prior tracks and associations are known, so
-that only where the sensors look makes the difference.
+the difference from sequential greedy in the same missions, and seconds of the processor a step. A view of 30 or 60
+degrees turns to 13 directions; one of 360 degrees is on a platform that moves to 13 places. Prior tracks and
+associations are known, so that only where the sensors look makes the difference.
 
 Two managers of Stone Soup are represented by this package's planners on the same reward, which a test shows to choose
 plans of the same value: its brute force by max-min without an adversary, its greedy by RATT with everyone as bait. The
@@ -123,9 +123,9 @@ def mission(setting: Setting, name: str, seed: int, steps: int) -> tuple[float, 
         root = np.linalg.cholesky(model.covar(time_interval=datetime.timedelta(seconds=1)))
         truth = truth @ model.matrix(time_interval=datetime.timedelta(seconds=1)).T
         truth = truth + noise.normal(size=truth.shape) @ root.T
-        began = time.perf_counter()
+        began = time.process_time()
         (config,) = manager.choose_actions(tracks, now)
-        spent += time.perf_counter() - began
+        spent += time.process_time() - began
         for actionable, actions in config.items():
             if actions:
                 actionable.add_actions(actions)

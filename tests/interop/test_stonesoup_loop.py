@@ -26,15 +26,19 @@ from stonesoup.hypothesiser.distance import DistanceHypothesiser
 from stonesoup.hypothesiser.probability import PDAHypothesiser
 from stonesoup.initiator.simple import SimpleMeasurementInitiator
 from stonesoup.measures import Mahalanobis
+from stonesoup.models.measurement.nonlinear import CartesianToElevationBearingRange
 from stonesoup.platform import FixedPlatform
 from stonesoup.predictor.kalman import KalmanPredictor
+from stonesoup.sensor.radar.beam_pattern import StationaryBeam
+from stonesoup.sensor.radar.beam_shape import Beam2DGaussian
+from stonesoup.sensor.radar.radar import AESARadar
 from stonesoup.sensor.sensor import SensorSuite
 from stonesoup.tracker.simple import MultiTargetMixtureTracker, MultiTargetTracker
 from stonesoup.types.groundtruth import GroundTruthPath, GroundTruthState
 from stonesoup.types.prediction import StatePrediction
 from stonesoup.types.state import GaussianState, State, StateVector
 from stonesoup.types.track import Track
-from stonesoup.updater.kalman import ExtendedKalmanUpdater
+from stonesoup.updater.kalman import ExtendedKalmanUpdater, UnscentedKalmanUpdater
 
 from ratt_opt import Attack, InputError, save_scenario, verify_certificate
 from ratt_opt.interop.stonesoup import (
@@ -377,6 +381,15 @@ def test_a_model_without_a_jacobian_is_differentiated_numerically() -> None:
     after = np.linalg.inv(np.linalg.inv(prior) + np.diag([x / 5, y / 5]) ** 2)
     value = reward({platform: (), platform.sensors[0]: ()}, [track], START)
     assert value == pytest.approx(np.trace(prior - after), rel=1e-6)
+    team_of_one = RobustSensorManager(platforms=[platform, *team(16, 1)], method="ratt", alpha_s=0)
+    team_of_one.choose_actions([track], NEXT)
+    assert team_of_one.last_step.notes == ("NoJacobian of Squares states no Jacobian: differentiated numerically",)
+    assert (
+        CriterionReward(updater=UnscentedKalmanUpdater(None))
+        .step(team_of_one.nodes[1:], (((None,), (None,)),), [track], NEXT)
+        .notes
+        == ()
+    )
 
 
 def test_predictors_may_be_any() -> None:
@@ -405,3 +418,30 @@ def test_a_step_is_model_free_input_whose_payload_says_what_to_do(tmp_path: Path
     assert part.last_problem.objective.output.shape == (3, 1, 2)
     with pytest.raises(InputError, match="coordinates must be None"):
         part.last_step.to_information()
+
+
+def test_a_radar_with_a_probability_of_detection_sees_what_is_likelier_than_not() -> None:
+    model = CartesianToElevationBearingRange(ndim_state=6, mapping=[0, 2, 4], noise_covar=np.diag([1e-4, 1e-4, 1.0]))
+    platform = FixedPlatform(states=[State(StateVector([0.0, 0, 0]), timestamp=START)], position_mapping=(0, 1, 2))
+    beam = StationaryBeam(centre=[0.0, 0.0])
+    aesa = AESARadar(
+        measurement_model=model,
+        position_mapping=(0, 2, 4),
+        beam_shape=Beam2DGaussian(peak_power=50e3),
+        beam_transition_model=beam,
+        duty_cycle=0.2,
+        band_width=30e3,
+        receiver_noise=5,
+        frequency=1e9,
+        antenna_gain=30,
+        beam_width=np.radians(10),
+        rcs=10.0,
+    )
+    platform.add_sensor(aesa)
+    reward, seen = CriterionReward(), []
+    for bearing in np.radians([0.0, 2.0, 90.0]):
+        mean = [1000 * np.cos(bearing), 0, 1000 * np.sin(bearing), 0, 0, 0]
+        track = Track([GaussianState(mean, 25 * np.eye(6), timestamp=START)])
+        truth = GroundTruthState(mean, timestamp=START)
+        seen.append((reward({platform: (), aesa: ()}, [track], START) > 0, aesa.gen_probability(truth)[0] >= 0.5))
+    assert seen == [(True, True), (True, True), (False, False)]

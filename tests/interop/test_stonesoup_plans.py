@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from importlib import import_module
 from itertools import combinations
 from typing import Any
 
@@ -180,16 +181,24 @@ def test_greedy_plans_are_ratts_without_an_adversary_and_with_everyone_as_bait()
                 assert values[0] >= values[1] - 1e-9 * (1 + abs(values[1]))
 
 
-def test_optimisers_of_sensors_run_on_the_same_reward() -> None:
+@pytest.mark.parametrize("kind", ["scipy", "optuna"])
+def test_optimisers_of_sensors_run_on_the_same_reward(kind: str) -> None:
     rng = np.random.default_rng(48)
     sensors = [radar(rng, WHERE, 4, fov=60.0, dwells=12, position=rng.uniform(0, 60, (2, 1))) for _ in range(2)]
-    tracks, reward = (
-        [random_track(rng, 4, WHERE) for _ in range(3)],
-        CriterionReward(predictor_of(MODELS["velocity"][0])),
-    )
-    optimiser = OptimizeBruteSensorManager(sensors=set(sensors), reward_function=reward, n_grid_points=6)
-    ((config,), value) = optimiser.choose_actions(tracks, NEXT, return_reward=True)
-    assert value == reward(config, tracks, NEXT) >= 0
+    tracks = [random_track(rng, 4, WHERE) for _ in range(3)]
+    reward = CriterionReward(predictor_of(MODELS["velocity"][0]))
+    if kind == "optuna":
+        pytest.importorskip("optuna", reason="Optuna is not installed")
+        optuna = import_module("stonesoup.sensormanager.optuna")
+        optimiser = optuna.OptunaSensorManager(sensors=set(sensors), reward_function=reward, timeout=0.3)
+        (config,) = optimiser.choose_actions(tracks, NEXT)
+    else:
+        optimiser = OptimizeBruteSensorManager(sensors=set(sensors), reward_function=reward, n_grid_points=6)
+        ((config,), value) = optimiser.choose_actions(tracks, NEXT, return_reward=True)
+        assert value == reward(config, tracks, NEXT)
+    brute = BruteForceSensorManager(sensors=set(sensors), reward_function=reward)
+    _, (best,) = brute.choose_actions(tracks, NEXT, return_reward=True)
+    assert 0 <= reward(config, tracks, NEXT) <= best + 1e-9
 
 
 def test_sequential_greedy_counts_what_others_tell_already() -> None:

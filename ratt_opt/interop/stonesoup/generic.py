@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.interop.stonesoup.forecast import Forecast
 
-__all__ = ["has_own_jacobian", "information", "linearises_by_jacobian"]
+__all__ = ["information", "linearises_by_jacobian", "note_of"]
 
 
 def linearises_by_jacobian(updater: Any) -> bool:
@@ -26,10 +26,13 @@ def linearises_by_jacobian(updater: Any) -> bool:
     return not by_points or type(updater) is KalmanUpdater
 
 
-def has_own_jacobian(model: Any) -> bool:
-    """Whether the model states its Jacobian; Stone Soup differentiates the others numerically."""
+def note_of(sensor: Any, updater: Any) -> str | None:
+    """Say so if the sensor's model states no Jacobian, and is differentiated numerically."""
+    model = sensor.measurement_model
     own = getattr(type(model), "jacobian", None)
-    return isinstance(model, LinearModel) or own not in (None, Model.jacobian)
+    if isinstance(model, LinearModel) or own not in (None, Model.jacobian) or not linearises_by_jacobian(updater):
+        return None
+    return f"{type(model).__name__} of {type(sensor).__name__} states no Jacobian: differentiated numerically"
 
 
 def information(sensor: Any, forecast: Forecast, updater: Any) -> FloatArray:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.interop.stonesoup.forecast import Forecast
     from ratt_opt.interop.stonesoup.nodes import Node, Option
 
-__all__ = ["node_information"]
+__all__ = ["node_information", "notes_of"]
 
 MOST_COMBINATIONS = 100_000
 """Of one node's actions; every one holds a matrix for each target."""
@@ -56,6 +56,12 @@ def node_information(
         places[0], places[axis] = shape[0], shape[axis]
         total += told.reshape(*places, *size)
     return total.reshape(-1, *size)
+
+
+def notes_of(nodes: tuple[Node, ...], updater: Any) -> tuple[str, ...]:
+    """What a user should know of how the sensors are linearised, each once."""
+    asked = [sensor for node in nodes for sensor in node.sensors if not closed_forms.is_recognised(sensor)]
+    return tuple(dict.fromkeys(note for sensor in asked if (note := generic.note_of(sensor, updater))))
 
 
 _HERE: tuple[None, ...] = (None,)

@@ -11,7 +11,7 @@ from stonesoup.base import Base, Property
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 from ratt_opt.interop.stonesoup.forecast import Forecast
-from ratt_opt.interop.stonesoup.information import node_information
+from ratt_opt.interop.stonesoup.information import node_information, notes_of
 from ratt_opt.interop.stonesoup.network import Network
 from ratt_opt.interop.stonesoup.nodes import title
 from ratt_opt.problem import Problem
@@ -36,7 +36,11 @@ DIGITS = 1e-12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
-    """One step's ``problem``, and which of a node's combinations each element is (``combination``, (E,))."""
+    """One step's ``problem``, and which of a node's combinations each element is (``combination``, (E,)).
+
+    ``coordinates`` : of each track, those of its state that count; ``notes`` : how sensors are linearised
+    that have no Jacobian of their own
+    """
 
     problem: UndominatedProblem
     nodes: tuple[Node, ...]
@@ -45,6 +49,7 @@ class Step:
     combination: IntArray
     forecast: Forecast
     coordinates: tuple[IntArray, ...]
+    notes: tuple[str, ...]
 
     @property
     def names(self) -> tuple[Any, ...]:
@@ -123,7 +128,8 @@ class TeamProblem(Base):
         objective = _objective(self.criterion, prior, information, rows, self.coordinates)
         robot = np.repeat(np.arange(len(told)), list(map(len, firsts)))
         kept = undominated(Problem(objective, robot, network.graph, self.alpha_s, self.alpha_c))
-        return Step(kept, nodes, network.relays, choices, np.concatenate(firsts)[kept.kept], forecast, rows)
+        combination, notes = np.concatenate(firsts)[kept.kept], notes_of(nodes, self.updater)
+        return Step(kept, nodes, network.relays, choices, combination, forecast, rows, notes)
 
 
 def _objective(
