@@ -28,15 +28,25 @@ from stonesoup.initiator.simple import SimpleMeasurementInitiator
 from stonesoup.measures import Mahalanobis
 from stonesoup.models.measurement.nonlinear import CartesianToElevationBearingRange
 from stonesoup.platform import FixedPlatform
-from stonesoup.predictor.kalman import KalmanPredictor
+from stonesoup.predictor.information import InformationKalmanPredictor
+from stonesoup.predictor.kalman import KalmanPredictor, SqrtKalmanPredictor
+from stonesoup.predictor.particle import ParticlePredictor
 from stonesoup.sensor.radar.beam_pattern import StationaryBeam
 from stonesoup.sensor.radar.beam_shape import Beam2DGaussian
 from stonesoup.sensor.radar.radar import AESARadar
 from stonesoup.sensor.sensor import SensorSuite
 from stonesoup.tracker.simple import MultiTargetMixtureTracker, MultiTargetTracker
+from stonesoup.types.array import StateVectors
 from stonesoup.types.groundtruth import GroundTruthPath, GroundTruthState
 from stonesoup.types.prediction import StatePrediction
-from stonesoup.types.state import GaussianState, State, StateVector
+from stonesoup.types.state import (
+    GaussianState,
+    InformationState,
+    ParticleState,
+    SqrtGaussianState,
+    State,
+    StateVector,
+)
 from stonesoup.types.track import Track
 from stonesoup.updater.kalman import ExtendedKalmanUpdater, UnscentedKalmanUpdater
 
@@ -390,6 +400,37 @@ def test_a_model_without_a_jacobian_is_differentiated_numerically() -> None:
         .notes
         == ()
     )
+
+
+@pytest.mark.parametrize("kind", ["particles", "square roots", "information"])
+def test_tracks_may_be_of_any_state_with_a_covariance(kind: str) -> None:
+    model, rng = PREDICTOR.transition_model, np.random.default_rng(55)
+    mean, spread = np.array([30.0, 0, 30, 0]), np.diag([4.0, 1, 4, 1])
+    if kind == "particles":
+        drawn = StateVectors(rng.multivariate_normal(mean, spread, 500).T)
+        state, predictor = ParticleState(drawn, weight=np.full(500, 1 / 500), timestamp=START), ParticlePredictor(model)
+    elif kind == "square roots":
+        state = SqrtGaussianState(mean, np.sqrt(spread), timestamp=START)
+        predictor = SqrtKalmanPredictor(model)
+    else:
+        precision = np.linalg.inv(spread)
+        state = InformationState(precision @ mean, precision, timestamp=START)
+        predictor = InformationKalmanPredictor(model)
+    known = {Track([state])}
+    manager = RobustSensorManager(platforms=team(1, fov=360.0), predictor=predictor, method="ratt", alpha_s=0)
+    manager.choose_actions(known, NEXT)
+    usual = RobustSensorManager(platforms=team(1, fov=360.0), predictor=PREDICTOR, method="ratt", alpha_s=0)
+    usual.choose_actions({Track([GaussianState(mean, spread, timestamp=START)])}, NEXT)
+    values = [m.last_problem.objective(m.last_result.elements) for m in (manager, usual)]
+    assert values[0] == pytest.approx(values[1], rel=0.2 if kind == "particles" else 1e-9)
+
+
+def test_targets_that_nobody_sees_are_planned_for_all_the_same() -> None:
+    far = [Track([GaussianState([1000.0, 0, 1000, 0], np.eye(4), timestamp=START)])]
+    for method in ("ratt", "refined", "maxmin"):
+        manager = RobustSensorManager(platforms=team(1), predictor=PREDICTOR, method=method)
+        assert len(manager.choose_actions(far, NEXT)[0]) == 8
+        assert WorstCaseAttacker(manager).attack(far, NEXT).best.value == 0
 
 
 def test_predictors_may_be_any() -> None:
