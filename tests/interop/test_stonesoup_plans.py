@@ -19,7 +19,7 @@ from stonesoup.sensormanager.tree_search import MCTSRolloutSensorManager, MonteC
 from stonesoup.types.groundtruth import GroundTruthState
 
 from ratt_opt.interop.stonesoup import CriterionReward, RobustSensorManager, SequentialGreedySensorManager
-from tests.interop.teams import NEXT, grid_platform, predictor_of, radar, random_track
+from tests.interop.teams import NEXT, PositionSensor, grid_platform, predictor_of, radar, random_track
 from tests.interop.teams import PLANAR as MODELS
 
 WHERE = (0, 2)
@@ -157,6 +157,23 @@ def test_stone_soups_managers_run_on_the_same_reward(seed: int) -> None:
     (config,) = BruteForceSensorManager(**team, reward_function=robust).choose_actions(tracks, NEXT)
     manager.choose_actions(tracks, NEXT)
     assert robust(config, tracks, NEXT) == pytest.approx(manager.last_result.lower, rel=1e-6, abs=1e-6)
+
+
+def test_values_of_different_configurations_are_about_the_same_coordinates() -> None:
+    """One sensor measures x, another y: a plan that uses one of them alone must not be about that one alone."""
+    (track,) = [random_track(np.random.default_rng(56), 4, WHERE)]
+    sensors = [
+        PositionSensor(ndim_state=4, mapping=(axis,), noise_covar=np.eye(1), position=np.zeros((2, 1)), radius=1e9)
+        for axis in WHERE
+    ]
+    blind = PositionSensor(ndim_state=4, mapping=(2,), noise_covar=np.eye(1), position=np.zeros((2, 1)), radius=0.0)
+    reward = CriterionReward(predictor_of(MODELS["velocity"][0]))
+    prediction = reward.predictor.predict(track, timestamp=NEXT)
+    prior = np.asarray(prediction.covar)[np.ix_(WHERE, WHERE)]
+    after = np.linalg.inv(np.linalg.inv(prior) + np.diag([1.0, 0.0]))
+    value = reward({sensors[0]: (), blind: ()}, [track], NEXT)
+    assert value == pytest.approx(np.trace(prior - after), rel=1e-9)
+    assert value > reward({sensors[0]: ()}, [track], NEXT)  # which is about x alone
 
 
 def test_greedy_plans_are_ratts_without_an_adversary_and_with_everyone_as_bait() -> None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.interop.stonesoup.forecast import Forecast
     from ratt_opt.interop.stonesoup.nodes import Node, Option
 
-__all__ = ["node_information", "notes_of"]
+__all__ = ["mapped_by", "node_information", "notes_of"]
 
 MOST_COMBINATIONS = 100_000
 """Of one node's actions; every one holds a matrix for each target."""
@@ -56,6 +56,18 @@ def node_information(
         places[0], places[axis] = shape[0], shape[axis]
         total += told.reshape(*places, *size)
     return total.reshape(-1, *size)
+
+
+def mapped_by(nodes: tuple[Node, ...]) -> set[int]:
+    """The coordinates of a state that the sensors' models name, whatever they detect."""
+    found: set[int] = set()
+    for sensor in (sensor for node in nodes for sensor in node.sensors):
+        if closed_forms.is_recognised(sensor):
+            found.update(closed_forms.mapping_of(sensor))
+        else:
+            model = sensor.measurement_model
+            found.update(*(getattr(model, name, None) or () for name in ("mapping", "velocity_mapping")))
+    return {int(axis) for axis in found}
 
 
 def notes_of(nodes: tuple[Node, ...], updater: Any) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from stonesoup.base import Base, Property
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 from ratt_opt.interop.stonesoup.forecast import Forecast
-from ratt_opt.interop.stonesoup.information import node_information, notes_of
+from ratt_opt.interop.stonesoup.information import mapped_by, node_information, notes_of
 from ratt_opt.interop.stonesoup.network import Network
 from ratt_opt.interop.stonesoup.nodes import title
 from ratt_opt.problem import Problem
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ratt_opt.interop.stonesoup.nodes import Node
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Step", "TeamProblem", "measured"]
+__all__ = ["Step", "TeamProblem"]
 
 DIGITS = 1e-12
 """Information that differs by less than this share of its largest entry is the same; the first action is kept."""
@@ -123,7 +123,7 @@ class TeamProblem(Base):
         told += [relay] * len(network.relays)
         firsts = [_distinct(part) for part in told]
         information = np.concatenate([part[first] for part, first in zip(told, firsts, strict=True)])
-        rows = measured(information, forecast, self.coordinates)
+        rows = _measured(information, forecast, mapped_by(nodes), self.coordinates)
         prior, information = _in(rows, forecast, information)
         objective = _objective(self.criterion, prior, information, rows, self.coordinates)
         robot = np.repeat(np.arange(len(told)), list(map(len, firsts)))
@@ -148,23 +148,23 @@ def _objective(
     return WITH_OUTPUT[criterion](prior, information, output=output)
 
 
-def measured(information: FloatArray, forecast: Forecast, counted: Sequence[int] | None = None) -> tuple[IntArray, ...]:
-    """For each track the coordinates that some element tells about, or that are ``counted``, ascending.
+def _measured(
+    information: FloatArray, forecast: Forecast, mapped: set[int], counted: Sequence[int] | None
+) -> tuple[IntArray, ...]:
+    """For each track the coordinates that sensors are made for, some element tells about, or that are ``counted``.
 
-    Those of equally large states are alike.
-
-    Measurements of position tell nothing about velocity but through the position, so the position's covariance after
-    them follows from its covariance before, and the log-det of both together changes as much as the position's alone.
-    If nothing is measured, the first coordinate stands for the state.
+    They ascend; those of equally large states are alike. Measurements of position tell nothing about velocity but
+    through the position, so the position's covariance after them follows from its covariance before, and the log-det of
+    both together changes as much as the position's alone. If nothing is known of them, the first one stands for all.
     """
     told = np.einsum("emii->emi", information).any(axis=0)
     sizes = np.array(forecast.sizes)
-    if counted is not None:
-        for axis in counted:
-            check_integer("coordinates (of the tracks' states)", axis, low=0, high=int(sizes.min()) - 1)
-        told[:, list(counted)] = True
-    rows = {size: np.flatnonzero(told[sizes == size].any(axis=0)) for size in set(forecast.sizes)}
-    return tuple(rows[size] if len(rows[size]) else np.arange(1) for size in forecast.sizes)
+    for axis in counted or ():
+        check_integer("coordinates (of the tracks' states)", axis, low=0, high=int(sizes.min()) - 1)
+    named = sorted(axis for axis in mapped | set(counted or ()) if axis < told.shape[1])
+    told[:, named] = True
+    rows = {n: np.flatnonzero(told[sizes == n, :n].any(axis=0)) for n in set(forecast.sizes)}
+    return tuple(rows[n] if len(rows[n]) else np.arange(1) for n in forecast.sizes)
 
 
 def _in(
@@ -193,9 +193,8 @@ def _distinct(information: FloatArray) -> IntArray:
     """The first of every set of equal combinations, ascending."""
     rows = information.reshape(len(information), -1)
     scale = np.abs(rows).max(axis=0, initial=0.0)
-    digits = (
-        np.round(rows / np.where(scale > 0, scale * DIGITS, 1.0)) + 0.0
-    )  # no -0, whose bytes differ from those of 0
+    # 0 is added since the bytes of -0 differ from those of 0.
+    digits = np.round(rows / np.where(scale > 0, scale * DIGITS, 1.0)) + 0.0
     firsts = {row.tobytes(): k for k, row in reversed(list(enumerate(digits)))}
     return np.sort(list(firsts.values()))
 
