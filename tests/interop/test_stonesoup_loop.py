@@ -172,6 +172,17 @@ def test_groups_are_really_apart() -> None:
         assert any(own[0:2] == list(old)[0:2] or own[1] is old[1] for old in before.tracks)
 
 
+def test_without_tracks_nobody_is_attacked_and_groups_are_the_networks() -> None:
+    platforms = team(3, 3, n_steps=0)
+    graph = nx.Graph([(0, 1)])
+    manager = RobustSensorManager(platforms=platforms, predictor=PREDICTOR, graph=graph, alpha_c=1)
+    aftermath = WorstCaseAttacker(manager).attack(set(), NEXT)
+    assert aftermath.blinded == aftermath.cut == ()
+    assert aftermath.result is None
+    assert [len(group.members) for group in aftermath.groups] == [2, 1]
+    assert [len(group.sensors) for group in aftermath.groups] == [2, 1]
+
+
 def test_blinded_members_relay_but_see_nothing() -> None:
     platforms = team(3, 3, n_steps=0, fov=360.0)
     for platform in platforms:

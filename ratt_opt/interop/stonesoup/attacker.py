@@ -5,18 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import networkx as nx
 from ordered_set import OrderedSet
 from stonesoup.base import Base, Property
 
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.interop.stonesoup.manager import RobustSensorManager  # noqa: TC001  (a property's type)
+from ratt_opt.interop.stonesoup.network import Network
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
     from datetime import datetime
 
     from ratt_opt.attackers.task import AttackResult
-    from ratt_opt.interop.stonesoup.problem import Step
+    from ratt_opt.interop.stonesoup.nodes import Node
 
 __all__ = ["Aftermath", "SurvivingGroup", "WorstCaseAttacker"]
 
@@ -67,7 +69,7 @@ class WorstCaseAttacker(Base):
     manager: RobustSensorManager = Property(doc="Says who is in the team, their links, the budgets and the criterion.")
     time_limit: float = Property(default=None, doc="Seconds for an attack; None: until it is proved to be the worst.")
 
-    def attack(self, tracks: Iterable[Any], timestamp: datetime) -> Aftermath:
+    def attack(self, tracks: Collection[Any], timestamp: datetime) -> Aftermath:
         """The worst attack on the sensors as they stand, while they measure at ``timestamp``.
 
         Raises
@@ -75,15 +77,19 @@ class WorstCaseAttacker(Base):
         InputError : a budget is larger than the team, or sensors do not fit the tracks.
         """
         nodes = self.manager.nodes
-        if not (tracks := list(tracks) if isinstance(tracks, (list, tuple)) else set(tracks)):
-            everyone = SurvivingGroup(
-                members=tuple(node.name for node in nodes), sensors=tuple(self.manager.sensors), value=0.0
-            )
-            return Aftermath(blinded=(), cut=(), groups=(everyone,), result=None)
-        step = self.manager.step(nodes, tuple(((None,),) * len(node.actionables) for node in nodes), tracks, timestamp)
+        if not tracks:
+            network = Network.of(self.manager.graph, nodes)
+            names = (*(node.name for node in nodes), *network.relays)
+            groups = [range(len(names))] if network.graph is None else nx.connected_components(network.graph)
+            left = [_surviving(names, nodes, sorted(group), sorted(group), 0.0) for group in groups]
+            return Aftermath(blinded=(), cut=(), groups=tuple(left), result=None)
+        as_they_stand = tuple(((None,),) * len(node.actionables) for node in nodes)
+        step = self.manager.step(nodes, as_they_stand, tracks, timestamp)
         result = worst_case_attack(step.problem, range(step.problem.n_robots), time_limit=self.time_limit)
-        groups = step.problem.communication.groups(result.attack.links)
-        left = [_surviving(step, group, group - result.attack.sensing) for group in groups]
+        left = []
+        for group in step.problem.communication.groups(result.attack.links):
+            seeing = sorted(group - result.attack.sensing)
+            left.append(_surviving(step.names, nodes, sorted(group), seeing, step.problem.objective(seeing)))
         return Aftermath(
             blinded=tuple(step.names[i] for i in sorted(result.attack.sensing)),
             cut=tuple((step.names[i], step.names[j]) for i, j in sorted(result.attack.links)),
@@ -92,10 +98,11 @@ class WorstCaseAttacker(Base):
         )
 
 
-def _surviving(step: Step, group: frozenset[int], seeing: frozenset[int]) -> SurvivingGroup:
-    nodes = [step.nodes[i] for i in sorted(seeing) if i < len(step.nodes)]
+def _surviving(
+    names: tuple[Any, ...], nodes: tuple[Node, ...], group: list[int], seeing: list[int], value: float
+) -> SurvivingGroup:
     return SurvivingGroup(
-        members=tuple(step.names[i] for i in sorted(group)),
-        sensors=tuple(sensor for node in nodes for sensor in node.sensors),
-        value=float(step.problem.objective(sorted(seeing))),
+        members=tuple(names[i] for i in group),
+        sensors=tuple(sensor for i in seeing if i < len(nodes) for sensor in nodes[i].sensors),
+        value=float(value),
     )

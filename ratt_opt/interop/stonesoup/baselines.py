@@ -20,7 +20,7 @@ from ratt_opt.interop.stonesoup.nodes import TeamManager, nodes_of, options
 from ratt_opt.interop.stonesoup.problem import Step, TeamProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from datetime import datetime
 
 __all__ = ["CriterionReward", "SequentialGreedySensorManager"]
@@ -30,19 +30,19 @@ class CriterionReward(RewardFunction, TeamProblem):
     """What a configuration tells about the tracks: of the whole team, or of what the worst attack leaves.
 
     Stone Soup's own rewards look at the sensors of a configuration; here a platform's sensors count too, so that moving
-    alone has a value. With ``alpha_s`` or ``alpha_c`` the reward is the worst case.
+    alone has a value. With ``alpha_s`` or ``alpha_c`` the reward is the worst case. With a ``graph``, configurations
+    must be of everybody whom it names.
     """
 
     return_tracks: bool = Property(default=False, doc="Return (reward, tracks), as Stone Soup's tree search needs.")
 
     def __call__(
-        self, config: Mapping[Any, Sequence[Any]], tracks: Iterable[Any], metric_time: datetime, *_: Any, **__: Any
+        self, config: Mapping[Any, Sequence[Any]], tracks: Collection[Any], metric_time: datetime, *_: Any, **__: Any
     ) -> Any:
         """The reward; 0 if there is no track."""
         platforms = [actionable for actionable in config if hasattr(actionable, "sensors")]
         carried = [sensor for platform in platforms for sensor in platform.sensors]
         alone = [actionable for actionable in config if not hasattr(actionable, "sensors")]
-        tracks = list(tracks) if isinstance(tracks, (list, tuple)) else set(tracks)
         if not tracks or not carried + alone:
             return (0.0, tracks) if self.return_tracks else 0.0
         nodes = nodes_of(platforms, list(dict.fromkeys([*carried, *alone])))
@@ -90,7 +90,7 @@ class SequentialGreedySensorManager(TeamManager):
             raise InputError("reward_function", "must be given, as CriterionReward(predictor)", None)
 
     def choose_actions(
-        self, tracks: Iterable[Any], timestamp: datetime, nchoose: int = 1, **_: Any
+        self, tracks: Collection[Any], timestamp: datetime, nchoose: int = 1, **_: Any
     ) -> list[dict[Any, tuple[Any, ...]]]:
         """Return ``[{actionable: actions}]``.
 

@@ -15,7 +15,7 @@ from ratt_opt.solvers.ratt import ratt
 from ratt_opt.solvers.refined import refined
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection
     from datetime import datetime
 
     from ratt_opt.certificates.certification import Certificate
@@ -62,7 +62,7 @@ class RobustSensorManager(TeamManager, TeamProblem):
         return None if self.last_step is None else self.last_step.problem
 
     def choose_actions(
-        self, tracks: Iterable[Any], timestamp: datetime, nchoose: int = 1, **_: Any
+        self, tracks: Collection[Any], timestamp: datetime, nchoose: int = 1, **_: Any
     ) -> list[dict[Any, tuple[Any, ...]]]:
         """Return ``[{actionable: actions}]``: for each platform and sensor what to do until ``timestamp``.
 
@@ -76,7 +76,7 @@ class RobustSensorManager(TeamManager, TeamProblem):
             raise InputError("nchoose", "must be 1: the best plan is one", nchoose)
         nodes = self.nodes
         self.last_step = self.last_result = self.last_certificate = None
-        if not (tracks := list(tracks) if isinstance(tracks, (list, tuple)) else set(tracks)):
+        if not tracks:
             return [{a: default_option(a, timestamp) for node in nodes for a in node.actionables}]
         choices = tuple(tuple(options(a, timestamp) for a in node.actionables) for node in nodes)
         if all(own == [()] for node in choices for own in node):
