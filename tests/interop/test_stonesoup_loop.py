@@ -16,9 +16,6 @@ import pytest
 pytest.importorskip("stonesoup", reason="Stone Soup is not installed: pip install ratt-opt[stonesoup]")
 
 from ordered_set import OrderedSet
-from stonesoup.architecture import InformationArchitecture
-from stonesoup.architecture.edge import Edge, Edges
-from stonesoup.architecture.node import FusionNode, SensorNode
 from stonesoup.dataassociator.neighbour import GNNWith2DAssignment
 from stonesoup.dataassociator.probability import JPDA
 from stonesoup.deleter.error import CovarianceBasedDeleter
@@ -287,6 +284,13 @@ def test_without_tracks_everyone_does_the_default() -> None:
 
 
 def test_a_star_of_stone_soups_own_nodes_says_who_is_linked() -> None:
+    pytest.importorskip(
+        "graphviz", reason="the extra of Stone Soup is not installed: pip install stonesoup[architectures]"
+    )
+    from stonesoup.architecture import InformationArchitecture
+    from stonesoup.architecture.edge import Edge, Edges
+    from stonesoup.architecture.node import FusionNode, SensorNode
+
     platforms = team(10, 3, n_steps=0, fov=360.0)
     sensors = [SensorNode(platform.sensors[0], label=str(i)) for i, platform in enumerate(platforms)]
     centre = FusionNode(tracker_of(ExtendedKalmanUpdater(None), jpda=False), label="centre")
