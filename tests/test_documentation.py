@@ -3,7 +3,7 @@
 The blocks of one page share a folder, and its Python blocks their names, in the order in which a reader meets them.
 The comment above a block may say: ``file: NAME``, it is the content of a file; ``output: COMMAND``, it is what the
 command prints; ``table: COMMAND``, the same for a table; ``elsewhere: FILE``, that test or script runs it; ``slow``, it
-takes minutes.
+takes minutes; ``needs: PACKAGE``, the rest of the page is skipped without that package of an extra.
 """
 
 from __future__ import annotations
@@ -59,6 +59,8 @@ def folder(tmp_path, monkeypatch):
 
 def run_block(block: Block, names: dict[str, object], folder: Path) -> None:
     kind, _, rest = block.mark.partition(": ")
+    if kind == "needs":
+        pytest.importorskip(rest, reason=f"{rest} is not installed")
     if kind in {"set-up", "elsewhere", "slow", "table"} or kind.startswith("output"):
         return
     if kind == "file":

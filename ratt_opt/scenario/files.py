@@ -64,6 +64,8 @@ def load_input(path: str | Path) -> Scenario | InformationInput:
     version = document.get("version")
     if version != _VERSION or isinstance(version, bool):
         raise FileFormatError(f"{path}: version", f"must be {_VERSION}", "nothing" if version is None else version)
+    if "payload" in document:
+        raise FileFormatError(f"{path}: payload", "is not a field of this format: payloads stay in memory", "a payload")
     try:
         return _KINDS[kind](**document)
     except InputError as error:

@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_serializer,
+    model_validator,
+)
+from pydantic.json_schema import SkipJsonSchema
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
@@ -14,6 +24,8 @@ from ratt_opt.scenario.problem_record import Link, ProblemRecord
 from ratt_opt.scenario.record import Number, Positive, Text, Whole, plain
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["InformationInput"]
@@ -27,6 +39,40 @@ LATER = ("output", "units", "element_headings", "element_controls")
 Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY), BeforeValidator(plain)]
 Matrix = tuple[tuple[Entry, ...], ...]
 Place = tuple[Number, Number]
+NUMBERS = (float, int, np.floating, np.integer)
+
+
+def _at_once(dimensions: int) -> WrapValidator:
+    """Accept entries together if NumPy reads them as numbers in range; otherwise look at each, to name the bad one."""
+
+    def accept(value: Any, one_by_one: ValidatorFunctionWrapHandler) -> Any:
+        try:
+            array = np.array(value, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            return one_by_one(value)
+        fine = array.ndim == dimensions and array.size > 0 and bool((np.abs(array) <= LARGEST_ENTRY).all())
+        if not fine or not all(issubclass(kind, NUMBERS) and kind is not bool for kind in _kinds(value, dimensions)):
+            return one_by_one(value)
+        return _as_tuples(array)
+
+    return WrapValidator(accept)
+
+
+def _kinds(value: Any, dimensions: int) -> set[type]:
+    """The types of the entries of nested lists or of an array: text and booleans become numbers in NumPy's hands."""
+    if isinstance(value, np.ndarray):
+        return {value.dtype.type}
+    for _ in range(dimensions - 1):
+        value = chain.from_iterable(value)
+    return set(map(type, value))
+
+
+def _as_tuples(array: FloatArray) -> tuple[Any, ...]:
+    """Nested tuples of Python's floats: each dimension takes that many neighbours of the one below together."""
+    parts: Iterator[Any] = iter(array.ravel().tolist())
+    for size in reversed(array.shape[1:]):
+        parts = zip(*[parts] * size, strict=True)
+    return tuple(parts)
 
 
 class InformationInput(ProblemRecord):
@@ -35,17 +81,20 @@ class InformationInput(ProblemRecord):
     ``prior`` : (M, d, d) predicted covariances; ``information`` : (E, M, d, d); ``robot`` : (E,) owner of
     each element; ``weights`` : (M,) or ``None``; ``labels`` : (E,) what each element is, or ``None``.
     ``output`` : (q, d) the part ``C x`` of every target's state that counts, for the trace and the max-eigenvalue;
-    ``None`` for the whole state. Links, budgets and protections are those of a scenario. For maps and tables only, each
-    optional: ``units`` : (d,) of the state's coordinates, such as ``["m", "m", "m/s", "m/s"]``; ``robot_names`` : (N,);
-    ``target_names`` : (M,); ``robot_positions`` : (N, 2) now, ``element_positions`` : (E, 2) and ``element_headings`` :
-    (E,) after each element's control, ``target_positions`` : (M, 2), all x, y [m] and angles [rad];
-    ``element_controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
+    ``None`` for the whole state. ``payload`` : (E,) objects of your own, one for each element, such as commands; they
+    stay in memory (no file holds them) and count neither for equality nor for the digest. Links, budgets and
+    protections are those of a scenario.
+
+    For maps and tables only, each optional: ``units`` : (d,) of the state's coordinates, such as ``["m", "m", "m/s",
+    "m/s"]``; ``robot_names`` : (N,); ``target_names`` : (M,); ``robot_positions`` : (N, 2) now, ``element_positions`` :
+    (E, 2) and ``element_headings`` : (E,) after each element's control, ``target_positions`` : (M, 2), all x, y [m] and
+    angles [rad]; ``element_controls`` : (E, 2) speed [m/s] and turn rate [rad/s].
     """
 
     format: Literal["ratt-opt information"] = "ratt-opt information"
     version: Literal[1] = 1
-    prior: Annotated[tuple[Matrix, ...], Field(min_length=1)]
-    information: Annotated[tuple[tuple[Matrix, ...], ...], Field(min_length=1)]
+    prior: Annotated[tuple[Matrix, ...], Field(min_length=1), _at_once(3)]
+    information: Annotated[tuple[tuple[Matrix, ...], ...], Field(min_length=1), _at_once(4)]
     robot: Annotated[tuple[Whole, ...], Field(min_length=1)]
     alpha_s: Whole
     alpha_c: Whole
@@ -64,6 +113,7 @@ class InformationInput(ProblemRecord):
     units: tuple[Text, ...] | None = None
     element_headings: tuple[Number, ...] | None = None
     element_controls: tuple[Place, ...] | None = None
+    payload: SkipJsonSchema[tuple[Any, ...] | None] = Field(default=None, exclude=True, repr=False)
 
     @model_serializer(mode="wrap")
     def _as_before(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -106,12 +156,20 @@ class InformationInput(ProblemRecord):
         """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
         return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
 
+    def replace(self, **changes: Any) -> Self:
+        """As for any record; the payload stays unless it is changed."""
+        return super().replace(**({"payload": self.payload} | changes))
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: value for name, value in super()._fields().items() if name != "payload"}
+
     def _check_lengths(self) -> None:
         for name, length, of in (
             ("robot_names", self.n_robots, "robot"),
             ("target_names", self.n_targets, "target"),
             ("robot_positions", self.n_robots, "robot"),
             ("element_positions", len(self.robot), "element"),
+            ("payload", len(self.robot), "element"),
             ("target_positions", self.n_targets, "target"),
             ("element_headings", len(self.robot), "element"),
             ("element_controls", len(self.robot), "element"),

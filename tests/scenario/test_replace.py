@@ -126,7 +126,8 @@ def test_a_field_is_changed_in_a_checked_copy(record: Record, name: str, good: o
 
 def test_no_field_is_left_out() -> None:
     for record, fields in GOOD_AND_BAD:
-        assert fields.keys() == type(record).model_fields.keys()
+        own = {"payload"}  # does not count for equality: see test_information_input.py
+        assert fields.keys() == type(record).model_fields.keys() - own
     with pytest.raises(InputError, match="colour is not a field"):
         SCENARIO.replace(colour="red")
 

@@ -1,0 +1,4 @@
+"""Adapters to other frameworks, each an extra of its own; nothing in ``ratt_opt`` imports them.
+
+``stonesoup`` : the tracking framework Stone Soup (``pip install ratt-opt[stonesoup]``); read ``manager.py`` first.
+"""
