@@ -12,6 +12,7 @@ from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.descent import Descent
 from ratt_opt.solvers.maxmin.levels.elements import Elements
+from ratt_opt.solvers.maxmin.levels.packed import LARGEST_DIMENSION
 from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
 
@@ -78,9 +79,9 @@ class UpperEnds:
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:
-    """The search where robots see few targets, if the criterion is a sum over targets: trace or log-det."""
+    """The search where robots see few targets, if the criterion is trace or log-det, of up to 16 dimensions."""
     objective = known.task.objective
-    if objective.compiled_code not in SUMS:
+    if objective.compiled_code not in SUMS or objective.dimension > LARGEST_DIMENSION:
         return None
     seen = np.trace(objective.information, axis1=-2, axis2=-1) > 0
     if seen.mean() > 1 - UNSEEN:
