@@ -5,6 +5,7 @@
    before. A dead end that does not depend on what a frame fixed is one of the frame before, too. So both are left at
    once, and the frames and steps on which nothing depends do not enter the proof (conflict-directed backjumping,
    Prosser 1993). An element that was fixed in a frame is forbidden once that frame was a dead end. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "covers.h"
@@ -285,6 +286,6 @@ EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *co
             *outcome = PLAN;
         }
     }
-    release(&scratch);
+    free(scratch.memory);
     return 0;
 }

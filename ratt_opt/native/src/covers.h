@@ -66,6 +66,7 @@ typedef struct {
 
 /* Memory that a call works in. */
 typedef struct {
+    void *memory;
     double *sums, *values, *more, *after; /* (targets, entries), (targets) */
     double *bound;                        /* (robots, targets, entries) */
     double *order, *price, *most, *rises; /* (elements), (elements), (robots), (robots) */
@@ -74,9 +75,8 @@ typedef struct {
     uint8_t *blinded, *may, *kept;        /* (groups, robots), (elements) */
 } Scratch;
 
-/* Set up memory for some groups; 1 where it is short, else 0. To be freed by `release`. */
+/* Set up memory for some groups, `memory` to be freed; 1 where it is short, else 0. */
 int prepare_scratch(Scratch *scratch, const Choices *choices, int64_t groups);
-void release(Scratch *scratch);
 
 /* Keep further elements of a group, `inside` (elements), while its bound stays at most `level`. `kept`: those kept so
    far, whose bound is at most the level. `sums` (targets, entries) is set to the posterior information at which the bound

@@ -19,31 +19,23 @@ static const double NO_PRICE = 1e-3;
 
 int prepare_scratch(Scratch *scratch, const Choices *choices, int64_t groups) {
     int64_t robots = choices->robots, elements = choices->all.elements, targets = choices->all.targets, width = width_of(&choices->all);
-    double *memory = calloc((size_t)(2 * width + 2 * targets + robots * width + 2 * elements + 3 * robots + groups), sizeof(double));
-    uint8_t *bytes = calloc((size_t)(groups * robots + 2 * elements + 1), 1);
-    if (!memory || !bytes) {
-        free(memory);
-        free(bytes);
-        return 1;
-    }
-    scratch->sums = memory, memory += width;
-    scratch->more = memory, memory += width;
-    scratch->values = memory, memory += targets;
-    scratch->after = memory, memory += targets;
-    scratch->bound = memory, memory += robots * width;
-    scratch->order = memory, memory += elements;
-    scratch->price = memory, memory += elements;
-    scratch->most = memory, memory += robots;
-    scratch->rises = memory, memory += robots;
-    scratch->conflict = (uint64_t *)memory, memory += robots;
-    scratch->needs = (int64_t *)memory;
-    scratch->blinded = bytes, scratch->may = bytes + groups * robots, scratch->kept = scratch->may + elements;
+    int64_t cells = (robots + 2) * width + 2 * targets + 2 * elements + 3 * robots + groups, bytes = groups * robots + 2 * elements;
+    double *next = scratch->memory = calloc((size_t)(8 * cells + bytes + 1), 1);
+    if (!next) return 1;
+    scratch->sums = next, next += width;
+    scratch->more = next, next += width;
+    scratch->bound = next, next += robots * width;
+    scratch->values = next, next += targets;
+    scratch->after = next, next += targets;
+    scratch->order = next, next += elements;
+    scratch->price = next, next += elements;
+    scratch->most = next, next += robots;
+    scratch->rises = next, next += robots;
+    scratch->conflict = (uint64_t *)next, next += robots;
+    scratch->needs = (int64_t *)next, next += groups;
+    scratch->blinded = (uint8_t *)next;
+    scratch->may = scratch->blinded + groups * robots, scratch->kept = scratch->may + elements;
     return 0;
-}
-
-void release(Scratch *scratch) {
-    free(scratch->sums);
-    free(scratch->blinded);
 }
 
 /* Lose targets of a group until the rest is worth at most `level`; the price of all elements that see a lost one.
@@ -183,6 +175,6 @@ EXPORTED int keep_elements(const Choices *choices, const uint8_t *inside, const 
     Scratch scratch;
     if (prepare_scratch(&scratch, choices, 0)) return 1;
     *paid = keep(choices, inside, price, level, kept, sums, &scratch);
-    release(&scratch);
+    free(scratch.memory);
     return 0;
 }
