@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.descent import Descent
 from ratt_opt.solvers.maxmin.levels.elements import Elements
-from ratt_opt.solvers.maxmin.levels.packed import LARGEST_DIMENSION
 from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked
 from ratt_opt.setfunctions.information import triangles
@@ -15,10 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["LARGEST_DIMENSION", "ElementsRecord", "PackedElements"]
-
-LARGEST_DIMENSION = 16
-"""Of states, in the loops."""
+__all__ = ["ElementsRecord", "PackedElements"]
 
 
 class ElementsRecord(Structure):
