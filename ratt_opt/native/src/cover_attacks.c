@@ -126,8 +126,9 @@ int64_t new_cover(const Choices *choices, const Ways *ways, Covers *covers, cons
         const int64_t *of = ways->of + p * ways->widest;
         for (int64_t place = 0; place < ways->widest && of[place] >= 0 && need <= alpha; place++) {
             int64_t g = of[place];
+            uint8_t *blinded = scratch->blinded + g * robots;
             if (scratch->needs[g] < 0)
-                scratch->needs[g] = blind(choices, strongest, ways->members + g * robots, level, alpha, scratch->blinded + g * robots, scratch);
+                scratch->needs[g] = blind(choices, strongest, ways->members + g * robots, level, alpha, blinded, scratch);
             need += scratch->needs[g];
         }
         if (need > alpha) continue;

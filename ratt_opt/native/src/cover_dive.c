@@ -241,8 +241,7 @@ static int64_t most_left_out(const Choices *choices, const Covers *covers, int64
 
 /* Fix an element of the robot that took part in most dead ends for each of its elements; whether one was left. */
 static int fix(const Choices *choices, const Covers *covers, Stack *stack) {
-    int64_t robots = choices->robots, row = stack->frame * robots, robot = -1;
-    size_t width = (size_t)width_of(&choices->all);
+    int64_t robots = choices->robots, row = stack->frame * robots, robot = -1, width = robots * width_of(&choices->all);
     double most = -1.0;
     for (int64_t i = 0; i < robots; i++) {
         int count = size_of(stack->allowed[row + i]);
@@ -256,15 +255,15 @@ static int fix(const Choices *choices, const Covers *covers, Stack *stack) {
     stack->first[frame] = stack->count;
     memcpy(stack->allowed + row + robots, stack->allowed + row, (size_t)robots * sizeof(uint64_t));
     memcpy(stack->touched + row + robots, stack->touched + row, (size_t)robots * sizeof(int64_t));
-    memcpy(stack->strongest + (size_t)(row + robots) * width, stack->strongest + (size_t)row * width, (size_t)robots * width * sizeof(double));
+    memcpy(stack->strongest + frame * width, stack->strongest + (frame - 1) * width, (size_t)width * sizeof(double));
     forbid(choices, stack, robot, allowed & ~bit(best));
     return 1;
 }
 
 /* Search on for some nodes; *outcome says how that ended. `most`: partitions that are tried at a node. 1 where memory is
    short, else 0. */
-EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Record *record,
-                            double level, int64_t nodes, int64_t most, int *outcome) {
+EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack,
+                            Record *record, double level, int64_t nodes, int64_t most, int *outcome) {
     Scratch scratch;
     if (prepare_scratch(&scratch, choices, ways->groups)) return 1;
     *outcome = SPENT;

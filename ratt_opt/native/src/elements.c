@@ -8,7 +8,8 @@
 #include "team.h"
 
 double gained(const Elements *all, int64_t target, const double *matrix) {
-    double criterion = all->criterion == TRACE ? trace_of_inverse(all->dimension, matrix) : -log_determinant(all->dimension, matrix);
+    int d = all->dimension;
+    double criterion = all->criterion == TRACE ? trace_of_inverse(d, matrix) : -log_determinant(d, matrix);
     return all->baseline[target] - all->weights[target] * criterion;
 }
 
@@ -59,8 +60,10 @@ void bound_robot(const Choices *choices, int64_t robot, uint64_t mask, double *b
     memset(bound, 0, (size_t)width_of(all) * sizeof(double));
     for (; mask; mask &= mask - 1) {
         int64_t e = choices->element[robot * choices->widest + lowest(mask)];
-        for (int64_t j = 0; j < all->targets; j++)
-            if (sees(all, e, j)) raised(all->dimension, bound + j * all->entries, information_of(all, e, j), bound + j * all->entries);
+        for (int64_t j = 0; j < all->targets; j++) {
+            double *own = bound + j * all->entries;
+            if (sees(all, e, j)) raised(all->dimension, own, information_of(all, e, j), own);
+        }
     }
 }
 

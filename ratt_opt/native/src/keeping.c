@@ -18,7 +18,8 @@
 static const double NO_PRICE = 1e-3;
 
 int prepare_scratch(Scratch *scratch, const Choices *choices, int64_t groups) {
-    int64_t robots = choices->robots, elements = choices->all.elements, targets = choices->all.targets, width = width_of(&choices->all);
+    int64_t robots = choices->robots, elements = choices->all.elements, targets = choices->all.targets;
+    int64_t width = width_of(&choices->all);
     int64_t cells = (robots + 2) * width + 2 * targets + 2 * elements + 3 * robots + groups, bytes = groups * robots + 2 * elements;
     double *next = scratch->memory = calloc((size_t)(8 * cells + bytes + 1), 1);
     if (!next) return 1;
@@ -82,8 +83,10 @@ EXPORTED int lose_all(const Choices *choices, int64_t groups, const uint8_t *ins
     double *costs = calloc((size_t)targets + 1, sizeof(double));
     uint8_t *lost = calloc((size_t)targets + 1, 1);
     int is_short = !costs || !lost;
-    for (int64_t g = 0; g < groups && !is_short; g++)
-        paid[g] = lose(all, inside + g * elements, price, values + g * targets, level, noise + g * targets, out + g * elements, costs, lost);
+    for (int64_t g = 0; g < groups && !is_short; g++) {
+        int64_t e = g * elements, j = g * targets;
+        paid[g] = lose(all, inside + e, price, values + j, level, noise + j, out + e, costs, lost);
+    }
     free(costs);
     free(lost);
     return is_short;
