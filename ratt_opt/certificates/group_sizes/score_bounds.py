@@ -12,7 +12,6 @@ from math import floor
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import minimize
 
 from ratt_opt.certificates.verifier.lower_end.link_scores import UNIT, LinkScores
 from ratt_opt.graph.link_scores import SHARES, most_scores
@@ -146,6 +145,8 @@ def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: flo
         if top.value < below:
             raise StopIteration
         return top.value, top.place - top.place**2
+
+    from scipy.optimize import minimize  # a third of a second
 
     with suppress(StopIteration):
         minimize(value, start, jac=True, method="L-BFGS-B", options={"maxiter": STEPS, "maxfun": STEPS})

@@ -23,8 +23,6 @@ from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from ratt_opt.highs import LinearProgram, rows_of
 
@@ -153,6 +151,9 @@ class TreeProgram:
 
     def _needed(self, point: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
         """What each robot's group keeps of every robot at ``point``; lengths and last steps of shortest paths."""
+        from scipy.sparse import csr_array  # a quarter of a second
+        from scipy.sparse.csgraph import dijkstra
+
         length, blind = np.maximum(point[: self.n_links], 0.0) + SHORT, point[self.n_links :]
         sides = (np.concatenate([self.ends[:, 0], self.ends[:, 1]]), np.concatenate([self.ends[:, 1], self.ends[:, 0]]))
         graph = csr_array((np.concatenate([length, length]), sides), shape=(self.n_robots, self.n_robots))

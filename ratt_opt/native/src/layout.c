@@ -1,7 +1,11 @@
-/* Sizes of the records that Python makes, for the test that both sides mean the same. */
+/* Sizes of the records that Python makes, for the tests that both sides mean the same. */
+#include <string.h>
+
+#include "covers.h"
+#include "marginals.h"
 #include "records.h"
-#include "team.h"
 #include "sets.h"
+#include "team.h"
 
 EXPORTED void layout(int64_t *sizes) {
     sizes[0] = sizeof(Team);
@@ -9,4 +13,11 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[2] = sizeof(Level);
     sizes[3] = sizeof(LowSets);
     sizes[4] = sizeof(Anneal);
+}
+
+/* Those of the searches for best plans. */
+EXPORTED void layout_of_searches(int64_t *sizes) {
+    const int64_t all[] = {sizeof(Choices), sizeof(Ways), sizeof(Covers), sizeof(Sums), sizeof(Step), sizeof(Stack),
+                           sizeof(Node), sizeof(Record), sizeof(Choosers), sizeof(Attacks), sizeof(Path), sizeof(Gains)};
+    memcpy(sizes, all, sizeof(all));
 }

@@ -6,7 +6,8 @@
 
 #include "sets.h"
 
-enum { SWEEPS = 10, PRODUCTS = 8 }; /* ratios of determinants below one logarithm: each is below 1e31, see information.py, WIDEST */
+enum { SWEEPS = 10 };  /* of rotations: what is left then beside the diagonal is rounding */
+enum { PRODUCTS = 8 }; /* ratios of determinants below one logarithm: each is below 1e31, see information.py, WIDEST */
 
 int entries_of(const Team *team) { return team->dimension * (team->dimension + 1) / 2; }
 
@@ -21,9 +22,19 @@ static void factorise(int d, const double *matrix, double *factor) {
         }
 }
 
-/* The trace of the inverse: the sum of squares of the entries of L^-1, column by column. */
-static double trace_of_inverse(int d, const double *factor) {
-    double total = 0.0, column[LARGEST_DIMENSION];
+static double planar_criterion(int criterion, const double *matrix) {
+    double a = matrix[0], b = matrix[1], c = matrix[2], determinant = a * c - b * b;
+    if (criterion == LOG_DET) return determinant;
+    if (criterion == TRACE) return (a + c) / determinant;
+    double half = (a - c) / 2;
+    return ((a + c) / 2 + sqrt(half * half + b * b)) / determinant;
+}
+
+/* The sum of squares of the entries of L^-1, column by column. */
+double trace_of_inverse(int d, const double *matrix) {
+    if (d == 2) return planar_criterion(TRACE, matrix);
+    double total = 0.0, factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2], column[LARGEST_DIMENSION];
+    factorise(d, matrix, factor);
     for (int j = 0; j < d; j++)
         for (int i = j; i < d; i++) {
             const double *row = factor + i * (i + 1) / 2;
@@ -35,30 +46,40 @@ static double trace_of_inverse(int d, const double *factor) {
     return total;
 }
 
-static double log_determinant(int d, const double *factor) {
-    double total = 0.0;
+double log_determinant(int d, const double *matrix) {
+    if (d == 2) return log(planar_criterion(LOG_DET, matrix));
+    double total = 0.0, factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
+    factorise(d, matrix, factor);
     for (int i = 0; i < d; i++) total += 2.0 * log(factor[i * (i + 3) / 2]);
     return total;
 }
 
-/* Jacobi's rotation of a symmetric matrix: its entry (p, q) becomes 0. */
-static void rotate(int d, double matrix[][LARGEST_DIMENSION], int p, int q) {
-    if (matrix[p][q] == 0.0) return;
-    double angle = 0.5 * atan2(2.0 * matrix[p][q], matrix[q][q] - matrix[p][p]), cosine = cos(angle), sine = sin(angle);
-    for (int k = 0; k < d; k++) {
-        double x = matrix[k][p], y = matrix[k][q];
-        matrix[k][p] = cosine * x - sine * y, matrix[k][q] = sine * x + cosine * y;
-    }
-    for (int k = 0; k < d; k++) {
-        double x = matrix[p][k], y = matrix[q][k];
-        matrix[p][k] = cosine * x - sine * y, matrix[q][k] = sine * x + cosine * y;
-    }
+static void turn(double *x, double *y, double cosine, double sine) {
+    double was = *x;
+    *x = cosine * was - sine * *y;
+    *y = sine * was + cosine * *y;
 }
 
-/* The largest eigenvalue of the inverse, L^-T L^-1. After SWEEPS of rotations what is left beside the diagonal is
-   rounding. */
-static double largest_of_inverse(int d, const double *factor) {
+/* Jacobi's rotation: the entry (p, q) becomes 0. */
+static void rotate(int d, double matrix[][LARGEST_DIMENSION], double axes[][LARGEST_DIMENSION], int p, int q) {
+    if (matrix[p][q] == 0.0) return;
+    double angle = 0.5 * atan2(2.0 * matrix[p][q], matrix[q][q] - matrix[p][p]), cosine = cos(angle), sine = sin(angle);
+    for (int k = 0; k < d; k++) turn(&matrix[k][p], &matrix[k][q], cosine, sine);
+    for (int k = 0; k < d; k++) turn(&matrix[p][k], &matrix[q][k], cosine, sine);
+    for (int k = 0; k < d && axes; k++) turn(&axes[k][p], &axes[k][q], cosine, sine);
+}
+
+void diagonalise(int d, double matrix[][LARGEST_DIMENSION], double axes[][LARGEST_DIMENSION]) {
+    for (int sweep = 0; sweep < SWEEPS; sweep++)
+        for (int p = 0; p < d - 1; p++)
+            for (int q = p + 1; q < d; q++) rotate(d, matrix, axes, p, q);
+}
+
+/* The largest eigenvalue of the inverse, L^-T L^-1. */
+static double largest_of_inverse(int d, const double *packed) {
+    double factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
     double inverse[LARGEST_DIMENSION][LARGEST_DIMENSION] = {{0}}, matrix[LARGEST_DIMENSION][LARGEST_DIMENSION] = {{0}};
+    factorise(d, packed, factor);
     for (int j = 0; j < d; j++)
         for (int i = j; i < d; i++) {
             const double *row = factor + i * (i + 1) / 2;
@@ -70,29 +91,18 @@ static double largest_of_inverse(int d, const double *factor) {
         for (int j = 0; j < d; j++) {
             for (int k = i > j ? i : j; k < d; k++) matrix[i][j] += inverse[k][i] * inverse[k][j];
         }
-    for (int sweep = 0; sweep < SWEEPS; sweep++)
-        for (int p = 0; p < d - 1; p++)
-            for (int q = p + 1; q < d; q++) rotate(d, matrix, p, q);
+    diagonalise(d, matrix, NULL);
     double largest = matrix[0][0];
     for (int i = 1; i < d; i++) largest = fmax(largest, matrix[i][i]);
     return largest;
 }
 
-static double planar_criterion(int criterion, const double *matrix) {
-    double a = matrix[0], b = matrix[1], c = matrix[2], determinant = a * c - b * b;
-    if (criterion == LOG_DET) return determinant;
-    if (criterion == TRACE) return (a + c) / determinant;
-    double half = (a - c) / 2;
-    return ((a + c) / 2 + sqrt(half * half + b * b)) / determinant;
-}
-
 static double any_criterion(const Team *team, const double *matrix) {
-    if (team->dimension == 2) return planar_criterion(team->criterion, matrix);
-    double factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
-    factorise(team->dimension, matrix, factor);
-    if (team->criterion == TRACE) return trace_of_inverse(team->dimension, factor);
-    if (team->criterion == LOG_DET) return log_determinant(team->dimension, factor);
-    return largest_of_inverse(team->dimension, factor);
+    int d = team->dimension;
+    if (d == 2) return planar_criterion(team->criterion, matrix);
+    if (team->criterion == TRACE) return trace_of_inverse(d, matrix);
+    if (team->criterion == LOG_DET) return log_determinant(d, matrix);
+    return largest_of_inverse(d, matrix);
 }
 
 /* Fill `before` and `before_all` of a team whose other fields are set. */

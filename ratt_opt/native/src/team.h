@@ -19,6 +19,14 @@ typedef struct {
 
 int entries_of(const Team *team);
 
+/* The trace of the inverse of a packed positive definite matrix, and the logarithm of its determinant. */
+double trace_of_inverse(int dimension, const double *matrix);
+double log_determinant(int dimension, const double *matrix);
+
+/* Rotate a symmetric matrix until what is left beside its diagonal is rounding; `axes`, unless it is NULL, become its
+   columns' axes where it was the unit matrix. */
+void diagonalise(int dimension, double matrix[][LARGEST_DIMENSION], double axes[][LARGEST_DIMENSION]);
+
 /* Value of the posterior information `sums` (targets, entries). */
 double value_of(const Team *team, const double *sums);
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
@@ -78,9 +79,9 @@ class UpperEnds:
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:
-    """The search if robots see few targets, if the criterion is a sum over targets: trace or log-det."""
+    """The search if robots see few targets and the criterion is trace or log-det, of up to 64 dimensions."""
     objective = known.task.objective
-    if objective.compiled_code not in SUMS:
+    if objective.compiled_code not in SUMS or objective.dimension > LARGEST_DIMENSION:
         return None
     seen = np.trace(objective.information, axis1=-2, axis2=-1) > 0
     if seen.mean() > 1 - UNSEEN:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.covers.choices import MOST_CHOICES
 from ratt_opt.solvers.maxmin.covers.cover import cover_bound
-from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM
-from ratt_opt.solvers.maxmin.covers.pool import MOST_CHOICES
 from ratt_opt.solvers.maxmin.covers.records import DiveProof
 from ratt_opt.solvers.maxmin.covers.search import CoverLevelSearch
 from ratt_opt.solvers.maxmin.covers.separation import Separation
+from ratt_opt.solvers.maxmin.covers.tables import BY_COVER, BY_SUM
 from ratt_opt.solvers.maxmin.levels.by_levels import SearchByLevels
 
 if TYPE_CHECKING:
@@ -61,8 +61,7 @@ class CoverSearch(SearchByLevels):
     def _keep(self, search: LevelSearch) -> None:
         """Take what a search proved; its covers are stated now, since what numbers them changes."""
         assert isinstance(search, CoverLevelSearch)
-        record, pool = search.dive.record, self._separation.pool
-        nodes = record.nodes[: int(record.size[0])]
+        nodes, pool = search.dive.record.nodes, self._separation.pool
         by_cover = nodes[nodes[:, 0] == BY_COVER, 1]
         in_sums = [search.sums.leaves[r].covers for r in np.unique(nodes[nodes[:, 0] == BY_SUM, 1]).tolist()]
         used = np.unique(np.concatenate([by_cover, *(np.array(own, dtype=np.int64) for own in in_sums)])).tolist()

@@ -2,80 +2,44 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.covers.tables import Covers
+
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
-    from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.covers.choices import Choices
 
-__all__ = ["MOST_CHOICES", "CoverPool", "Covers", "Places"]
+__all__ = ["CoverPool"]
 
 FIRST_ROOM, GROWTH = 256, 2
 MOST_VIOLATED = 8
 NEGLIGIBLE = 1e-6
-MOST_CHOICES = 64
-"""Elements of one robot: those that are left out are a mask of this many bits."""
-
-
-class Places(NamedTuple):
-    """``bit`` (E,) : an element's place among its robot's; ``element`` (N, C) : the element at each, or -1."""
-
-    owner: Any
-    bit: Any
-    element: Any
-
-
-class Covers(NamedTuple):
-    """Covers by number, the first ``size[0]`` of each array.
-
-    ``left_out`` (K, N) : masks of elements; ``partition`` (K,); ``sums`` (K, S, M, T) : posterior information at which
-    the tangents of the partition's groups touch; ``level`` (K,) : the least level that the cover is true for
-    """
-
-    left_out: Any
-    partition: Any
-    sums: Any
-    level: Any
-    size: Any
 
 
 class CoverPool:
     """Covers over the elements of one problem."""
 
-    def __init__(self, problem: Problem, packed_shape: tuple[int, ...]) -> None:
-        self.places = _places(problem)
-        self._shape = packed_shape
+    def __init__(self, choices: Choices) -> None:
+        self._choices = choices
         self._known: dict[tuple[int, bytes], int] = {}
         self._counted = 0
-        self._dense = np.zeros((0, problem.objective.n))
-        self.covers = Covers(
-            np.zeros((FIRST_ROOM, problem.n_robots), dtype=np.uint64),
-            np.zeros(FIRST_ROOM, dtype=np.int64),
-            np.zeros((FIRST_ROOM, 1, *packed_shape)),
-            np.zeros(FIRST_ROOM),
-            np.zeros(1, dtype=np.int64),
-        )
+        self._dense = np.zeros((0, choices.elements.count))
+        self.covers = Covers(choices, FIRST_ROOM, 1)
 
     def __len__(self) -> int:
-        return int(self.covers.size[0])
+        return int(self.covers.record.size)
 
     def grow(self, groups: int = 0) -> None:
         """Make room for twice the covers, or for partitions into that many groups."""
         old = self.covers
-        room = len(old.left_out) * (1 if groups > old.sums.shape[1] else GROWTH)
-        wide = max(groups, old.sums.shape[1])
-        grown = Covers(
-            np.zeros((room, old.left_out.shape[1]), dtype=np.uint64),
-            np.zeros(room, dtype=np.int64),
-            np.zeros((room, wide, *self._shape)),
-            np.zeros(room),
-            old.size,
-        )
-        for new, was in zip(grown[:-1], old[:-1], strict=True):
+        room = old.room * (1 if groups > old.groups else GROWTH)
+        self.covers = Covers(self._choices, room, max(groups, old.groups))
+        self.covers.record.size = old.record.size
+        for new, was in zip(self.covers.arrays, old.arrays, strict=True):
             new[tuple(map(slice, was.shape))] = was
-        self.covers = grown
 
     def add(self, partition: int, left_out: BoolArray, sums: list[FloatArray], level: float) -> int:
         """Add a cover unless it is known; its number. ``left_out`` : (E,)"""
@@ -86,19 +50,19 @@ class CoverPool:
             if level < self.covers.level[known]:
                 self.covers.level[known], self.covers.sums[known, : len(sums)] = level, sums
             return known
-        if len(self) == len(self.covers.left_out) or len(sums) > self.covers.sums.shape[1]:
+        if len(self) == self.covers.room or len(sums) > self.covers.groups:
             self.grow(len(sums))
         k = len(self)
         self.covers.left_out[k], self.covers.partition[k], self.covers.level[k] = masks, partition, level
         self.covers.sums[k, : len(sums)] = sums
-        self.covers.size[0] = k + 1
+        self.covers.record.size = k + 1
         self._count()
         return k
 
     def left_out(self, cover: int) -> BoolArray:
         """(E,) which elements a cover leaves out."""
-        masks = self.covers.left_out[cover][self.places.owner]
-        return np.asarray(masks >> self.places.bit.astype(np.uint64) & np.uint64(1), dtype=np.bool_)
+        masks = self.covers.left_out[cover][self._choices.owner]
+        return np.asarray(masks >> self._choices.bit.astype(np.uint64) & np.uint64(1), dtype=np.bool_)
 
     def violated(self, price: FloatArray, enough: float, level: float) -> list[int]:
         """Covers, true for a level, of which less than ``enough`` is paid, the worst first; ``price`` : (E,) paid."""
@@ -110,9 +74,9 @@ class CoverPool:
     def keep_latest(self, count: int) -> None:
         """Forget all but the covers that were found last; they are numbered anew."""
         first = max(len(self) - count, 0)
-        for array in self.covers[:-1]:
+        for array in self.covers.arrays:
             array[: len(self) - first] = array[first : len(self)].copy()
-        self.covers.size[0] = len(self) - first
+        self.covers.record.size = len(self) - first
         self._known.clear()
         self._counted = 0
         self._count()
@@ -130,16 +94,6 @@ class CoverPool:
     def _masks(self, left_out: BoolArray) -> Any:
         out = np.zeros(self.covers.left_out.shape[1], dtype=np.uint64)
         chosen = np.flatnonzero(left_out)
-        bits = np.uint64(1) << self.places.bit[chosen].astype(np.uint64)
-        np.bitwise_or.at(out, self.places.owner[chosen], bits)
+        bits = np.uint64(1) << self._choices.bit[chosen].astype(np.uint64)
+        np.bitwise_or.at(out, self._choices.owner[chosen], bits)
         return out
-
-
-def _places(problem: Problem) -> Places:
-    widest = max(map(len, problem.choices))
-    bit = np.zeros(problem.objective.n, dtype=np.int64)
-    element = np.full((problem.n_robots, widest), -1, dtype=np.int64)
-    for i, choice in enumerate(problem.choices):
-        bit[choice] = np.arange(len(choice))
-        element[i, : len(choice)] = choice
-    return Places(np.array(problem.robot), bit, element)

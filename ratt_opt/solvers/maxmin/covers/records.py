@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.covers.loops.tables import BY_COVER, BY_SUM, TRIED
+from ratt_opt.solvers.maxmin.covers.tables import BY_COVER, BY_SUM, TRIED
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 
 if TYPE_CHECKING:

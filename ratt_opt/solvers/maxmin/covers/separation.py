@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.problem import Attack
-from ratt_opt.setfunctions.information import from_triangles, triangles
+from ratt_opt.setfunctions.information import from_triangles
+from ratt_opt.solvers.maxmin.covers.choices import Choices
 from ratt_opt.solvers.maxmin.covers.cover import Cover
-from ratt_opt.solvers.maxmin.covers.loops.tables import Team, Ways
 from ratt_opt.solvers.maxmin.covers.partitions import Partitions
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
+from ratt_opt.solvers.maxmin.covers.tables import Ways
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -32,41 +33,15 @@ class Separation:
     """Finds covers of one problem for any level, and puts them into its ``pool``."""
 
     def __init__(self, problem: Problem) -> None:
-        from ratt_opt.solvers.maxmin.covers.loops import keeping, team  # compile
-
-        self._keeping, self._loops, self.problem = keeping, team, problem
-        self.partitions = Partitions(problem)
+        self.problem, self.choices = problem, Choices.of(problem)
+        self.partitions, self.pool = Partitions(problem), CoverPool(self.choices)
         self._rng = np.random.default_rng(0)
-        prior = triangles(problem.information_objective.prior_information)
-        self.pool = CoverPool(problem, prior.shape)
-        self.team = self._team(prior)
-        self.enough = self.team.enough
-        self.count = self.team.count[self.team.owner]
+        self.enough = self.choices.enough
+        self.count = self.choices.count[self.choices.owner]
         """(E,) what an element counts in a cover that leaves it out; ``enough`` have to be counted."""
-        self._strongest = team.strongest_of(self.team)
         self._inside = np.zeros((0, problem.objective.n), dtype=np.bool_)
-        self._values = np.zeros((0, len(prior)))
+        self._values = np.zeros((0, self.choices.elements.targets))
         self._order = np.zeros(0, dtype=np.int64)
-
-    def _team(self, prior: FloatArray) -> Team:
-        objective = self.problem.information_objective
-        safe = np.isin(np.arange(self.problem.n_robots), list(self.problem.protected_robots))
-        enough = float(min(self.problem.alpha_s, self.problem.threat.n_blinded) + 1)
-        assert objective.compiled_code is not None
-        return Team(
-            code=objective.compiled_code,
-            weights=np.array(objective.weights),
-            baseline=objective.criterion(objective.prior_information),
-            prior=prior,
-            information=triangles(objective.information),
-            sees=np.trace(objective.information, axis1=-2, axis2=-1) > 0,
-            owner=self.pool.places.owner,
-            bit=self.pool.places.bit,
-            element=self.pool.places.element,
-            count=np.where(safe, enough, 1.0),
-            safe=safe,
-            enough=enough,
-        )
 
     def ways(self) -> Ways:
         """Ways to cut links as the loops of a dive read them; their order is kept from one to the next."""
@@ -77,9 +52,7 @@ class Separation:
             padded = np.full((len(of), max(map(len, of))), -1, dtype=np.int64)
             for row, own in zip(padded, of, strict=True):
                 row[: len(own)] = own
-            self._ways = Ways(self.partitions.members(), self._inside, padded, self._order)
-            if padded.shape[1] > self.pool.covers.sums.shape[1]:
-                self.pool.grow(padded.shape[1])
+            self._ways = Ways(self.choices, self.partitions.members(), self._inside, padded, self._order)
         return self._ways
 
     def _update(self) -> None:
@@ -88,17 +61,15 @@ class Separation:
         if known == len(self.partitions.groups):
             return
         members = self.partitions.members()[known:]
-        values = self._loops.group_values(self.team, self._strongest, members)
-        self._inside = np.concatenate([self._inside, members[:, self.team.owner]])
-        self._values = np.concatenate([self._values, values])
+        self._inside = np.concatenate([self._inside, np.take(members, self.choices.owner, axis=1)])
+        self._values = np.concatenate([self._values, self.choices.group_values(members)])
 
     def violated(self, x: FloatArray, level: float, most: float) -> list[int]:
         """Covers for a level of which a relaxed plan ``x`` (E,) counts less than ``most``, the worst first."""
         self._update()
         price = x * self.count
-        kept = np.empty_like(self._inside)
         noise = self._rng.uniform(1 - NOISE, 1 + NOISE, self._values.shape)
-        paid = self._keeping.lose_all(self.team.sees, self._inside, price, self._values, level, noise, kept)
+        paid, kept = self.choices.lose(self._inside, price, self._values, level, noise)
         totals = np.array([paid[own].sum() for own in self.partitions.of])
         completed: dict[int, FloatArray] = {}
         found = []
@@ -108,7 +79,7 @@ class Separation:
             own = self.partitions.of[p].tolist()
             for g in own:
                 if g not in completed:
-                    paid[g], completed[g] = self._complete(g, kept[g], price, level)
+                    paid[g], completed[g] = self.choices.keep(self._inside[g], price, level, kept[g])
             if (counted := float(paid[own].sum())) < most - NEGLIGIBLE:
                 found.append((counted, p))
         found.sort()
@@ -122,19 +93,14 @@ class Separation:
         p = self.partitions.add_cut(attack.links)
         self._update()
         kept = np.zeros_like(self._inside)
-        chosen = np.zeros(len(self.team.owner), dtype=np.bool_)
+        chosen = np.zeros(self.choices.elements.count, dtype=np.bool_)
         chosen[[e for i, e in enumerate(plan.tolist()) if i not in attack.sensing]] = True
         price = self._rng.uniform(0.5, 1.0, len(chosen))
         completed = {}
         for g in self.partitions.of[p].tolist():
             kept[g] = chosen & self._inside[g]
-            completed[g] = self._complete(g, kept[g], price, level)[1]
+            completed[g] = self.choices.keep(self._inside[g], price, level, kept[g])[1]
         return self._cover(p, kept, completed, level)
-
-    def _complete(self, group: int, kept: BoolArray, price: FloatArray, level: float) -> tuple[float, FloatArray]:
-        sums = np.empty_like(self.team.prior)
-        paid = self._keeping.keep(self.team, self._inside[group], price, level, kept, sums)
-        return float(paid), sums
 
     def _cover(self, partition: int, kept: BoolArray, sums: dict[int, FloatArray], level: float) -> int:
         own = self.partitions.of[partition].tolist()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.covers.loops.tables import Sums
+from ratt_opt.solvers.maxmin.covers.tables import Sums
 from ratt_opt.solvers.maxmin.proof import CoverLeaf
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ class CoverSums:
     """Sums by number, with the leaf that each stands for."""
 
     def __init__(self, elements: int) -> None:
-        self._terms, self._used = np.zeros((FIRST_ROOM, elements)), np.zeros(FIRST_ROOM)
+        self._elements, self._terms, self._used = elements, np.zeros((FIRST_ROOM, elements)), np.zeros(FIRST_ROOM)
         self.leaves: list[CoverLeaf] = []
 
     def add(self, covers: IntArray, weights: FloatArray, terms: FloatArray) -> None:
@@ -42,4 +42,4 @@ class CoverSums:
     def rows(self) -> Sums:
         """As the loops of a dive read them."""
         tried = np.argsort(-self._used[: len(self.leaves)], kind="stable")[:MOST_TRIED]
-        return Sums(self._terms, tried.astype(np.int64), self._used)
+        return Sums(self._elements, self._terms, tried.astype(np.int64), self._used)

@@ -1,21 +1,26 @@
-"""The search at one level whose dead ends are attacks that leave too little to gain (``loops.py``)."""
+"""The search at one level whose dead ends are attacks that leave too little to gain.
+
+Its loop is ``native/src/marginal_dive.c``.
+"""
 
 from __future__ import annotations
 
+from ctypes import byref, c_double, c_int, c_int64, c_void_p
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.setfunctions.information import triangles
+from ratt_opt.native.library import function
 from ratt_opt.solvers.maxmin.levels.level_search import LevelSearch, Outcome
+from ratt_opt.solvers.maxmin.levels.packed import PackedElements
 from ratt_opt.solvers.maxmin.marginals.raised import raised_information
-from ratt_opt.solvers.maxmin.marginals.tables import BRANCHED, Attacks, Gains, Path, Team
+from ratt_opt.solvers.maxmin.marginals.tables import BRANCHED, Attacks, Choosers, Gains, Path
 from ratt_opt.solvers.maxmin.proof import ElementBranch, MarginalLeaf, UpperProof
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt._validation import BoolArray, IntArray
+    from ratt_opt._validation import IntArray
     from ratt_opt.solvers.maxmin.levels.elements import Elements
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
@@ -48,18 +53,9 @@ class ChoosingTeam:
         self.elements = np.concatenate([problem.choices[i] for i in self.order])
         information = raised_information(elements)[self.elements]
         sees = information.any(axis=(-2, -1))
-        self.team = Team(
-            code=objective.compiled_code,
-            weights=np.array(objective.weights),
-            baseline=objective.criterion(objective.prior_information),
-            prior=triangles(objective.prior_information),
-            information=triangles(information),
-            first=np.concatenate([[0], np.cumsum(sizes[self.order])]),
-            sees=sees,
-            seeing=_seeing(sees),
-        )
+        self.choosers = Choosers(PackedElements.of(objective, information, sees), sizes[self.order])
         none = np.zeros(0, dtype=np.int64)
-        self._attacks = Attacks(members=none.astype(np.uint64), of=none[:, None], order=none)
+        self._attacks = Attacks(none.astype(np.uint64), none[:, None], none)
 
     def attacks(self) -> Attacks:
         """All attacks that are known by now, the new ones first."""
@@ -75,13 +71,14 @@ class ChoosingTeam:
         return self._attacks
 
 
-def _seeing(sees: BoolArray) -> IntArray:
-    """(M, E) elements of which ``sees`` (E, M) is true, the last first, padded by -1."""
-    seeing = np.full(sees.T.shape, -1, dtype=np.int64)
-    for row, own in zip(seeing, sees.T, strict=True):
-        elements = np.flatnonzero(own)[::-1]
-        row[: len(elements)] = elements
-    return seeing
+def dive(
+    choosers: Choosers, attacks: Attacks, gains: Gains, path: Path, *, level: float, slack: float, nodes: int
+) -> Outcome:
+    """Search on for some nodes; how that ended. A plan worth more than ``level`` by up to ``slack`` is not found."""
+    path.make_room(nodes)
+    call = function("dive_by_marginals", c_int, *[c_void_p] * 4, *[c_double] * 2, *[c_int64] * 2)
+    records = (byref(table.record) for table in (choosers, attacks, gains, path))
+    return Outcome(call(*records, level, slack, nodes, MOST_TRIED))
 
 
 class MarginalLevelSearch(LevelSearch):
@@ -90,45 +87,23 @@ class MarginalLevelSearch(LevelSearch):
     def __init__(
         self, elements: Elements, team: ChoosingTeam, incumbent: Incumbent, level: Callable[[], float], error: float
     ) -> None:
-        from ratt_opt.solvers.maxmin.marginals.loops import dive  # compiles
-
         super().__init__(elements, incumbent, level)
-        self._dive, self._team, self._error = dive, team, error
-        n, m = elements.problem.n_robots, elements.problem.information_objective.n_targets
-        self._path = Path(
-            depth=np.zeros(1, dtype=np.int64),
-            chosen=np.zeros(n, dtype=np.int64),
-            seers=np.zeros(m, dtype=np.uint64),
-            version=np.zeros(m, dtype=np.int64),
-            record=np.zeros(FIRST_RECORD, dtype=np.int32),
-            size=np.zeros(1, dtype=np.int64),
-        )
-        self._gains = Gains(
-            value=np.zeros((m, SETS)),
-            gain=np.zeros((m, SETS, len(team.elements))),
-            since=np.zeros((m, SETS), dtype=np.int64),
-            version=np.full((m, SETS), -1, dtype=np.int64),
-            seers=np.zeros((m, SETS), dtype=np.uint64),
-            matrices=np.zeros((2, team.team.prior.shape[1])),
-        )
+        self._team, self._error = team, error
+        self._path, self._gains = Path(team.choosers, FIRST_RECORD), Gains(team.choosers.elements, SETS)
 
     @property
     def is_long(self) -> bool:
         """Whether its record is as long as memory should hold."""
-        return int(self._path.size[0]) >= MOST_RECORDED
+        return len(self.record) >= MOST_RECORDED
 
     @property
     def record(self) -> IntArray:
         """(R,) how each node ended, in preorder."""
-        return np.asarray(self._path.record[: int(self._path.size[0])])
+        return np.asarray(self._path.nodes)
 
     def _search_on(self) -> Outcome:
-        if len(self.record) + RUN > len(self._path.record):
-            self._path = self._path._replace(
-                record=np.concatenate([self._path.record, np.zeros_like(self._path.record)])
-            )
-        team, limits = self._team, (self.level, ROUNDINGS * self._error, RUN, MOST_TRIED)
-        return Outcome(self._dive(team.team, team.attacks(), self._gains, self._path, limits))
+        team, slack = self._team, ROUNDINGS * self._error
+        return dive(team.choosers, team.attacks(), self._gains, self._path, level=self.level, slack=slack, nodes=RUN)
 
     def _plan(self) -> IntArray:
         plan = np.empty(len(self._team.order), dtype=np.int64)

@@ -25,7 +25,7 @@ from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.levels.elements import Elements
 from tests.oracles import brute_force_worst_case
-from tests.solvers.maxmin.engine import COVERS_ALONE, covers
+from tests.solvers.maxmin.engine import COVERS_ALONE, NO_PLANS_LISTED, covers
 from tests.strategies import sparse_problem
 from tests.ways import go
 
@@ -64,6 +64,19 @@ def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tm
             certificate = certify(problem, found, tmp_path / "c.json")
             assert certificate.verified.upper <= optimum + 1e-6 * scale
     assert proved > CASES // 3
+
+
+@pytest.mark.parametrize("dimension", [16, 17])
+@pytest.mark.parametrize("kind", ["trace", "logdet"])
+def test_states_of_many_coordinates(kind: str, dimension: int, monkeypatch: pytest.MonkeyPatch):
+    """The loops have up to 16; beyond, concave relaxations are alone."""
+    go(monkeypatch, NO_PLANS_LISTED)
+    for seed in range(3):
+        problem = sparse_problem(np.random.default_rng([seed, dimension]), kind, dimension)
+        optimum = max(brute_force_worst_case(problem, np.array(plan)) for plan in all_plans(problem))
+        found = solve_maxmin(problem, max_nodes=20)
+        assert found.lower <= optimum * (1 + 1e-9) + 1e-12
+        assert found.upper >= optimum * (1 - 1e-9) - 1e-12
 
 
 @pytest.mark.usefixtures("by_covers_alone")

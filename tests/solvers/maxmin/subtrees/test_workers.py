@@ -127,7 +127,7 @@ def test_a_limit_of_time_is_kept_whatever_the_workers_are_at():
 
 @pytest.mark.usefixtures("shared_at_once")
 def test_an_interrupt_leaves_the_bracket_so_far_and_no_process():
-    problem = random_scenario(30, 12, alpha_s=10, alpha_c=108, seed=1).problem()
+    problem = random_scenario(30, 12, alpha_s=10, alpha_c=108, seed=2).problem()  # a second of search
     before = set(active_children())
     met = []
 

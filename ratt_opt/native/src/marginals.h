@@ -1,0 +1,42 @@
+/* The search by marginal gains: the team in the order in which robots choose, known attacks, and the way down. */
+#ifndef RATT_MARGINALS_H
+#define RATT_MARGINALS_H
+
+#include "elements.h"
+
+/* The elements of robots, both in the order in which robots choose. */
+typedef struct {
+    Elements all;
+    int64_t robots;
+    const int64_t *first;   /* (robots + 1) where each robot's elements begin */
+    const int64_t *seeing;  /* (targets, elements) elements with information of a target, the last first, ended by -1 */
+} Choosers;
+
+typedef struct {
+    int64_t attacks, widest;
+    const uint64_t *members; /* (groups) masks of robots, none of them blinded */
+    const int64_t *of;       /* (attacks, widest) groups that each leaves, or -1 */
+    int64_t *order;          /* (attacks) in which they are tried; those that last led to a dead end come first */
+} Attacks;
+
+/* Where the search is. */
+typedef struct {
+    int64_t depth, size; /* robots that have chosen; nodes recorded */
+    int64_t *chosen;     /* (robots) their elements */
+    uint64_t *seers;     /* (targets) masks of the robots that have chosen to see a target */
+    int64_t *version;    /* (targets) another one at each change */
+    int32_t *record;     /* of each node, in preorder: the attack that makes it a dead end, or BRANCHED */
+} Path;
+
+/* What is known of each target beside the sets of its seers that were asked for last. */
+typedef struct {
+    int64_t sets;
+    double *value;    /* (targets, sets) what they gain */
+    double *gain;     /* (targets, sets, elements) what elements gain beside them, of robots that choose later than */
+    int64_t *since;   /* (targets, sets) */
+    int64_t *version; /* (targets, sets), as of the path, */
+    uint64_t *seers;  /* and the set */
+    int64_t *slot;    /* (targets) where the set asked for is */
+} Gains;
+
+#endif
