@@ -76,12 +76,12 @@ def lower_bounds(project: Path = ROOT / "pyproject.toml") -> list[str]:
     """Return the requirements of the wheel and its test extra, each pinned to the lower bound that it states."""
     stated = tomllib.loads(project.read_text(encoding="utf-8"))["project"]
     extras = stated["optional-dependencies"]
-    own = re.compile(rf"{stated['name']}\[(?P<extra>[\w-]+)\]$")
+    own = re.compile(rf"{stated['name']}\[(?P<extras>[\w,-]+)\]$")
     wanted, pins = [*stated["dependencies"], *extras["test"]], []
     while wanted:
         requirement = wanted.pop(0)
         if extra := own.match(requirement):
-            wanted += extras[extra["extra"]]
+            wanted += [one for name in extra["extras"].split(",") for one in extras[name]]
         else:
             name, bound = requirement.split(">=")
             pins.append(f"{name}=={bound}")

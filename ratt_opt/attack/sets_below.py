@@ -56,8 +56,8 @@ class SetsBelow:
         self._outside, self._inside = _fewest_blinded(self.robots, groups)
         self._n_blinded = n_blinded
 
-    def mark(self, threshold: float, budget: Budget) -> int | None:
-        """Set ``sizes``; the set of least value among those that are not below, ``None`` if all are.
+    def mark(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
+        """Set ``sizes``; the least value met that is not below, and its set: infinite and ``None`` if all are below.
 
         Raises
         ------
@@ -71,7 +71,7 @@ class SetsBelow:
                 let_spread(address(self.sizes), len(self.sizes), robot)
         return following
 
-    def _mark_sets(self, threshold: float, budget: Budget) -> int | None:
+    def _mark_sets(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
         value, following = c_double(inf), c_int64(-1)
         kept = address(self.sizes), byref(value), byref(following)
         if isinstance(self.source, Team):
@@ -92,13 +92,13 @@ class SetsBelow:
                 last = min(first + BLOCKS, blocks)
                 if call(self.source.reference, threshold, first, last, *matters, *kept):
                     raise MemoryError
-            return None if following.value < 0 else following.value
+            return value.value, None if following.value < 0 else following.value
         table = function("mark_values_below", None, c_void_p, c_double, c_int64, c_int64, *[c_void_p] * 3)
         for first in range(0, len(self.sizes), VALUES):
             budget.check()
             last = min(first + VALUES, len(self.sizes))
             table(address(self.source), threshold, first, last, *kept)
-        return None if following.value < 0 else following.value
+        return value.value, None if following.value < 0 else following.value
 
     def largest_inside(self, group: int) -> int:
         """The largest set below the threshold inside a group that has one, by mask, protected robots included."""

@@ -7,6 +7,7 @@ does, no more of them in all than ``alpha_s``, and if the groups are cut off by 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.columns import UNIT, Columns
@@ -29,11 +30,12 @@ MOST_COLUMNS = 2_000_000
 class Answer:
     """Whether the threshold is reachable, ``None`` if that is left open.
 
-    ``following`` : if it is not, bit mask of the set of least value that an attack can leave
+    ``level``, ``following`` : if it is not, what every attack leaves at least, and bit mask of the set that is worth it
     ``groups``, ``blinded`` : if it is, bit masks of the groups, and of the blinded robots
     """
 
     is_reachable: bool | None
+    level: float = inf
     following: int | None = None
     groups: tuple[int, ...] = ()
     blinded: int = 0
@@ -52,18 +54,18 @@ def decide(
     """
     budget.spend()
     groups, cuts = graph.all(budget)
-    following = below.mark(threshold, budget)
+    level, following = below.mark(threshold, budget)
     columns = Columns.of(groups, cuts, below, threat.n_blinded)
     most_cut = 2 * threat.alpha_c
     duals = best_duals(columns, threat.n_blinded, most_cut, budget)
     gap = most_cut * UNIT - duals.claim(threat.n_blinded)
     if gap < 0:
-        return Answer(is_reachable=False, following=following)
+        return Answer(is_reachable=False, level=level, following=following)
     chosen = columns.within(duals, gap, MOST_COLUMNS)
     if chosen is None:
         return Answer(is_reachable=None)
     covered = ExactCover(*chosen, gap, threat.n_blinded, most_cut).next(budget, steps)
     if not isinstance(covered, list):
-        return Answer(is_reachable=covered, following=following)
+        return Answer(is_reachable=covered, level=level, following=following)
     blinded = sum(group ^ below.largest_inside(group) for group in covered)
     return Answer(is_reachable=True, groups=tuple(covered), blinded=blinded)

@@ -37,6 +37,8 @@ found before, which is more than all falls on the way from set to set add up to.
 FIRST_STEPS, MORE = 100_000_000, 4
 """Of a search of covers, some tenths of a second, and times as many where it was left open; then a lower threshold is
 asked. None of 240 networks of 24 robots with any budgets needed more than the first."""
+LEVELS = 10
+"""Values that are told apart once the bracket counts as closed, one threshold each. Mostly there are none."""
 NARROW = 1e-3
 """Relative width of the bracket below which a lower threshold is not asked."""
 
@@ -70,14 +72,19 @@ class AllSets:
         """Narrow the task's bracket; raises ``OutOfBudget``."""
         self.task.budget.check()
         below, bracket = self._begun(), self.task.bracket
-        threshold = bracket.goal
-        while not bracket.is_closed:
+        threshold, levels = bracket.goal, LEVELS
+        while not bracket.is_closed or (bracket.lower < bracket.upper and levels > 0):
             answer = decide(self._threat, below, self._graph, threshold, self.task.budget, steps=self._steps)
             if answer.is_reachable:
                 self._offer(answer.groups, answer.blinded)
             elif answer.is_reachable is not None:
                 bracket.raise_lower(min(self._value(answer.following), bracket.upper))
-            threshold = self._next(threshold, is_open=answer.is_reachable is None)
+            if not bracket.is_closed:
+                threshold = self._next(threshold, is_open=answer.is_reachable is None)
+            elif answer.is_reachable is False:  # sets of about the same value are told apart if there are few
+                threshold, levels = float(np.nextafter(answer.level, np.inf)), levels - 1
+            else:
+                break
         return Stop.EXHAUSTED
 
     def _next(self, threshold: float, *, is_open: bool) -> float:

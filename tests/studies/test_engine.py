@@ -168,7 +168,7 @@ def test_interrupt_says_how_to_resume(tmp_path: Path) -> None:
 
 WORKING = """
 import os, sys, time
-from analysis.studies.executors import local_processes
+from ratt_opt.studies.executors import local_processes
 if __name__ == "__main__":
     with local_processes(1) as executor:
         executor.submit(os.getpid)

@@ -8,14 +8,17 @@ are right; if they are not, fractions do.
 
 from __future__ import annotations
 
+from ctypes import c_double, c_int64, c_void_p
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.running.compiling import numba
+from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["undominated"]
@@ -61,28 +64,13 @@ def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dic
     return kept, {e: _last(by, f) for e, f in by.items()}
 
 
-@numba.njit(cache=True)
-def _compared(entries: Any) -> Any:
+def _compared(entries: FloatArray) -> NDArray[np.int8]:
     """(K, K) whether the first of a pair dominates the second, as far as floats tell; of equal ones the first does."""
-    count, size = entries.shape[:2]
+    count, rows = entries.shape[:2]
     found = np.zeros((count, count), np.int8)
-    for f in range(count):
-        for e in range(count):
-            if e == f:
-                continue
-            answer, same = YES, True
-            for k in range(size):
-                a = entries[f, k, 0] - entries[e, k, 0]
-                b = entries[f, k, 1] - entries[e, k, 1]
-                c = entries[f, k, 2] - entries[e, k, 2]
-                same = same and a == 0.0 and b == 0.0 and c == 0.0
-                more, less = a * c, b * b
-                if a < 0.0 or c < 0.0 or (more < less * (1 - ROUNDINGS) and less > SMALLEST):
-                    answer = NO
-                    break
-                if b != 0.0 and not (more > less * (1 + ROUNDINGS) and less > SMALLEST):
-                    answer = OPEN
-            found[f, e] = answer if not same or f < e else NO
+    call = function("compare_elements", None, c_void_p, c_int64, c_int64, c_double, c_double, c_void_p)
+    given = checked("entries", np.ascontiguousarray(entries), np.float64, (count, rows, 3))
+    call(address(given), count, rows, ROUNDINGS, SMALLEST, address(found))
     return found
 
 
