@@ -27,7 +27,7 @@ robots a start of 240,000 moves takes 0.02 s and finds the best known attack in 
 at 100 robots starts that are twice as long are as good after one second and better after three."""
 
 PART = 500_000
-"""Moves between two looks at the clock, times targets: some thousandths of a second."""
+"""Moves between two looks at the clock, times what a value takes in the plane: some thousandths of a second."""
 
 HOT, COLD = 0.02, 0.00005
 """First and last temperature relative to the whole team's value. Nine attacks on 50 and 100 robots, two seeds, three
@@ -84,9 +84,9 @@ class Starts:
         self._random = c_uint64(int(self._rng.integers(1, 2**63)))
         self._count = 0
         if isinstance(source, Team):
-            self._table, self._scale, self._targets = None, source.whole_value, source.record.targets
+            self._table, self._scale, self._work = None, source.whole_value, max(int(source.work) // 8, 1)
         else:
-            self._table, self._scale, self._targets = source, float(np.abs(source).max()), 1
+            self._table, self._scale, self._work = source, float(np.abs(source).max()), 1
         self._scale = max(self._scale, 1e-300)
         self.best: Partition | None = None
 
@@ -124,7 +124,7 @@ class Starts:
     def _anneal(self, group: IntArray, blind: BoolArray, hot: float, moves: int, budget: Budget) -> Partition | None:
         steps, least, partition = moves * len(group), c_double(np.inf), None
         arrays = (group, group.copy(), blind, blind.copy())
-        part = max(PART // self._targets, 1)
+        part = max(PART // self._work, 1)
         for first in range(0, steps, part):
             budget.check()
             before = least.value

@@ -20,6 +20,8 @@ __all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Team", "TeamRecord"]
 
 MOST_ROBOTS = 32
 """Whose sets the loops have as masks of 32 bits; a team may have more."""
+MOST_TABULATED = 16
+"""Whose sets are valued in one call."""
 LARGEST_DIMENSION = 64
 """Of states, in the loops."""
 
@@ -83,6 +85,20 @@ class Team:
         """Of all robots together."""
         sums = np.ascontiguousarray(self._arrays[1] + self._arrays[2].sum(axis=0))
         return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
+
+    def all_values(self) -> FloatArray:
+        """(2**N,) values of all sets of robots, by bit mask.
+
+        Raises
+        ------
+        InputError : there are more than 16 robots.
+        """
+        if self.robots > MOST_TABULATED:
+            raise InputError("information", f"must be of at most {MOST_TABULATED} robots", self.robots)
+        values, sums = np.empty(2**self.robots), np.empty((self.robots + 1, *self._arrays[1].shape))
+        call = function("all_values", None, POINTER(TeamRecord), c_void_p, c_void_p)
+        call(self.record, address(values), address(sums))
+        return values
 
     @property
     def reference(self) -> object:

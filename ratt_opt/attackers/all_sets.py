@@ -29,6 +29,8 @@ LARGEST_LOOKED_AT, MOST_WORK = 24, 2.0**32
 STARTS, MOVES = 4, 400
 """Annealed attacks before the first threshold, and moves for each pair of robots; on most networks of 24 robots in the
 corpus one of them is the worst attack, and elsewhere the first threshold finds it."""
+FEW = 12
+"""Robots whose sets are all valued at first: fewer values than annealing asks for."""
 BLOCK = 2**10
 """Sets valued at once: what is lost where the budget ends. A block of a fast function takes some milliseconds."""
 FALL, SLACK = 1e-12, 1e-9
@@ -103,7 +105,9 @@ class AllSets:
         if self._team is None:
             self._tabulate()
             self._forget_what_relied_on_order()
-        source = self._team if self._team is not None else self._table
+        source: Team | FloatArray = self._table if self._team is None else self._team
+        if self._team is not None and self._team.robots <= FEW:
+            source = self._team.all_values()
         starts = Starts(source, Links.of(self._threat), self._threat, moves=MOVES * self._graph.robots)
         try:
             for _ in range(STARTS):

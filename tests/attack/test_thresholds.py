@@ -85,6 +85,7 @@ def test_sets_of_a_team_against_their_values(seed, kind, dimension):
     team = Team.of(f, np.arange(n_robots))
     values = np.concatenate(list(f.table_blocks()))
     guarded = [i for i in range(n_robots) if rng.random() < 0.2]
+    assert team.all_values() == pytest.approx(values, rel=1e-8, abs=1e-8 * float(values[-1]))
     tree, table = SetsBelow(team, guarded), SetsBelow(values, guarded)
     for share in (0.0, 0.2, 0.5, 0.9, 1.1):
         threshold = share * float(values[-1]) + 1e-7 * float(values[-1])  # not within rounding of a value

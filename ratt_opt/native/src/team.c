@@ -3,8 +3,11 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "sets.h"
+
+static const double NEGLIGIBLE = 1e-18; /* beside the diagonal: less than rounding of the eigenvalues */
 
 enum { SWEEPS = 10 };  /* of rotations: what is left then beside the diagonal is rounding */
 enum { PRODUCTS = 8 }; /* ratios of determinants below one logarithm: each is below 1e31, see information.py, WIDEST */
@@ -70,9 +73,16 @@ static void rotate(int d, double matrix[][LARGEST_DIMENSION], double axes[][LARG
 }
 
 void diagonalise(int d, double matrix[][LARGEST_DIMENSION], double axes[][LARGEST_DIMENSION]) {
-    for (int sweep = 0; sweep < SWEEPS; sweep++)
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        double beside = 0.0, diagonal = 0.0;
+        for (int p = 0; p < d; p++) {
+            diagonal += fabs(matrix[p][p]);
+            for (int q = p + 1; q < d; q++) beside += fabs(matrix[p][q]);
+        }
+        if (beside <= NEGLIGIBLE * diagonal) return;
         for (int p = 0; p < d - 1; p++)
             for (int q = p + 1; q < d; q++) rotate(d, matrix, axes, p, q);
+    }
 }
 
 /* The largest eigenvalue of the inverse, L^-T L^-1. */
@@ -105,6 +115,12 @@ static double any_criterion(const Team *team, const double *matrix) {
     return largest_of_inverse(d, matrix);
 }
 
+/* The larger of `largest` and a target's weighted eigenvalue, which is no larger than the trace. */
+static double larger(const Team *team, int j, const double *matrix, double largest) {
+    if (team->dimension != 2 && team->weights[j] * trace_of_inverse(team->dimension, matrix) <= largest) return largest;
+    return fmax(largest, team->weights[j] * any_criterion(team, matrix));
+}
+
 /* Fill `before` and `before_all` of a team whose other fields are set. */
 EXPORTED void criteria_before(Team *team, double *before) {
     team->before = before;
@@ -124,11 +140,13 @@ double value_of(const Team *team, const double *sums) {
     int entries = entries_of(team);
     double total = 0.0, product = 1.0;
     for (int j = 0; j < team->targets; j++) {
+        if (team->criterion == LARGEST) {
+            total = larger(team, j, sums + j * entries, total);
+            continue;
+        }
         double now = any_criterion(team, sums + j * entries), weight = team->weights[j];
         if (team->criterion == TRACE) {
             total += weight * (team->before[j] - now);
-        } else if (team->criterion == LARGEST) {
-            total = fmax(total, weight * now);
         } else if (team->dimension != 2) {
             total += weight * (now - team->before[j]);
         } else {
@@ -183,11 +201,29 @@ void values_of(const Team *team, int width, const double *sums, const double *of
         for (int j = 0; j < team->targets; j++) {
             double matrix[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
             for (int t = 0; t < entries; t++) matrix[t] = sums[((ptrdiff_t)j * entries + t) * width + k] + offset[j * entries + t];
+            if (team->criterion == LARGEST) {
+                values[k] = larger(team, j, matrix, values[k]);
+                continue;
+            }
             double now = any_criterion(team, matrix), weight = team->weights[j];
-            if (team->criterion == LARGEST) values[k] = fmax(values[k], weight * now);
-            else values[k] += team->criterion == TRACE ? weight * (team->before[j] - now) : weight * (now - team->before[j]);
+            values[k] += team->criterion == TRACE ? weight * (team->before[j] - now) : weight * (now - team->before[j]);
         }
         if (team->criterion == LARGEST) values[k] = team->before_all - values[k];
+    }
+}
+
+/* Values (1 << robots) of all sets, at most 16 robots; `sums` (robots + 1, targets, entries) is spare. */
+EXPORTED void all_values(const Team *team, double *values, double *sums) {
+    int width = team->targets * entries_of(team);
+    memcpy(sums, team->prior, (size_t)width * sizeof(double));
+    for (int64_t set = 0; set < (int64_t)1 << team->robots; set++) {
+        /* Sets come as numbers: what changed are the low robots; depth counts the robots above them. */
+        int depth = set ? size_of((uint64_t)set) : 0;
+        if (set) {
+            const double *own = team->information + (size_t)lowest((uint64_t)set) * width;
+            for (int t = 0; t < width; t++) sums[depth * width + t] = sums[(depth - 1) * width + t] + own[t];
+        }
+        values[set] = value_of(team, sums + depth * width);
     }
 }
 
