@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["network_table", "read_rows", "summary"]
 
 Row = dict[str, str]
-DONE = {"closed", "gap"}
+DONE = {"closed", "exhausted", "gap"}
 """Stops of searches that proved all that they should."""
 
 
