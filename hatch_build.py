@@ -7,9 +7,9 @@ place, after a source of an editable installation has changed.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import platform
+import runpy
 import shlex
 import shutil
 import subprocess
@@ -19,20 +19,12 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parent
-NATIVE = ROOT / "ratt_opt" / "native"
-SOURCES = sorted((NATIVE / "src").glob("*.c"))
-SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-LIBRARY = f"_loops{SUFFIX}"
+NATIVE = runpy.run_path(str(ROOT / "ratt_opt" / "native" / "sources.py"))  # the package itself needs its dependencies
+LIBRARY: Path = NATIVE["LIBRARY"]
 ZIG = "ziglang>=0.13"
 OPTIONS = ("-std=c11", "-O3", "-fvisibility=hidden", "-shared")
 SAME_BITS = ("-ffp-contract=off",)
 """No fused multiplication and addition: the same results on every processor of a kind."""
-
-
-def sources_hash() -> str:
-    """What ``native/library.py`` compares, so that a library of other sources is not loaded."""
-    files = sorted((NATIVE / "src").iterdir())
-    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 
 def system_compiler() -> list[str] | None:
@@ -48,14 +40,14 @@ def _works(command: list[str]) -> bool:
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "probe.c"
         source.write_text("#include <math.h>\n#include <stdlib.h>\ndouble probe(double x) { return log(x); }\n")
-        ran = subprocess.run(_command(command, [source], Path(folder) / LIBRARY), capture_output=True, check=False)
+        ran = subprocess.run(_command(command, [source], Path(folder) / LIBRARY.name), capture_output=True, check=False)
         return ran.returncode == 0
 
 
 def _command(compiler: list[str], sources: list[Path], target: Path) -> list[str]:
     position_independent = [] if sys.platform == "win32" else ["-fPIC"]
     mathematics = [] if sys.platform == "win32" else ["-lm"]
-    options = [*OPTIONS, *SAME_BITS, *position_independent, f'-DSOURCES="{sources_hash()}"']
+    options = [*OPTIONS, *SAME_BITS, *position_independent, f'-DSOURCES="{NATIVE["fingerprint"]()}"']
     return [*compiler, *options, "-o", str(target), *map(str, sources), *mathematics]
 
 
@@ -77,7 +69,7 @@ def compile_library(target: Path) -> None:
     compiler = system_compiler()
     with tempfile.TemporaryDirectory() as cache:
         caches = {"ZIG_LOCAL_CACHE_DIR": cache, "ZIG_GLOBAL_CACHE_DIR": cache}
-        command = _command(compiler or _zig(), SOURCES, target)
+        command = _command(compiler or _zig(), sorted(NATIVE["SOURCES"].glob("*.c")), target)
         ran = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | caches)
     if ran.returncode:
         raise SystemExit(f"the loops do not compile: {shlex.join(command)}\n{ran.stderr}")
@@ -105,15 +97,15 @@ if BuildHookInterface is not None:
                 return
             from packaging.tags import sys_tags
 
-            target = NATIVE / LIBRARY
+            target = LIBRARY
             if version != "editable":
                 self._folder = tempfile.TemporaryDirectory()
-                target = Path(self._folder.name) / LIBRARY
-                build_data["force_include"][str(target)] = f"ratt_opt/native/{LIBRARY}"
+                target = Path(self._folder.name) / LIBRARY.name
+                build_data["force_include"][str(target)] = f"ratt_opt/native/{LIBRARY.name}"
             compile_library(target)
             build_data["pure_python"] = False
             build_data["tag"] = f"py3-none-{next(sys_tags()).platform}"
 
 
 if __name__ == "__main__":
-    compile_library(NATIVE / LIBRARY)
+    compile_library(LIBRARY)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-import hashlib
-import sys
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt.errors import InputError
+from ratt_opt.native.sources import LIBRARY, SOURCES, fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,8 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["address", "checked", "function"]
 
-FOLDER = Path(__file__).parent
-LIBRARY = FOLDER / ("_loops" + {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so"))
 REMEDY = "install the package with pip, or, in a checkout, run python hatch_build.py"
 
 
@@ -32,9 +28,7 @@ def _library() -> ctypes.CDLL:
         raise ImportError(f"the loops of ratt_opt are not compiled: {REMEDY}")
     library = ctypes.CDLL(str(LIBRARY))
     library.sources.restype = ctypes.c_char_p
-    files = sorted((FOLDER / "src").glob("*")) if (FOLDER / "src").is_dir() else []
-    there = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
-    if files and library.sources().decode() != there:
+    if SOURCES.is_dir() and library.sources().decode() != fingerprint():
         raise ImportError(f"the loops of ratt_opt were compiled from other sources: {REMEDY}")
     return library
 
