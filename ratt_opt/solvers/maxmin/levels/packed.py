@@ -37,7 +37,7 @@ class PackedElements:
 
     Raises
     ------
-    InputError : a shape or a type is another, or d > 16.
+    InputError : a shape or a type is another, or d > 64.
     """
 
     def __init__(

@@ -66,10 +66,10 @@ def test_covers_alone_find_and_prove_the_best_plan(kind: str, dimension: int, tm
     assert proved > CASES // 3
 
 
-@pytest.mark.parametrize("dimension", [16, 17])
+@pytest.mark.parametrize("dimension", [16, 64, 65])
 @pytest.mark.parametrize("kind", ["trace", "logdet"])
 def test_states_of_many_coordinates(kind: str, dimension: int, monkeypatch: pytest.MonkeyPatch):
-    """The loops have up to 16; beyond, concave relaxations are alone."""
+    """The loops have up to 64; beyond, concave relaxations are alone."""
     go(monkeypatch, NO_PLANS_LISTED)
     for seed in range(3):
         problem = sparse_problem(np.random.default_rng([seed, dimension]), kind, dimension)
