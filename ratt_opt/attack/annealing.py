@@ -84,7 +84,7 @@ class Starts:
         self._random = c_uint64(int(self._rng.integers(1, 2**63)))
         self._count = 0
         if isinstance(source, Team):
-            self._table, self._scale, self._work = None, source.whole_value, max(int(source.work) // 8, 1)
+            self._table, self._scale, self._work = None, source.whole_value, max(source.work // 8, 1)
         else:
             self._table, self._scale, self._work = source, float(np.abs(source).max()), 1
         self._scale = max(self._scale, 1e-300)

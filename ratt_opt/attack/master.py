@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.columns import UNIT, Columns, Duals
+from ratt_opt.graph.communication import robots_of
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
@@ -63,6 +64,6 @@ def _rounded(claimed: FloatArray, n: int) -> Duals | None:
 def _rows(columns: Columns, chosen: IntArray) -> tuple[list[tuple[list[int], list[float]]], float, FloatArray]:
     entries = []
     for mask, blinded in zip(columns.groups[chosen].tolist(), columns.blinded[chosen].tolist(), strict=True):
-        members = [i for i in range(columns.robots) if mask >> i & 1]
+        members = robots_of(mask)
         entries.append(([*members, columns.robots], [*[1.0] * len(members), -float(blinded)]))
     return entries, -inf, columns.cuts[chosen].astype(np.float64)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeGuard
 
 import numpy as np
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Team", "TeamRecord"]
+__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Team", "TeamRecord", "has_loops", "work_of_value"]
 
 MOST_ROBOTS = 32
 """Whose sets the loops have as masks of 32 bits; a team may have more."""
@@ -24,6 +24,18 @@ MOST_TABULATED = 16
 """Whose sets are valued in one call."""
 LARGEST_DIMENSION = 64
 """Of states, in the loops."""
+
+
+def has_loops(objective: SetFunction) -> TypeGuard[InformationObjective]:
+    """Whether the compiled loops have the criterion, and states of its dimension."""
+    if not isinstance(objective, InformationObjective):
+        return False
+    return objective.compiled_code is not None and objective.dimension <= LARGEST_DIMENSION
+
+
+def work_of_value(targets: int, dimension: int) -> int:
+    """Of one value of a set of robots, in about multiplications."""
+    return targets * dimension**3
 
 
 class TeamRecord(Structure):
@@ -72,12 +84,11 @@ class Team:
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
         """The plan's, or ``None`` if the loops do not have the objective."""
-        if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
-            return None
-        if objective.dimension > LARGEST_DIMENSION:
+        if not has_loops(objective):
             return None
         prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
         weights = np.array(objective.weights)
+        assert objective.compiled_code is not None
         return cls(objective.compiled_code, objective.dimension, weights, prior, information)
 
     @property
@@ -106,6 +117,6 @@ class Team:
         return ctypes.byref(self.record)
 
     @property
-    def work(self) -> float:
-        """Of one value, in about multiplications: whether all sets can be looked at."""
-        return float(self.record.targets * self.record.dimension**3)
+    def work(self) -> int:
+        """Of one value, in about multiplications."""
+        return work_of_value(self.record.targets, self.record.dimension)

@@ -10,10 +10,10 @@ from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.groups import groups_of
 from ratt_opt.attack.links import Links
 from ratt_opt.attack.sets_below import SetsBelow
-from ratt_opt.attack.team import Team
+from ratt_opt.attack.team import Team, has_loops, work_of_value
 from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import OutOfBudget, Stop
-from ratt_opt.problem import Attack
+from ratt_opt.graph.communication import robots_of
 from ratt_opt.setfunctions.metered import Metered, unmetered
 
 if TYPE_CHECKING:
@@ -48,11 +48,11 @@ NARROW = 1e-3
 
 def sets_can_be_looked_at(task: AttackTask) -> bool:
     """Whether the loops have the objective and few enough robots, or all sets may be valued."""
-    n_robots = task.problem.n_robots
-    team = Team.of(task.problem.objective, task.values.plan) if n_robots <= LARGEST_LOOKED_AT else None
-    if team is not None and (team.work * 2.0**n_robots <= MOST_WORK or n_robots <= LARGEST_VALUED):
-        return True
-    return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
+    n_robots, f = task.problem.n_robots, task.problem.objective
+    if not has_loops(f):
+        return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
+    is_soon = work_of_value(f.n_targets, f.dimension) * 2.0**n_robots <= MOST_WORK
+    return n_robots <= LARGEST_VALUED or (is_soon and n_robots <= LARGEST_LOOKED_AT)
 
 
 class AllSets:
@@ -124,12 +124,11 @@ class AllSets:
         """Of a set by bit mask, rounded as attacks' values are; infinite without one."""
         if robots is None:
             return np.inf
-        return float(self._table[robots]) if self._team is None else self.task.values(_robots(robots))
+        return float(self._table[robots]) if self._team is None else self.task.values(robots_of(robots))
 
     def _offer(self, groups: tuple[int, ...], blinded: int) -> None:
         """Offer an attack, by bit masks."""
-        members = [_robots(group) for group in groups]
-        self.task.offer(Attack(frozenset(_robots(blinded)), self.task.problem.communication.links_between(members)))
+        self.task.offer_split(map(robots_of, groups), robots_of(blinded))
 
     def _tabulate(self) -> None:
         """Value the sets that are not valued yet, by bit mask."""
@@ -153,10 +152,6 @@ class AllSets:
         is_ordered = unmetered(self.task.problem.objective).is_non_decreasing or not _falls(table, FALL * largest)
         proved = bracket.lower - SLACK * largest - bracket.rounding if is_ordered else -np.inf
         bracket.lower = max(proved, float(table.min()))
-
-
-def _robots(mask: int) -> list[int]:
-    return [i for i in range(mask.bit_length()) if mask >> i & 1]
 
 
 def _falls(table: FloatArray, rounding: float) -> bool:

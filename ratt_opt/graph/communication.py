@@ -13,7 +13,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["CommunicationGraph", "Link", "neighbour_masks"]
+__all__ = ["CommunicationGraph", "Link", "neighbour_masks", "robots_of"]
 
 Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
@@ -29,6 +29,11 @@ def neighbour_masks(n_robots: int, links: Iterable[Link]) -> list[int]:
         masks[i] |= bit[j]
         masks[j] |= bit[i]
     return masks
+
+
+def robots_of(mask: int) -> list[int]:
+    """Robots of a set by bit mask, ascending."""
+    return [i for i in range(mask.bit_length()) if mask >> i & 1]
 
 
 @dataclass(frozen=True, slots=True)

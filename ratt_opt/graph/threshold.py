@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.budget import Budget
+from ratt_opt.graph.communication import robots_of
 from ratt_opt.graph.connected_partitions import SubsetLattice, submasks
 
 if TYPE_CHECKING:
@@ -40,12 +41,12 @@ class GroupSplit:
 
     def members(self) -> list[list[int]]:
         """Robots of each group, blinded ones included."""
-        return [_robots(group) for group in self.groups]
+        return [robots_of(group) for group in self.groups]
 
     @property
     def blinded(self) -> list[int]:
         """Robots that do not survive."""
-        return _robots(sum(self.groups) - sum(self.survivors))
+        return robots_of(sum(self.groups) - sum(self.survivors))
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,10 +114,6 @@ class ThresholdTest:
             survivors.append(largest_survivors(self.threat, self.values, group, threshold))
             rest, blinded = int(one.rest[pick]), blinded - int(need[group])
         return GroupSplit(tuple(groups), tuple(survivors))
-
-
-def _robots(mask: int) -> list[int]:
-    return [i for i in range(mask.bit_length()) if mask >> i & 1]
 
 
 def fewest_blinded(threat: Threat, values: FloatArray, threshold: float) -> IntArray:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.links import Links
-from ratt_opt.attack.team import Team
+from ratt_opt.attack.team import Team, has_loops
 from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
@@ -30,8 +28,7 @@ class AnnealedAttacks:
     @classmethod
     def of(cls, problem: Problem, budget: Budget) -> AnnealedAttacks | None:
         """``None`` where the objective has no compiled code."""
-        plan = np.array([choice[0] for choice in problem.choices])
-        return None if Team.of(problem.objective, plan) is None else cls(problem, budget)
+        return cls(problem, budget) if has_loops(problem.objective) else None
 
     def attack(self, problem: Problem, plan: IntArray, moves: int, known: Attack | None = None) -> Attack | None:
         """An attack on a plan after so many moves a robot, from a known one or anew; ``None`` where none was found.

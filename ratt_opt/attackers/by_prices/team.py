@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attack.team import LARGEST_DIMENSION
-from ratt_opt.setfunctions.information import InformationObjective, triangles
+from ratt_opt.attack.team import has_loops
+from ratt_opt.setfunctions.information import triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -33,10 +33,9 @@ class PricedTeam(NamedTuple):
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> PricedTeam | None:
         """The compact form, or ``None`` where the objective has no compiled code."""
-        if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
+        if not has_loops(objective):
             return None
-        if objective.dimension > LARGEST_DIMENSION:
-            return None
+        assert objective.compiled_code is not None
         prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
         baseline = float(objective.combine(objective.criterion(objective.prior_information)))
         empty = np.zeros(objective.n, dtype=np.bool_)

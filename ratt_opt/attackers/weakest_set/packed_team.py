@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.team import LARGEST_DIMENSION, Team
+from ratt_opt.attack.team import Team, has_loops
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
@@ -39,9 +39,7 @@ class PackedTeam:
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> PackedTeam | None:
         """The packed form, or ``None`` where the objective has no compiled loops."""
-        if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
-            return None
-        if objective.dimension > LARGEST_DIMENSION:
+        if not has_loops(objective):
             return None
         prior, information = objective.prior_information, objective.information[plan]
         before, after = (objective.combine(objective.criterion(sums)) for sums in (prior, prior + information))

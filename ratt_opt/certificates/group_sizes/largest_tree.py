@@ -10,6 +10,7 @@ import numpy as np
 from ratt_opt.certificates.group_sizes.score_bounds import CaseBounds
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell, tick
+from ratt_opt.graph.communication import robots_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -85,7 +86,7 @@ class _Tree:
         if case.grown and self.sets.enough(case.posterior):
             self.tree.append(-1)
             return
-        waiting = np.array(_robots(may_see if missing else 0), dtype=np.int64)
+        waiting = np.array(robots_of(may_see if missing else 0), dtype=np.int64)
         values = self.sets.values(case.posterior + missing * self.own[waiting])
         if missing and self.sets.average_enough(values, missing):
             self.tree.append(-3)
@@ -117,14 +118,10 @@ class _Tree:
 
     def _ask_place(self, case: _Case, place: FloatArray, stack: list[_Case]) -> None:
         """Of the robot that is least clearly inside or outside the best fractional group."""
-        open_ = _robots(self.everyone & ~(case.inside | case.outside))
+        open_ = robots_of(self.everyone & ~(case.inside | case.outside))
         if not open_:
             raise NotClosedError
         i = min(open_, key=lambda robot: abs(place[robot] - 0.5))
         self.tree.append(2 * i + 1)
         stack.append(replace(case, outside=case.outside | 1 << i))
         stack.append(replace(case, inside=case.inside | 1 << i))
-
-
-def _robots(mask: int) -> list[int]:
-    return [i for i in range(mask.bit_length()) if mask >> i & 1]

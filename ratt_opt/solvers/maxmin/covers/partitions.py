@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.graph.communication import robots_of
 from ratt_opt.graph.connected_partitions import finest_partitions
 from ratt_opt.graph.outcomes import LARGEST_ENUMERATION
 
@@ -45,7 +46,7 @@ class Partitions:
             return
         if problem.n_robots <= LARGEST_ENUMERATION:
             for partition in islice(finest_partitions(threat), MOST_LISTED):
-                self.add(_robots(mask) for mask in partition)
+                self.add(robots_of(mask) for mask in partition)
 
     def add_cut(self, links: Iterable[Link]) -> int:
         """Add what is left when links are cut; the partition's number, new or old."""
@@ -81,8 +82,3 @@ class Partitions:
         for row, group in zip(members, self.groups, strict=True):
             row[list(group)] = True
         return members
-
-
-def _robots(mask: int) -> tuple[int, ...]:
-    """Positions of the bits that are set, ascending."""
-    return tuple(i for i in range(mask.bit_length()) if mask >> i & 1)
