@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
 import numpy as np
 
 from ratt_opt.attack.links import Links
-from ratt_opt.attackers.by_prices.groups.compiled import gather_seeing
-from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.criteria.compiled import team_criterion
+from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -23,6 +23,26 @@ HOT, COLD, MOVES = 0.02, 0.0002, 200_000
 """Temperatures relative to the team's value, and moves of one cooling of plain annealing."""
 
 
+class _Team(NamedTuple):
+    """``prior`` : (M, T), ``information`` : (N, M, T) packed matrices; ``baseline`` : the criterion without a robot."""
+
+    code: int
+    weights: Any
+    prior: Any
+    information: Any
+    baseline: float
+
+
+@numba.njit(cache=True)
+def _value(team: Any, group: Any, blind: Any, sums: Any) -> float:
+    """Value of those of ``group`` (N,) that are not ``blind`` (N,); ``sums`` (M, T) is spare."""
+    sums[:] = team.prior
+    for i in range(len(group)):
+        if group[i] and not blind[i]:
+            sums += team.information[i]
+    return float(team.baseline - team_criterion(team.code, team.weights, sums))
+
+
 @numba.njit(cache=True)
 def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any, rng: Any) -> float:  # noqa: PLR0917
     """One cooling of plain annealing: the largest group's value, links within ``budget``; best state in place."""
@@ -30,7 +50,7 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
     best, best_group, best_blind = np.inf, group.copy(), blind.copy()
     values, cut = np.zeros(n_robots), 0
     for g in range(n_robots):
-        values[g] = gather_seeing(team, group == g, blind, sums)
+        values[g] = _value(team, group == g, blind, sums)
     energy = values.max()
     for move in range(MOVES):
         i, j = int(rng.random() * n_robots), int(rng.random() * n_robots)
@@ -49,8 +69,8 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
                 continue
             group[i] = target
         old = values[home], values[target]
-        values[home] = gather_seeing(team, group == home, blind, sums)
-        values[target] = gather_seeing(team, group == target, blind, sums)
+        values[home] = _value(team, group == home, blind, sums)
+        values[target] = _value(team, group == target, blind, sums)
         after, temperature = values.max(), heat[0] * (heat[1] / heat[0]) ** (move / MOVES)
         if after <= energy or rng.random() < np.exp((energy - after) / temperature):
             energy, cut = after, cut + change
@@ -68,8 +88,13 @@ def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any,
 
 def plain_annealing(problem: Problem, plan: IntArray, seconds: float, seed: int) -> float:
     """Worst value that annealing from the whole team finds, cooled again and again for that many seconds."""
-    team, links, rng = PricedTeam.of(problem.objective, plan), Links.of(problem.threat), np.random.default_rng(seed)
-    assert team is not None
+    objective = problem.objective
+    if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
+        raise TypeError("the criterion has no compiled loops")
+    prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
+    baseline = float(objective.combine(objective.criterion(objective.prior_information)))
+    team = _Team(objective.compiled_code, np.array(objective.weights), prior, information, baseline)
+    links, rng = Links.of(problem.threat), np.random.default_rng(seed)
     n_robots, whole, best = problem.n_robots, problem.objective(plan), np.inf
     heat, ends = np.array([HOT, COLD]) * whole, time.monotonic() + seconds
     while time.monotonic() < ends:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
-from ratt_opt.attackers.by_prices import paying_groups
+from ratt_opt.attack.pricing import Order
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
-from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
+from ratt_opt.attackers.by_prices.column_search import ColumnSearch
 from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_size import packing
@@ -31,17 +31,6 @@ NEEDED = {"thresholds", "nobody left", "single robots", "size vectors"}
 Patches = tuple[tuple[Any, str, Any], ...]
 
 
-class _Ways:
-    """The ways of :class:`paying_groups.PayingSearch` without one."""
-
-    def __init__(self, left_out: paying_groups.Way) -> None:
-        self._ways = [way for way in paying_groups.Way if way is not left_out]
-        self.SEEING_WITH_FORMS, self.SEEING, self.INSIDE = paying_groups.Way
-
-    def __iter__(self) -> Iterator[paying_groups.Way]:
-        return iter(self._ways)
-
-
 def _gives(value: Any) -> Any:
     return lambda *_, **__: value
 
@@ -50,9 +39,8 @@ STAGE_NAMES = dict.fromkeys(
     stage.name for kind in ("criterion", "sizes", "families") for stage in TABLES[kind] if stage.name not in NEEDED
 )
 BOUNDS: dict[str, Patches] = {
-    "pricing: forms of two sizes": ((ConvexForms, "fit", _gives(None)),),
-    "pricing: who is inside first": ((paying_groups, "Way", _Ways(paying_groups.Way.INSIDE)),),
-    "pricing: who sees first": ((paying_groups, "Way", _Ways(paying_groups.Way.SEEING)),),
+    "pricing: who is inside first": ((ColumnSearch, "orders", (Order.SENSES,)),),
+    "pricing: who senses first": ((ColumnSearch, "orders", (Order.MEMBERS,)),),
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
     "dual repair": ((FallingPrices, "fall", _gives(False)),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),

@@ -13,7 +13,7 @@ from ratt_opt.native.library import address, checked, function
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
 __all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Team", "TeamRecord", "has_loops", "work_of_value"]
@@ -94,7 +94,11 @@ class Team:
     @property
     def whole_value(self) -> float:
         """Of all robots together."""
-        sums = np.ascontiguousarray(self._arrays[1] + self._arrays[2].sum(axis=0))
+        return self.value(np.ones(self.robots, dtype=np.bool_))
+
+    def value(self, chosen: BoolArray) -> float:
+        """Of the robots that are chosen (N,)."""
+        sums = np.ascontiguousarray(self._arrays[1] + self._arrays[2][chosen].sum(axis=0))
         return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
 
     def all_values(self) -> FloatArray:

@@ -6,6 +6,7 @@ from functools import cached_property
 from math import isinf
 from typing import TYPE_CHECKING
 
+from ratt_opt.attack.pricing import Plan
 from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups, unprotected_bound
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
@@ -284,12 +285,10 @@ class CriterionAttack(TeamAttack):
     @cached_property
     def _prices(self) -> PriceSearch | None:
         """The search by prices, new or begun, for criteria with compiled code."""
-        from ratt_opt.attackers.by_prices.team import PricedTeam
-
-        team = PricedTeam.of(self._objective, self._plan)
-        if team is None:
+        plan = Plan.of(self._objective, self._plan, self._threat)
+        if plan is None:
             return None
-        from ratt_opt.attackers.by_prices.price_search import PriceSearch  # compiles
+        from ratt_opt.attackers.by_prices.price_search import PriceSearch
 
         begun = self.task.memory.search
-        return begun if isinstance(begun, PriceSearch) else PriceSearch(self.task, team)
+        return begun if isinstance(begun, PriceSearch) else PriceSearch(self.task, plan)

@@ -96,7 +96,7 @@ class GroupBounds:
 
     def cut(self, part: IntArray, room: int) -> list[BoolArray]:
         """Find flows for a node, until one closes it; the robots inside each minimum cut, that of no surcharge last."""
-        from ratt_opt.attackers.by_prices.groups.flow import augment, open_flow  # compiles
+        from ratt_opt.certificates.flow import augment, open_flow  # compiles
 
         n_robots, sides = len(part), []
         price = self.robot / self.unit

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.links import Links
-from ratt_opt.attackers.by_prices.team import PricedTeam
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attack.pricing import Plan
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_bounds import BLINDED, ELSE, OPEN, OUTSIDE, SEEING, GroupBounds
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
@@ -75,19 +73,17 @@ def group_price_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 
 def _prices(sets: PlanSets) -> tuple[PriceVector, int]:
     """Prices that refute the threshold, and the largest size of a set worth less."""
-    from ratt_opt.attackers.by_prices.decision import ThresholdDecision  # compiles
-    from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
+    from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 
     problem, seconds = sets.problem, seconds_left()
-    team = PricedTeam.of(problem.objective, sets.elements)
-    if team is None:
+    plan = Plan.of(problem.objective, sets.elements, problem.threat)
+    if plan is None:
         raise NotClosedError
-    sizes = WeakSizes(team, PackedTeam.planar(problem.objective, sets.elements))
     budget = Budget(None if seconds == np.inf else seconds)
-    decision = ThresholdDecision(team, Links.of(problem.threat), problem.threat, sizes)
+    decision = ThresholdDecision(plan)
     try:
         prices = decision.refuting_prices(sets.threshold, budget, SEARCHED)
-        size = sizes.largest(sets.threshold, budget)
+        size = plan.most_below(sets.threshold)
     except OutOfBudget:
         raise NotClosedError from None
     if prices is None:

@@ -16,6 +16,7 @@ from ratt_opt.attack.columns import UNIT, Columns, Duals
 from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.groups import BRANCH, GroupList
 from ratt_opt.attack.master import best_duals
+from ratt_opt.attack.pricing import QuestionRecord
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
@@ -252,9 +253,9 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(5, np.int64)
+    sizes = np.zeros(6, np.int64)
     layout(sizes.ctypes.data)
-    records = [ctypes.sizeof(record) for record in (LowSetsRecord, AnnealRecord)]
+    records = [ctypes.sizeof(record) for record in (LowSetsRecord, AnnealRecord, QuestionRecord)]
     assert sizes.tolist() == [ctypes.sizeof(TeamRecord), BRANCH.itemsize, exact_cover.LEVEL.itemsize, *records]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import ratt_opt as ro
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.links import Links
+from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.team import Team
 from ratt_opt.attackers import (
     all_sets,
@@ -31,7 +32,6 @@ from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition import settled_partitions
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
 from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
@@ -89,7 +89,7 @@ def _packed(task: AttackTask) -> PackedTeam | None:
 
 
 def _priced(task: AttackTask) -> PriceSearch:
-    return PriceSearch(task, PricedTeam.of(task.problem.objective, task.values.plan))
+    return PriceSearch(task, Plan.of(task.problem.objective, task.values.plan, task.problem.threat))
 
 
 def _annealed_then_priced(task: AttackTask) -> Stop:

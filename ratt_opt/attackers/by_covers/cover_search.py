@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.pricing import Plan
 from ratt_opt.attackers.by_covers.cover_prices import CoverProgram
 from ratt_opt.attackers.by_covers.listed_groups import ListedGroups
 from ratt_opt.attackers.by_covers.weak_sets import WeakSets
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
-from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.by_prices.team import PricedTeam
 from ratt_opt.budget import Stop
 from ratt_opt.graph.separable_groups import SeparableGroups
 
@@ -43,10 +42,9 @@ class CoverSearch:
     """
 
     def __init__(self, task: AttackTask, team: PackedTeam, groups: SeparableGroups) -> None:
-        priced = PricedTeam.of(task.problem.objective, task.values.plan)
-        assert priced is not None, "a packed team's criterion has compiled loops"
-        self.task, self._team, self._groups = task, priced, groups
-        self._sizes = WeakSizes(priced, team)
+        plan = Plan.of(task.problem.objective, task.values.plan, task.problem.threat)
+        assert plan is not None, "a packed team's criterion has compiled loops"
+        self.task, self._plan, self._groups = task, plan, groups
         self._survivors = GroupSurvivors(team, task.problem.protected_robots)
         self._begun: _Threshold | None = None
 
@@ -57,8 +55,7 @@ class CoverSearch:
             threshold = self._threshold()
             if self._begun is None or self._begun.threshold != threshold:
                 budget.spend()
-                largest = self._sizes.largest(threshold, budget)
-                self._begun = _Threshold(self._team, self._groups, threshold, largest, self._check)
+                self._begun = _Threshold(self._plan, self._groups, threshold, self._check)
             if not self._begun.reach(self.task, self._survivors):
                 bracket.raise_lower(threshold)
             self._begun = None
@@ -76,11 +73,9 @@ class CoverSearch:
 class _Threshold:
     """What is known of one threshold, from where it can be gone on with."""
 
-    def __init__(
-        self, team: PricedTeam, groups: SeparableGroups, threshold: float, largest: int, check: Callable[[], None]
-    ) -> None:
+    def __init__(self, plan: Plan, groups: SeparableGroups, threshold: float, check: Callable[[], None]) -> None:
         self.threshold, self._groups = threshold, groups
-        self._weak = WeakSets(team, threshold, largest, check)
+        self._weak = WeakSets(plan, threshold, check)
         self._program = CoverProgram(groups.threat, self._weak)
         self._listed = ListedGroups(groups, self._weak, self._program)
         self._partitions: SettledPartitions | None = None

@@ -10,17 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.blinding import may_be_weak
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt.attackers.by_prices.team import PricedTeam
+    from ratt_opt.attack.pricing import Plan
 
 __all__ = ["WeakSets"]
-
-VALUES, QUICK = 300_000, 20_000
-"""Values looked at to prove that no robots of a set are worth less (up to a second or two), and of a larger set."""
 
 
 class WeakSets:
@@ -28,15 +23,14 @@ class WeakSets:
 
     Parameters
     ----------
-    largest : a size that no set of robots worth less than the threshold exceeds
     check : raises where the time is up
     """
 
-    def __init__(self, team: PricedTeam, threshold: float, largest: int, check: Callable[[], None]) -> None:
-        self._team, self._threshold, self._check = team, threshold, check
-        self._strongest = [int(i) for i in np.argsort(-team.single, kind="stable")]
+    def __init__(self, plan: Plan, threshold: float, check: Callable[[], None]) -> None:
+        self._plan, self._threshold, self._check = plan, threshold, check
+        self._strongest = [int(i) for i in np.argsort(-plan.single, kind="stable")]
         n_robots = len(self._strongest)
-        self.robots, self.room = [(1 << n_robots) - 1], [largest]
+        self.robots, self.room = [(1 << n_robots) - 1], [plan.most_below(threshold)]
         for size in range(n_robots - 1, 0, -1):
             self._check()
             mask, room = sum(1 << i for i in self._strongest[:size]), min(self.room[-1], size)
@@ -67,13 +61,13 @@ class WeakSets:
             return False
         for i in self._strongest:
             self._check()
-            if not group >> i & 1 and not self._has_weak(group | 1 << i, room + 1, QUICK):
+            if not group >> i & 1 and not self._has_weak(group | 1 << i, room + 1):
                 group |= 1 << i
         self.robots.append(group)
         self.room.append(room)
         return True
 
-    def _has_weak(self, robots: int, size: int, values: int = VALUES) -> bool:
+    def _has_weak(self, robots: int, size: int) -> bool:
         """Whether so many of the robots may be worth less; true also where that is not decided."""
         inside = np.array([robots >> i & 1 for i in range(len(self._strongest))], dtype=np.bool_)
-        return may_be_weak(self._team, inside, robots.bit_count() - size, self._threshold, values, self._check)
+        return self._plan.some_may_be_below(inside, size, self._threshold)

@@ -7,19 +7,15 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.links import Links
-from ratt_opt.attack.team import Team
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.decision import ThresholdDecision
-from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt.attack.annealing import Partition
-    from ratt_opt.attackers.by_prices.team import PricedTeam
+    from ratt_opt.attack.pricing import Plan
     from ratt_opt.attackers.task import AttackTask
     from ratt_opt.budget import Budget
 
@@ -66,14 +62,10 @@ class PriceSearch:
     A node is a node of an enumeration.
     """
 
-    def __init__(self, task: AttackTask, team: PricedTeam) -> None:
+    def __init__(self, task: AttackTask, plan: Plan) -> None:
         self.task = task
-        threat = task.problem.threat
-        links, attacked = Links.of(threat), Team.of(task.problem.objective, task.values.plan)
-        assert attacked is not None, "there are loops for prices, so there are for annealing"
-        self._starts = Starts(attacked, links, threat)
-        planar = PackedTeam.planar(task.problem.objective, task.values.plan)
-        self._decision = ThresholdDecision(team, links, threat, WeakSizes(team, planar))
+        self._starts = Starts(plan.team, plan.links, plan.threat)
+        self._decision = ThresholdDecision(plan)
         self._effort, self._share = FIRST_EFFORT, 0.5
         self._took = 0.0
         """Seconds of the last refutation."""

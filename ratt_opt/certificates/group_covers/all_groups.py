@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.attack.pricing import Plan
 from ratt_opt.attackers.by_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
-from ratt_opt.attackers.by_prices.team import PricedTeam
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_covers.covers import price_record, refute_covers, set_records
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
@@ -40,26 +39,24 @@ def all_groups_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     """
     from ratt_opt.graph.separable_groups import separable_groups  # compiles
 
-    team, seconds = PricedTeam.of(sets.problem.objective, sets.elements), seconds_left()
+    plan, seconds = Plan.of(sets.problem.objective, sets.elements, sets.problem.threat), seconds_left()
     budget = Budget(None if seconds == np.inf else seconds)
-    groups = None if team is None else separable_groups(sets.problem.threat, MOST_GROUPS, budget)
-    if team is None or groups is None:
+    groups = None if plan is None else separable_groups(sets.problem.threat, MOST_GROUPS, budget)
+    if plan is None or groups is None:
         raise NotClosedError
     try:
-        return _AllGroups(sets, team, groups, budget).run(max_nodes)
+        return _AllGroups(sets, plan, groups).run(max_nodes)
     except OutOfBudget:
         raise NotClosedError from None
 
 
 class _AllGroups:
-    def __init__(self, sets: PlanSets, team: PricedTeam, listed: SeparableGroups, budget: Budget) -> None:
+    def __init__(self, sets: PlanSets, plan: Plan, listed: SeparableGroups) -> None:
         from ratt_opt.attackers.by_covers.listed_groups import ListedGroups  # compiles
         from ratt_opt.attackers.by_covers.weak_sets import WeakSets
-        from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes
 
         self.sets, self.threat = sets, listed.threat
-        sizes = WeakSizes(team, PackedTeam.planar(sets.problem.objective, sets.elements))
-        self.weak = WeakSets(team, sets.threshold, sizes.largest(sets.threshold, budget), tick)
+        self.weak = WeakSets(plan, sets.threshold, tick)
         self.program = CoverProgram(self.threat, self.weak)
         self.groups = ListedGroups(listed, self.weak, self.program)
 

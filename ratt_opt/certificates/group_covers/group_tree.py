@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attackers.by_prices.groups.flow import ALWAYS, augment, open_flow
+from ratt_opt.certificates.flow import ALWAYS, augment, open_flow
 from ratt_opt.certificates.group_covers.case_bounds import closing_set, lost, need, penalties, reached
 from ratt_opt.graph.separable_groups import count_ones
 from ratt_opt.running.compiling import numba

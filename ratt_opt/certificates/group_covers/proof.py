@@ -6,15 +6,14 @@ fractional. Then the groups that cost no more than what is left are listed by a 
 
 from __future__ import annotations
 
+from ctypes import c_uint64
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.links import Links
+from ratt_opt.attack.pricing import UNIT, Plan, Question
 from ratt_opt.attackers.by_covers.cover_prices import HALF_LINK, CoverPrices, CoverProgram
-from ratt_opt.attackers.by_prices.team import PricedTeam
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.certificates.group_covers.covers import price_record, refute_covers, set_records
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import seconds_left, tell, tick
@@ -45,8 +44,8 @@ EASY = 0.1
 """Share of the budget of links that prices may lack for the groups to be listed without more triples, which are added
 as long as they make up for half a link at a time."""
 
-MOVES, WARM, COLD = 1_500, 2.0, 0.05
-"""Moves around each robot to find groups that pay the first prices; temperatures [links]."""
+MOVES, WARM, COLD = 1_500, 4.0, 0.1
+"""Moves around each robot to find groups that pay the first prices; temperatures [links that leave a group]."""
 
 
 def group_cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
@@ -56,29 +55,25 @@ def group_cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     ------
     NotClosedError : there are too many groups or cases, or the groups cover the team.
     """
-    team = PricedTeam.of(sets.problem.objective, sets.elements)
-    if team is None or sets.problem.n_robots > LARGEST_TEAM:
+    plan = Plan.of(sets.problem.objective, sets.elements, sets.problem.threat)
+    if plan is None or sets.problem.n_robots > LARGEST_TEAM:
         raise NotClosedError
     try:
-        return _CoverProof(sets, team, max_nodes).run()
+        return _CoverProof(sets, plan, max_nodes).run()
     except OutOfBudget:
         raise NotClosedError from None
 
 
 class _CoverProof:
-    def __init__(self, sets: PlanSets, team: PricedTeam, max_nodes: int) -> None:
+    def __init__(self, sets: PlanSets, plan: Plan, max_nodes: int) -> None:
         from ratt_opt.attackers.by_covers.weak_sets import WeakSets
-        from ratt_opt.attackers.by_prices.groups.weak_sizes import WeakSizes  # compiles
         from ratt_opt.certificates.group_covers.case_bounds import Network
 
-        self.sets, self.team, self.max_nodes, self.work = sets, team, max_nodes, 0
+        self.sets, self.plan, self.max_nodes, self.work = sets, plan, max_nodes, 0
         self.threat = threat = sets.problem.threat
-        self.links = Links.of(threat)
+        self.links = plan.links
         self.network = Network.of(threat, self.links)
-        seconds = seconds_left()
-        sizes = WeakSizes(team, PackedTeam.planar(sets.problem.objective, sets.elements))
-        largest = sizes.largest(sets.threshold, Budget(None if seconds == np.inf else seconds))
-        self.weak: WeakSets = WeakSets(team, sets.threshold, largest, tick)
+        self.weak: WeakSets = WeakSets(plan, sets.threshold, tick)
         self.program = CoverProgram(threat, self.weak)
 
     def run(self) -> dict[str, Any]:
@@ -103,17 +98,16 @@ class _CoverProof:
 
     def _anneal(self) -> None:
         """Groups that pay, by annealing, until they are hard to find; then the tree finds them."""
-        from ratt_opt.attackers.by_prices.groups.cheap_groups import cheap_group
-
-        rng, best, new = np.random.default_rng(0), np.zeros(len(self.team.single), dtype=np.int8), 1
+        random, new = c_uint64(1), 1
         while new:
-            prices, groups, unit = self.program.solve(seconds_left()), [], 2.0 * HALF_LINK
-            at, limits = (prices.robot / unit, prices.blinded / unit), (self.sets.threshold, self.threat.n_blinded)
-            for first in range(len(best)):
+            prices, groups, scale = self.program.solve(seconds_left()), [], UNIT / HALF_LINK
+            robots, blinded = np.floor(prices.robot * scale).astype(np.int64), int(np.ceil(prices.blinded * scale))
+            question = Question(self.sets.threshold, self.plan.robots, robots, blinded, 0)
+            for first in range(self.plan.robots):
                 tick()
-                cooling = (MOVES, WARM, COLD)
-                if cheap_group(self.team, self.links, at, limits, first, cooling, rng, best) * unit < prices.group:
-                    groups.append(sum(1 << i for i in np.flatnonzero(best).tolist()))
+                column = self.plan.anneal(question, first, MOVES, (WARM, COLD), random)
+                if column.cost < prices.group * scale:
+                    groups.append(sum(1 << i for i in np.flatnonzero(column.robots).tolist()))
             new = self.program.add(groups)
 
     def _priced(self) -> CoverPrices:

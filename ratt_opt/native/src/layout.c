@@ -13,6 +13,7 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[2] = sizeof(Level);
     sizes[3] = sizeof(LowSets);
     sizes[4] = sizeof(Anneal);
+    sizes[5] = sizeof(Pricing);
 }
 
 /* Those of the searches for best plans. */

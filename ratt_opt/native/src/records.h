@@ -55,4 +55,25 @@ typedef struct {
     uint64_t *random;                  /* not 0 */
 } Anneal;
 
+/* A search for groups whose reduced cost, unit * links that leave it - duals of its robots + blinding * robots blinded, is less
+   than `limit`, and of which blinding at most n_blinded leaves less than the threshold. Arcs as in `Anneal`. */
+typedef struct {
+    const Team *team;
+    double threshold, level;             /* its level, rounding included */
+    int64_t n_blinded, most_cut, most;   /* of one group: blinded robots, links; robots that sense */
+    const int64_t *start, *robot, *back; /* (arcs) `back`: the same link's arc the other way */
+    const uint8_t *fixed, *seeing;
+    const int64_t *least_cut;            /* (robots + 1) links that leave a group of so many robots, at least */
+    int64_t *duals;                      /* (robots) may be lowered between two calls */
+    const int64_t *order;                /* (robots) */
+    int64_t blinding, unit, limit, by_senses;
+    int64_t effort;                      /* robots valued to decide what a group needs */
+    double *levels;                      /* (most of all + 1, robots, robots), or NULL: levels of copies of two robots */
+    int32_t *near;                       /* the same; the other robots by level */
+    uint8_t *filled;                     /* (most of all + 1) */
+} Pricing;
+
+/* An open search. */
+typedef struct Search Search;
+
 #endif

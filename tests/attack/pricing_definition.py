@@ -7,26 +7,18 @@ from itertools import combinations
 import networkx as nx
 import numpy as np
 
-from ratt_opt.attackers.by_prices.convex_forms import ConvexForms
-from ratt_opt.attackers.by_prices.groups.cheap_groups import BLINDED
-from ratt_opt.budget import Budget
-
-
-def fitted_forms(threat, prices=None):
-    """Fitted to prices (N,), as after some thousand nodes, or not yet."""
-    forms = ConvexForms(threat)
-    if prices is not None:
-        forms.fit(prices, len(prices), Budget())
-    return forms
+from ratt_opt.attack.pricing import BLINDED
 
 
 def paying_groups(problem, plan, question, prices):
-    """Connected groups and the fewest blinded robots they need, by the definition."""
+    """Connected groups that an attack may leave, and the fewest blinded robots they need, by the definition."""
     (threshold, limit), (robot, blinded), answer = question, prices, {}
     graph, protected = problem.communication, problem.protected_robots
     for group in (s for k in range(1, 8) for s in combinations(range(7), k)):
         crossing = [link for link in graph.links if (link[0] in group) != (link[1] in group)]
         if len(graph.groups_among(frozenset(group))) > 1 or set(crossing) & problem.protected_links:
+            continue
+        if len(crossing) > problem.alpha_c:
             continue
         free = [i for i in group if i not in protected]
         needs = (
@@ -55,7 +47,7 @@ def least_cost(problem, plan, threshold, prices, *, connected=False):
     for size in range(1, n_robots + 1):
         for group in combinations(range(n_robots), size):
             crossing = {link for link in problem.communication.links if len(set(group) & set(link)) == 1}
-            if crossing & problem.protected_links:
+            if crossing & problem.protected_links or len(crossing) > problem.alpha_c:
                 continue
             if connected and not nx.is_connected(problem.graph.subgraph(group)):
                 continue

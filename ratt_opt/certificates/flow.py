@@ -11,31 +11,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from ratt_opt.attackers.by_prices.groups.compiled import copy, copy_row
 from ratt_opt.running.compiling import numba
 
-__all__ = ["ALWAYS", "always", "augment", "copy_flows", "open_flow"]
+__all__ = ["ALWAYS", "augment", "open_flow"]
 
 ALWAYS = 1e6
 """Capacity that no cost reaches: a robot fixed, a link that cannot be cut."""
 
 EMPTY = 1e-12
-
-
-@numba.njit(cache=True)
-def always(ends: Any, robot: int) -> None:
-    """Join a robot to this end, ``into`` or ``out`` (K, N), of all flows of a node."""
-    for kind in range(ends.shape[0]):
-        ends[kind, robot] = ALWAYS
-
-
-@numba.njit(cache=True)
-def copy_flows(stack: Any, source: int, target: int) -> None:
-    """Copy the flows of one node of a search to another, and their bounds."""
-    copy(stack.into[target], stack.into[source])
-    copy(stack.out[target], stack.out[source])
-    copy(stack.along[target], stack.along[source])
-    copy_row(stack.bound[target], stack.bound[source])
 
 
 @numba.njit(cache=True)

@@ -1,0 +1,266 @@
+"""Pricing: groups of small reduced cost that an attack may leave below a threshold, or the proof that no group is one.
+
+The reduced cost of a group is the links that leave it plus the dual price of each robot blinded in it, minus the dual
+prices of its robots. Branch and bound decides who senses first (:attr:`Order.SENSES`), or who is inside
+(:attr:`Order.MEMBERS`). At each node one Lagrangian bound is a flow: the links that leave a group are its cuts, and
+multipliers pay for what every group keeps: the most that its sensing robots weigh, as levels are concave
+(``native/src/levels.c``), the robots that can be blinded, and the links that one group may cut.
+"""
+
+from __future__ import annotations
+
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+
+from ratt_opt.attack.links import Links
+from ratt_opt.attack.team import Team, TeamRecord
+from ratt_opt.native.library import address, function
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.graph.threat import Threat
+    from ratt_opt.setfunctions.base import SetFunction
+
+__all__ = ["BLINDED", "UNIT", "GroupSearch", "Order", "Plan", "Question"]
+
+UNIT = 1 << 20
+"""Of duals, one link that leaves a group."""
+MOST_PAIRED = 100
+"""Robots of a team whose pairs are compared: for larger ones levels of single robots bound sets."""
+EFFORT, EFFORT_WORK = 200_000, 50_000_000
+"""Robots valued at most to decide what a group needs, and multiplications for it: less than a tenth of a second."""
+FINISHED, PAUSED, FOUND = 0, 1, 2
+SENSING, BLINDED = 1, 2
+"""What a robot is to a group; 0 is outside."""
+
+
+class Order(Enum):
+    """What branch and bound decides first."""
+
+    SENSES = "who senses"
+    MEMBERS = "who is inside"
+
+
+class QuestionRecord(Structure):
+    """``Pricing`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        ("team", c_void_p),
+        *((name, c_double) for name in ("threshold", "level")),
+        *((name, c_int64) for name in ("n_blinded", "most_cut", "most")),
+        *((name, c_void_p) for name in ("start", "robot", "back", "fixed", "seeing", "least_cut", "duals", "order")),
+        *((name, c_int64) for name in ("blinding", "unit", "limit", "by_senses", "effort")),
+        *((name, c_void_p) for name in ("levels", "near", "filled")),
+    ]
+
+
+class Plan:
+    """One plan's robots on one network; what is computed of their levels serves every question.
+
+    ``single`` : (N,) individual values
+    """
+
+    def __init__(self, team: Team, links: Links, threat: Threat) -> None:
+        self.team, self.links, self.threat = team, links, threat
+        robots = self.robots = team.robots
+        self.single: FloatArray = np.array([team.value(one) for one in np.eye(robots, dtype=np.bool_)])
+        self.least_cuts = _least_cuts(threat)
+
+    @classmethod
+    def of(cls, objective: SetFunction, elements: IntArray, threat: Threat) -> Plan | None:
+        """``None`` if the loops do not have the objective."""
+        team = Team.of(objective, elements)
+        return None if team is None else cls(team, Links.of(threat), threat)
+
+    @cached_property
+    def tables(self) -> tuple[FloatArray, IntArray, IntArray] | None:
+        """Levels of copies of two robots, the other robots by these, and which sizes are filled."""
+        robots = self.robots
+        if robots > MOST_PAIRED:
+            return None
+        shape = robots + 1, robots, robots
+        return np.zeros(shape), np.zeros(shape, np.int32), np.zeros(robots + 1, np.uint8)
+
+    def most_below(self, threshold: float) -> int:
+        """A size that no set of robots worth less than the threshold exceeds."""
+        call = function("most_below", c_int64, c_void_p, c_void_p)
+        everyone = np.ones(self.robots, dtype=np.bool_)
+        with self._asked(threshold) as search:
+            return int(call(search.handle, address(everyone)))
+
+    def some_may_be_below(self, group: BoolArray, size: int, threshold: float) -> bool:
+        """Whether ``size`` robots of a group (N,) may be worth less than the threshold; true if that is not decided."""
+        call = function("some_may_be_below", c_int, c_void_p, c_void_p, c_int64)
+        with self._asked(threshold) as search:
+            return bool(call(search.handle, address(np.ascontiguousarray(group)), size))
+
+    def _asked(self, threshold: float) -> GroupSearch:
+        nothing = np.zeros(self.robots, dtype=np.int64)
+        return GroupSearch(self, Question(threshold, self.robots, nothing, 0, 0), Order.MEMBERS, nothing)
+
+    def anneal(self, question: Question, first: int, moves: int, warm: tuple[float, float], random: c_uint64) -> Column:
+        """A group around one robot, annealed between two temperatures [links that leave a group]."""
+        best, record = np.zeros(self.robots, dtype=np.int8), self.record(question, Order.MEMBERS, question.duals)
+        call = function(
+            "anneal_column",
+            c_int64,
+            POINTER(QuestionRecord),
+            *[c_int64] * 2,
+            *[c_double] * 2,
+            POINTER(c_uint64),
+            c_void_p,
+        )
+        hot, cold = warm[0] * UNIT, warm[1] * UNIT
+        cost = call(byref(record), first, moves, hot, cold, byref(random), address(best))
+        need = int((best == BLINDED).sum())
+        return Column(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
+
+    def record(self, question: Question, order: Order, robots: IntArray) -> QuestionRecord:
+        """As C reads it; everything it has the addresses of must be kept alive."""
+        team, links, tables = cast(byref(self.team.record), c_void_p), self.links, self.tables
+        arrays = (
+            links.start,
+            links.robot,
+            links.back,
+            links.fixed,
+            links.seeing,
+            self.least_cuts,
+            question.duals,
+            robots,
+        )
+        return QuestionRecord(
+            team,
+            question.threshold,
+            function("level_of_threshold", c_double, POINTER(TeamRecord), c_double)(
+                self.team.record, question.threshold
+            ),
+            self.threat.n_blinded,
+            self.threat.alpha_c,
+            question.most,
+            *map(address, arrays),
+            question.blinding,
+            UNIT,
+            question.limit,
+            order is Order.SENSES,
+            min(EFFORT, EFFORT_WORK // self.team.work + 1),
+            *([None] * 3 if tables is None else map(address, tables)),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Groups below a threshold of less reduced cost than ``limit``, in units of 1 / ``UNIT`` links that leave them.
+
+    ``most`` : sensing robots of a set below the threshold; ``duals`` : (N,) of each robot; ``blinding`` >= 0 : of a
+    blinded robot
+    """
+
+    threshold: float
+    most: int
+    duals: IntArray
+    blinding: int
+    limit: int
+
+    def claim(self, n_blinded: int) -> int:
+        """What groups that cover the team cost at least, links from both sides, if no group costs less than nothing."""
+        return int(self.duals.sum()) - n_blinded * self.blinding
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """A group: ``robots``, ``blinded`` (N,); ``need`` : blinded robots, at least; ``found`` : that many are enough."""
+
+    robots: BoolArray
+    blinded: BoolArray
+    need: int
+    found: int
+    cost: int
+
+
+class GroupSearch:
+    """A search for the groups of one question, which may be gone on with, and whose duals may be lowered.
+
+    ``nodes`` : so far; ``order`` : (N,) robots, groups come by the first of theirs if it is asked who is inside
+    """
+
+    def __init__(self, plan: Plan, question: Question, order: Order, first: IntArray) -> None:
+        self._plan, self._duals, self._first = plan, question.duals.copy(), first
+        asked = Question(question.threshold, question.most, self._duals, question.blinding, question.limit)
+        self._record = plan.record(asked, order, first)
+        self.handle = function("open_pricing", c_void_p, POINTER(QuestionRecord))(byref(self._record))
+        if not self.handle:
+            raise MemoryError
+        self.nodes = 0
+
+    def __enter__(self) -> GroupSearch:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free what the search holds."""
+        if self.handle:
+            function("close_pricing", None, c_void_p)(self.handle)
+            self.handle = None
+
+    def __del__(self) -> None:
+        """Searches are kept, and forgotten."""
+        self.close()
+
+    def next(self, nodes: int) -> Column | Literal[False] | None:
+        """The next group; ``None`` after ``nodes`` nodes, ``False`` if there is none. Its node stays open."""
+        group, column, progress = np.zeros(self._plan.robots, np.int8), np.zeros(4, np.int64), c_int64(0)
+        call = function("next_group_below", c_int, c_void_p, c_int64, *[c_void_p] * 3)
+        code = call(self.handle, nodes, address(group), address(column), byref(progress))
+        self.nodes = progress.value
+        if code != FOUND:
+            return False if code == FINISHED else None
+        need, found, _, cost = column.tolist()
+        return Column(robots=group > 0, blinded=group == BLINDED, need=need, found=found, cost=cost)
+
+    def leave(self) -> None:
+        """Close the node of the last group."""
+        function("leave_group", None, c_void_p)(self.handle)
+
+    def lower(self, duals: IntArray) -> None:
+        """Make the duals of robots no larger than these: what is closed stays closed."""
+        np.minimum(self._duals, duals, out=self._duals)
+
+    def fill(self, nodes: int, listed: tuple[NDArray[np.int8], IntArray], count: int) -> tuple[int, bool]:
+        """List groups from row ``count`` on for ``nodes`` nodes; the rows filled, and whether there are no others.
+
+        ``listed`` : (C, N) what robots are to each group; (C, 4) its need, robots found, links, reduced cost
+        """
+        rows, progress = c_int64(count), c_int64(0)
+        call = function("list_groups_below", c_int, c_void_p, *[c_int64] * 2, *[c_void_p] * 4)
+        arrays = address(listed[0]), address(listed[1])
+        code = call(self.handle, nodes, len(listed[0]), *arrays, byref(rows), byref(progress))
+        self.nodes = progress.value
+        return rows.value, code == FINISHED
+
+
+def _least_cuts(threat: Threat) -> IntArray:
+    """(N + 1,) links that leave a group of that many robots, at least.
+
+    By degrees, and by the second least eigenvalue of the Laplacian.
+
+    Source: for the latter, Fiedler, Czechoslovak Mathematical Journal 25 (1975).
+    """
+    robots = threat.graph.n_robots
+    laplacian = np.zeros((robots, robots))
+    for i, j in threat.graph.links:
+        laplacian[i, j] = laplacian[j, i] = -1.0
+    degrees = -laplacian.sum(axis=1)
+    sizes, values = np.arange(robots + 1), np.linalg.eigvalsh(laplacian + np.diag(degrees))
+    spread = (values[1] if robots > 1 else 0.0) * sizes * (robots - sizes) / robots
+    by_degree = np.concatenate([[0.0], np.cumsum(np.sort(degrees))]) - sizes * (sizes - 1.0)
+    least = np.maximum(np.maximum(by_degree, by_degree[::-1]), spread - 1e-9 * (1.0 + np.abs(spread)))
+    return np.asarray(np.ceil(np.maximum(least - 1e-6, 0.0)), dtype=np.int64)

@@ -1,0 +1,64 @@
+/* The search for a group of negative reduced cost, shared by the files of pricing. */
+#ifndef RATT_PRICING_H
+#define RATT_PRICING_H
+
+#include <stdint.h>
+
+#include "records.h"
+
+/* What a robot may still be to the group, as bits; OUTSIDE alone and without OUTSIDE are decided. */
+enum { SENSES = 1, BLINDED = 2, OUTSIDE = 4 };
+
+#define IS_INSIDE(state) (!((state) & OUTSIDE))
+#define MAY_SENSE(state) (((state) & SENSES) && (state) != SENSES)
+
+/* Multipliers of what every group of a node keeps, in links. */
+typedef struct {
+    double value, blinded, cut;
+} Multipliers;
+
+/* An open node: groups with what each robot may be. */
+typedef struct {
+    int8_t *state;        /* (robots) */
+    uint8_t *blind;       /* (robots) blinded robots that leave what is inside below the threshold, if `by_inside` */
+    double *sums, *worth; /* (targets, entries) of robots that sense for sure; (robots) value with one more of them */
+    int need, found;      /* blinded robots: at least, and in `blind` */
+    int most;             /* robots that sense, at most */
+    int low, high;        /* robots inside */
+    int next;             /* may sense, inside the group at hand, and is worth most; -1 for none */
+    int64_t cut;          /* links that leave a group of so many robots, at least */
+    Multipliers at;
+} Node;
+
+struct Search {
+    Pricing q;
+    int robots, width;
+    double level;                 /* sets whose level is as high are not below the threshold */
+    Node *nodes;
+    int depth, first;
+    int64_t visited;
+    int64_t *excess, *capacity, *cost; /* of the flow */
+    int *distance, *queue, *next, *order;
+    double *weight, *own, *sorted, *spare, *sums; /* (robots) thrice; (width); (robots + 2, width + robots) */
+    uint8_t *inside, *sense, *chosen;  /* (robots) */
+};
+
+/* levels.c */
+double level_of(const Team *team, double value);
+double value_of_copies(const Search *s, const double *sums, double times, int i, int j);
+double level_of_copies(const Search *s, const double *sums, double times, int i, int j);
+void add_copies(const Search *s, double *sums, double times, int i);
+/* What the robots of a node that may sense weigh, in `weight`; lowers `most` and closes robots that cannot sense. Returns the
+   most that those of a set below the threshold weigh besides robots that sense for sure. `fresh`: more of these than before. */
+double weigh(Search *s, Node *node, int fresh);
+
+/* needs.c */
+int may_be_below(Search *s, Node *node, int blinded, int64_t effort); /* 1 yes, 0 no, -1 unknown */
+int admit(Search *s, Node *node, int robot);
+void settle(Search *s, Node *node);
+
+/* flow.c */
+/* Least cost of links, `link` each, and robots over the groups of states; its group is `inside`. */
+int64_t least_cut(Search *s, const int8_t *state, int64_t link);
+
+#endif
