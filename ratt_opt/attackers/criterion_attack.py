@@ -122,6 +122,11 @@ class CriterionAttack(TeamAttack):
         """Criterion compiled, budget left."""
         return self._has_time_for_prices and self._prices is not None
 
+    def prices_come_first(self) -> bool:
+        """Criterion compiled, limit of time; not brief, graph not dense."""
+        is_limited = not isinf(self.task.budget.seconds_left)
+        return is_limited and not (self._is_brief or self._has_many_links) and self.has_prices()
+
     def has_no_prices(self) -> bool:
         """Criterion of one's own."""
         return not self.has_prices()
@@ -250,6 +255,10 @@ class CriterionAttack(TeamAttack):
         """Dual prices of robots and links, by thresholds."""
         assert self._prices is not None
         return last_stage(self.task, self._prices)
+
+    def dual_prices_at_first(self) -> None:
+        """Dual prices of robots and links, by thresholds."""
+        self.dual_prices()
 
     # -- what is known -------------------------------------------------------------------------------------------
 

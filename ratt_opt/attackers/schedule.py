@@ -39,6 +39,9 @@ partitions close in two seconds waited for 15."""
 BOUND_SHARE, BOUND_NODES = 0.3, 500_000
 """Of what is left, for the weakest group of the forced size; prices get the rest."""
 
+PRICES_SHARE = 0.5
+"""Of what is left for dual prices on graphs that are not dense, before groups of possible sizes and the forced size."""
+
 SPLIT_SHARE, SPLIT_NODES = 0.2, 10_000_000
 """Of what is left for partitions on dense graphs, and at most so many nodes (some seconds)."""
 
@@ -83,6 +86,7 @@ CRITERION: tuple[Stage[Criterion], ...] = (
     Stage("annealed values", Criterion.annealed_values, Criterion.has_no_prices_and_a_limit, ANNEALED_SHARE),
     Stage("branch and bound", Criterion.tree_of_attacks, Criterion.has_no_prices_and_a_limit),
     Stage("annealed attacks", Criterion.anneal, Criterion.has_prices),
+    Stage("dual prices", Criterion.dual_prices_at_first, Criterion.prices_come_first, PRICES_SHARE),
     Stage("possible sizes", Criterion.possible_sizes, Criterion.looks_at_sizes, SIZES_SHARE, SIZES_NODES),
     Stage("weak sets", Criterion.weak_sets, Criterion.has_weak_sets, FIRST_ASKED, SIZES_NODES),
     Stage("weak sets", Criterion.weak_sets, Criterion.has_weak_sets_and_no_groups, ASKED_SHARE, SIZES_NODES),
