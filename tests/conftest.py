@@ -25,3 +25,8 @@ def _processes_hear_ctrl_c() -> Iterator[None]:
     yield
     if before is signal.SIG_IGN:
         signal.signal(signal.SIGINT, before)
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """Files are run in this process, where a debugger works; folders on all cores."""
+    return 0 if all(arg.partition("::")[0].endswith(".py") for arg in config.args) else None
