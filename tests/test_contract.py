@@ -101,6 +101,20 @@ def test_folders_mirror_the_package() -> None:
         assert mirrored.is_dir(), f"tests/{folder} mirrors no folder"
 
 
+def test_the_short_tier_leaves_out_functions_that_exist() -> None:
+    """Others would be out of it for ever, if they came back."""
+    lines = (TESTS / "short_tier.txt").read_text(encoding="utf-8").splitlines()
+    listed = [line.split()[0] for line in lines]
+    defined = {
+        f"tests/{path.relative_to(TESTS).as_posix()}::{node.name}"
+        for path in TESTS.rglob("test_*.py")
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.FunctionDef)
+    }
+    assert listed == sorted(set(listed))
+    assert set(listed) - defined == set()
+
+
 def test_strategies_are_in_one_file() -> None:
     """Composites and named ones; what a single test draws stands beside it."""
     named = re.compile(r"^(?:@st\.composite|\w+ = st\.)", re.MULTILINE)

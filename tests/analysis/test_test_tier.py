@@ -1,0 +1,244 @@
+"""The short tier: what pytest leaves out, how it is chosen, and the faults that it must find."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from analysis.test_tier.c_mutants import c_mutants
+from analysis.test_tier.campaign import Campaign, Measured, Row, draw, family_of
+from analysis.test_tier.choose import AGAIN, CASES, KEPT, Cost, chosen, parts_of, read_list, summary, write_list
+from analysis.test_tier.mutants import Mutant, python_mutants
+from analysis.test_tier.reached_lines import Reach, load, save
+from tests.documents import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+TESTS_OF_EACH_KIND = """
+import pathlib
+
+import pytest
+
+
+def test_kept():
+    pathlib.Path("kept").touch()
+
+
+def test_left_out():
+    pathlib.Path("left_out").touch()
+
+
+@pytest.mark.parametrize("name", ["first", "second", "third", "fourth"])
+def test_some(name):
+    pathlib.Path(name).touch()
+
+
+@pytest.mark.slow
+def test_slowly():
+    pathlib.Path("slowly").touch()
+"""
+PARTS = """
+def f(x, rows: list[int | None]) -> int:
+    if x < 3 and rows:
+        rows.append(-x)
+        return min(x + 1, 2)
+    raise ValueError(x * 2)
+"""
+
+
+def test_faults_are_those_of_each_kind() -> None:
+    """None in an annotation or in the message of an error."""
+    given = {(one.kind, PARTS[one.begin : one.end], one.text) for one in python_mutants("f.py", PARTS)}
+    assert given == {
+        ("condition", "x < 3 and rows", "(not (x < 3 and rows))"),
+        ("logic", "x < 3 and rows", "((x < 3) or (rows))"),
+        ("comparison", "x < 3", "((x) <= (3))"),
+        ("constant", "3", "(3 + 1)"),
+        ("statement", "rows.append(-x)", "pass"),
+        ("function", "rows.append", "rows.remove"),
+        ("sign", "-x", "(x)"),
+        ("function", "min", "max"),
+        ("arithmetic", "x + 1", "((x) - (1))"),
+        ("constant", "1", "(1 + 1)"),
+        ("constant", "2", "(2 + 1)"),
+    }
+
+
+def test_faults_of_c_are_in_its_code_only() -> None:
+    source = (
+        "/* a < b */\n#define N 3\nint f(int a) {\n    if (a <= 4) {\n        a += 2;\n    }\n    return a; // 1 + 1\n"
+    )
+    given = {(one.line, one.kind, source[one.begin : one.end], one.text) for one in c_mutants("f.c", source)}
+    assert given == {
+        (4, "comparison", " <= ", " < "),
+        (4, "condition", "a <= 4", "!(a <= 4)"),
+        (4, "constant", "4", "(4 + 1)"),
+        (5, "arithmetic", " += ", " -= "),
+        (5, "constant", "2", "(2 + 1)"),
+        (5, "statement", "        a += 2;", "    ;"),
+    }
+
+
+def test_every_fault_drawn_can_be_read_and_all_families_have_some() -> None:
+    drawn = draw(ROOT, seed=5, count=60)
+    folders = {path.parent.relative_to(ROOT).parts[:2] for path in (ROOT / "ratt_opt").rglob("*.py")}
+    assert {("ratt_opt", *family_of(one.file).split("/")[1:]) for one in drawn} >= folders
+    for mutant in drawn:
+        text = (ROOT / mutant.file).read_text(encoding="utf-8")
+        assert text != mutant.apply(text)
+        if mutant.file.endswith(".py"):
+            ast.parse(mutant.apply(text))
+
+
+def costs(*seconds: float, tests: int = 1) -> list[Cost]:
+    return [Cost(tests, one, 0.0) for one in seconds]
+
+
+def test_the_tier_takes_what_reaches_most_for_its_seconds() -> None:
+    units = [np.array(one) for one in ([0, 1], [0], [1, 2], [2])]
+    worth = np.array([10.0, 1.0, 8.0])
+    assert chosen(parts_of("abcd", costs(1, 1, 1, 1)), units, worth, 2.0) == {0: 1, 2: 1}
+    assert chosen(parts_of("abcd", costs(1, 1, 100, 1)), units, worth, 3.0) == {
+        0: 1,
+        1: 1,
+        3: 1,
+    }  # the third is too dear
+    assert 0 < AGAIN < 1
+
+
+def test_a_function_of_many_cases_may_join_with_some() -> None:
+    (cost,) = costs(10, tests=10 * CASES)
+    units, worth = [np.array([0])], np.array([5.0])
+    assert chosen(parts_of("a", [cost]), units, worth, 0.9) == {}
+    assert chosen(parts_of("a", [cost]), units, worth, 1.5) == {0: CASES}
+    assert chosen(parts_of("a", [cost]), units, worth, 10.0) == {0: 10 * CASES}
+
+
+def test_functions_of_a_file_share_the_seconds_of_its_fixture() -> None:
+    given = [Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0)]
+    assert [part.seconds for part in parts_of(["f::a", "f::b", "g::c"], given)] == [2.1, 2.1, 0.1]
+
+
+def test_what_came_back_is_in_the_tier() -> None:
+    cases = read_list(ROOT / "tests" / "short_tier.txt")
+    assert all(cases.get(name, 1) > 0 for name in KEPT)
+    for name in KEPT:
+        file, function = name.split("::")
+        assert f"def {function}(" in (ROOT / file).read_text(encoding="utf-8")
+
+
+def test_the_list_says_what_is_left_out(tmp_path: Path) -> None:
+    write_list(tmp_path / "list.txt", {"b": 3, "a": 0})
+    assert (tmp_path / "list.txt").read_text(encoding="utf-8") == "a 0\nb 3\n"
+    assert read_list(tmp_path / "list.txt") == {"a": 0, "b": 3}
+    known = dict(zip("abc", costs(2, 4, 1, tests=4), strict=True))
+    assert summary(known, {"a": 0, "b": 3}) == [("short", 2, 7, 4.0), ("whole", 3, 12, 7.0)]
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package of one compiled loop, a constant, and what calls it."""
+    (tmp_path / "ratt_opt" / "native" / "src").mkdir(parents=True)
+    (tmp_path / "ratt_audit").mkdir()
+    loop = "import numba\nLIMIT = 3\n\n\n@numba.njit(cache=True)\ndef loop(x):\n    return x + 1\n"
+    (tmp_path / "ratt_opt" / "loops.py").write_text(loop, encoding="utf-8")
+    call = "def call(x):\n    if x < LIMIT:\n        return loop(x)\n    return 0\n"
+    calls = f"from ratt_opt.loops import LIMIT, loop\n\n\n{call}"
+    (tmp_path / "ratt_opt" / "calls.py").write_text(calls, encoding="utf-8")
+    return tmp_path
+
+
+def test_compiled_lines_are_reached_by_what_reaches_their_callers(package: Path) -> None:
+    lines = {5: frozenset({"a", "b"}), 6: frozenset({"a"}), 7: frozenset({"b"})}
+    save(package / "reach.json", {f"{package}/ratt_opt/calls.py": lines}, package)
+    reach = load(package / "reach.json", package)
+    assert reach.tests("ratt_opt/calls.py", 7) == {"b"}
+    assert reach.tests("ratt_opt/loops.py", 7) == {"a"}
+    assert reach.tests("ratt_opt/loops.py", 2) == {"a", "b"}
+    assert json.loads((package / "reach.json").read_text())["tests"] == ["a", "b"]
+
+
+class _Tree:
+    """Runs nothing: a test fails if it is told so for the fault that is made."""
+
+    def __init__(self, finds: dict[str, set[str]]) -> None:
+        self._finds = finds
+        self._made: list[str] = []
+
+    def with_faults(self, mutants: list[Mutant]):
+        from contextlib import contextmanager
+
+        @contextmanager
+        def made():
+            self._made = [one.text for one in mutants]
+            yield True
+            self._made = []
+
+        return made()
+
+    def run(self, limits: dict[str, float], *, cases: object = None, all_tests: bool = False) -> dict[str, object]:
+        del all_tests, cases
+        failed = [test for test in limits if any(test in self._finds[text] for text in self._made)]
+        ended = "failed" if failed else "passed"
+        return {"ended": ended, "test": (failed or [""])[0], "failed": failed, "seconds": 1.0}
+
+
+def test_each_fault_is_found_by_the_tier_that_has_its_test(package: Path) -> None:
+    """What is left over by the short tier is tried at once, and what fails then with each fault alone."""
+    tests = ("tests/test_x.py::short", "tests/test_y.py::long", "tests/test_y.py::other")
+    reach = Reach(package, {"ratt_opt/calls.py": {7: frozenset(tests)}})
+    mutants = [Mutant("ratt_opt/calls.py", 7, "constant", 0, 0, text) for text in ("one", "two", "three")]
+    tree = _Tree({"one": {tests[0]}, "two": {tests[1]}, "three": set()})
+    measured = Measured(reach, dict(zip(tests, costs(1, 1, 1), strict=True)), dict.fromkeys(tests[1:], 0))
+    file = package / "rows.csv"
+    campaign = Campaign(tree, measured, mutants, file)
+    said: list[str] = []
+    campaign.near(np.inf, said.append)
+    assert [row.found for row in campaign.rows.values()] == ["short", "open", "open"]
+    campaign = Campaign(tree, measured, mutants, file)  # goes on with what is in the file
+    campaign.near(np.inf, said.append)
+    campaign.together(np.inf, said.append)
+    assert [row.found for row in Campaign.read(file).values()] == ["short", "whole", "none"]
+    assert Campaign.read(file)[1].test.startswith(tests[1])
+    assert isinstance(campaign.rows[2], Row)
+
+
+SOME = ["first", "third"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "run"),
+    [
+        ((), ["kept", *SOME]),
+        (("-n", "2"), ["kept", *SOME]),
+        (("--whole",), ["kept", "left_out", "first", "second", "third", "fourth"]),
+        (("tests/test_it.py::test_left_out",), ["left_out"]),
+        (("-k", "left_out"), ["left_out"]),
+        (("-m", "slow"), ["slowly"]),
+    ],
+    ids=" ".join,
+)
+def test_pytest_runs_the_short_tier_unless_tests_are_named(
+    arguments: tuple[str, ...], run: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "tests").mkdir()
+    shutil.copy(ROOT / "tests" / "conftest.py", tmp_path / "tests")
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    (tmp_path / "tests" / "test_it.py").write_text(TESTS_OF_EACH_KIND, encoding="utf-8")
+    listed = "tests/test_it.py::test_left_out 0\ntests/test_it.py::test_some 2\n"
+    (tmp_path / "tests" / "short_tier.txt").write_text(listed, encoding="utf-8")
+    given = arguments if "-n" in arguments else ("-n0", *arguments)
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *given]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert {path.name for path in tmp_path.iterdir() if path.suffix == "" and path.is_file()} == set(run)
