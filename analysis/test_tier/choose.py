@@ -51,7 +51,7 @@ KEPT = (
     "tests/certificates/test_group_prices.py::test_every_fault_has_its_name",
     "tests/certificates/test_group_sizes.py::test_every_fault_has_its_name",
     # Enumerations are complete: searches still end with true brackets if a branch is missing.
-    "tests/attackers/by_prices/groups/test_groups.py::test_the_enumeration_lists_every_group_that_pays",
+    "tests/attack/test_pricing.py::test_every_group_that_costs_less_is_listed_with_what_it_needs",
     "tests/attackers/weakest_set/by_targets/test_decomposition.py::test_what_a_target_chooses_is_worth_what_is_proved",
 )
 """Functions that found faults which the tier had missed, and others for the same kind of fault: they are always in."""
