@@ -37,7 +37,7 @@ GAP = 1e-6
 """Names a max-min search."""
 WARM, WARM_LARGE = 24, 64
 """Robots of the first problems of each objective, not counted: what is compiled is loaded then. Large teams are asked
-who is inside first (``attackers/by_prices/paying_groups.py``)."""
+who is inside first (``attack/pricing.py``)."""
 
 
 def instances(
