@@ -54,6 +54,9 @@ by which prices that claim too few may fall for groups before."""
 FIRST_ATTEMPT, LONGER = 10_000, 3
 """Nodes of the first search over seeing robots at each of a few prices, and their growth while none of them ends."""
 
+ROUNDED = 2
+"""Units of duals by which rounding may leave the cost of a group below zero."""
+
 MOVES, WARM = 1_500, (4.0, 0.1)
 """Moves around each robot to find groups that pay the prices; the temperatures they cool between, in links that leave a
 group."""
@@ -213,6 +216,7 @@ class ThresholdDecision:
         """Try all partitions into groups of small reduced cost."""
         question = question_of(prices, threshold, size, 0.0)
         gap = 2 * self.threat.alpha_c * UNIT - question.claim(self.threat.n_blinded)
+        gap += ROUNDED * self._plan.robots
         first = np.argsort(-question.duals, kind="stable").astype(np.int64)
         question = replace(question, limit=gap + 1)
         listed = self._search.listed(question, budget, first, nodes // LISTING, ROOM)

@@ -26,7 +26,7 @@ static double bound_of(Search *s, const Node *node, Multipliers at, double room)
     }
     double kept = at.value + at.cut * (double)(at.cut > 0 ? s->q.most_cut : node->cut);
     kept += at.blinded * (double)(at.blinded > 0 ? s->q.n_blinded : node->need);
-    int64_t cut = least_cut(s, node->state, s->q.unit + (int64_t)(at.cut * unit));
+    int64_t cut = least_cut(s, node->state, s->q.unit + (int64_t)floor(at.cut * unit));
     return (double)cut - kept * unit - s->robots - 2; /* as costs are rounded */
 }
 
