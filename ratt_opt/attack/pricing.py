@@ -10,7 +10,7 @@ multipliers pay for what every group keeps: the most that its sensing robots wei
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
@@ -22,6 +22,8 @@ from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -37,8 +39,8 @@ MOST_PAIRED = 100
 EFFORT, EFFORT_WORK = 200_000, 50_000_000
 """Robots valued at most to decide what a group needs, and multiplications for it: less than a tenth of a second."""
 FINISHED, PAUSED, FOUND = 0, 1, 2
-SENSING, BLINDED = 1, 2
-"""What a robot is to a group; 0 is outside."""
+BLINDED = 2
+"""What a robot is to a group; 1 is sensing, 0 outside."""
 
 
 class Order(Enum):
@@ -105,8 +107,8 @@ class Plan:
         nothing = np.zeros(self.robots, dtype=np.int64)
         return GroupSearch(self, Question(threshold, self.robots, nothing, 0, 0), Order.MEMBERS, nothing)
 
-    def anneal(self, question: Question, first: int, moves: int, warm: tuple[float, float], random: c_uint64) -> Column:
-        """A group around one robot, annealed between two temperatures [links that leave a group]."""
+    def annealed(self, question: Question, moves: int, warm: tuple[float, float], random: c_uint64) -> Iterator[Column]:
+        """A group around each robot, annealed between two temperatures [links that leave a group]."""
         best, record = np.zeros(self.robots, dtype=np.int8), self.record(question, Order.MEMBERS, question.duals)
         call = function(
             "anneal_column",
@@ -118,9 +120,11 @@ class Plan:
             c_void_p,
         )
         hot, cold = warm[0] * UNIT, warm[1] * UNIT
-        cost = call(byref(record), first, moves, hot, cold, byref(random), address(best))
-        need = int((best == BLINDED).sum())
-        return Column(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
+        for first in range(self.robots):
+            best[:] = 0
+            cost = call(byref(record), first, moves, hot, cold, byref(random), address(best))
+            need = int((best == BLINDED).sum())
+            yield Column(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
 
     def record(self, question: Question, order: Order, robots: IntArray) -> QuestionRecord:
         """As C reads it; everything it has the addresses of must be kept alive."""
@@ -187,13 +191,12 @@ class Column:
 class GroupSearch:
     """A search for the groups of one question, which may be gone on with, and whose duals may be lowered.
 
-    ``nodes`` : so far; ``order`` : (N,) robots, groups come by the first of theirs if it is asked who is inside
+    ``nodes`` : so far; ``first`` : (N,) robots, groups come by the first of theirs if it is asked who is inside
     """
 
     def __init__(self, plan: Plan, question: Question, order: Order, first: IntArray) -> None:
         self._plan, self._duals, self._first = plan, question.duals.copy(), first
-        asked = Question(question.threshold, question.most, self._duals, question.blinding, question.limit)
-        self._record = plan.record(asked, order, first)
+        self._record = plan.record(replace(question, duals=self._duals), order, first)
         self.handle = function("open_pricing", c_void_p, POINTER(QuestionRecord))(byref(self._record))
         if not self.handle:
             raise MemoryError

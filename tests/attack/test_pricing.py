@@ -158,8 +158,7 @@ def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
     team, threshold = plan_of(problem, plan), problem.objective(plan) * rng.uniform(0.4, 0.9)
     prices, found, random = (rng.uniform(0, 2, 7), rng.uniform(0.2, 2)), [], c_uint64(seed + 1)
     question = question_of(threshold, prices, 0.0, 7)
-    for first in range(7):
-        one = team.anneal(question, first, 2_000, (4.0, 0.1), random)
+    for first, one in enumerate(team.annealed(question, 2_000, (4.0, 0.1), random)):
         cut = {(i, j) for i, j in problem.communication.links if one.robots[i] != one.robots[j]}
         if one.cost > 1e6 * UNIT or cut & problem.protected_links:
             continue

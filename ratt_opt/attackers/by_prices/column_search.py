@@ -55,7 +55,7 @@ def question_of(prices: PriceVector, threshold: float, most: int, limit: float) 
     return Question(
         threshold,
         most,
-        np.floor(prices.robot * HALF).astype(np.int64),
+        _duals(prices),
         int(np.ceil(prices.blinded * HALF)),
         int(np.floor(limit * HALF)),
     )
@@ -120,8 +120,8 @@ class ColumnSearch:
                 del self._begun[next(iter(self._begun))]
         return Columns(groups=groups, is_complete=False)
 
-    def listed(self, question: Question, budget: Budget, first: IntArray, nodes: int, room: int) -> Listed:
-        """Groups of a question, at most ``room``, within so many nodes; those of the robots that come ``first``, first.
+    def listed(self, question: Question, budget: Budget, nodes: int, room: int) -> Listed:
+        """Groups of a question, at most ``room``, within so many nodes.
 
         Raises
         ------
@@ -129,7 +129,7 @@ class ColumnSearch:
         """
         robots, count, is_complete = self.plan.robots, 0, False
         table = np.zeros((room, robots), np.int8), np.zeros((room, 4), np.int64)
-        with GroupSearch(self.plan, question, Order.MEMBERS, first) as search:
+        with GroupSearch(self.plan, question, Order.MEMBERS, _dearest_first(question)) as search:
             pace = _Pace(search, nodes, budget)
             while not (pace.is_over or is_complete or count == room):
                 count, is_complete = pace.ask(lambda some: search.fill(some, table, count))  # noqa: B023

@@ -4,7 +4,7 @@
    that sense or are inside (``column_search.py``) has found no group that pays them; groups that do are added to the
    program.
 2. Prices that claim ``gap`` links less leave the groups of reduced cost at most ``gap``: they are listed, and the
-   partitions into them tried (``listing.py``). Either one is an attack, or the threshold is refuted.
+   partitions into them tried (``partitions.py``). Either one is an attack, or the threshold is refuted.
 
 Source: for the second step, Baldacci, Christofides and Mingozzi, Mathematical Programming 115 (2008).
 """
@@ -52,7 +52,7 @@ LOWERED, FALL = 0.003, 0.1
 by which prices that claim too few may fall for groups before."""
 
 FIRST_ATTEMPT, LONGER = 10_000, 3
-"""Nodes of the first search over seeing robots at each of a few prices, and their growth while none of them ends."""
+"""Nodes of the first search at each of a few prices, and their growth while none of them ends."""
 
 ROUNDED = 2
 """Units of duals by which rounding may leave the cost of a group below zero."""
@@ -205,9 +205,8 @@ class ThresholdDecision:
     def _cheap(self, prices: PriceVector, threshold: float, size: int, budget: Budget) -> list[KnownGroup]:
         """Groups that pay these prices, by annealing around each robot."""
         question, groups, below = question_of(prices, threshold, size, -TOLERANCE), [], np.nextafter(threshold, -np.inf)
-        for first in range(self._plan.robots):
+        for column in self._plan.annealed(question, MOVES, WARM, self._random):
             budget.check()
-            column = self._plan.anneal(question, first, MOVES, WARM, self._random)
             if column.cost < question.limit:
                 groups.append(KnownGroup(robots=column.robots, need=column.need, value=float(below)))
         return groups
@@ -217,9 +216,8 @@ class ThresholdDecision:
         question = question_of(prices, threshold, size, 0.0)
         gap = 2 * self.threat.alpha_c * UNIT - question.claim(self.threat.n_blinded)
         gap += ROUNDED * self._plan.robots
-        first = np.argsort(-question.duals, kind="stable").astype(np.int64)
         question = replace(question, limit=gap + 1)
-        listed = self._search.listed(question, budget, first, nodes // LISTING, ROOM)
+        listed = self._search.listed(question, budget, nodes // LISTING, ROOM)
         if not listed.is_complete:
             return Answer(verdict=Threshold.OPEN)
         columns = listed.columns

@@ -103,9 +103,8 @@ class _CoverProof:
             prices, groups, scale = self.program.solve(seconds_left()), [], UNIT / HALF_LINK
             robots, blinded = np.floor(prices.robot * scale).astype(np.int64), int(np.ceil(prices.blinded * scale))
             question = Question(self.sets.threshold, self.plan.robots, robots, blinded, 0)
-            for first in range(self.plan.robots):
+            for column in self.plan.annealed(question, MOVES, (WARM, COLD), random):
                 tick()
-                column = self.plan.anneal(question, first, MOVES, (WARM, COLD), random)
                 if column.cost < prices.group * scale:
                     groups.append(sum(1 << i for i in np.flatnonzero(column.robots).tolist()))
             new = self.program.add(groups)

@@ -76,18 +76,13 @@ static int propose(Group *g, int first, Move *move) {
     return !(move->becomes == BLIND && q->seeing[i]) && !(move->other_becomes == BLIND && q->seeing[j]);
 }
 
-static void add_information(const Group *g, double *sums, int times, int robot) {
-    const double *own = g->q->team->information + (size_t)robot * g->width;
-    for (int t = 0; t < g->width; t++) sums[t] += times * own[t];
-}
-
 /* Whether the group stays below the threshold; its information is brought up to date if so. */
 static int stays_below(Group *g, const Move *move, int was, int other_was) {
     int gain = (move->becomes == SENSING) - (was == SENSING);
     int other = move->other < 0 ? 0 : (move->other_becomes == SENSING) - (other_was == SENSING);
     memcpy(g->trial, g->sums, (size_t)g->width * sizeof(double));
-    if (gain) add_information(g, g->trial, gain, move->robot);
-    if (other) add_information(g, g->trial, other, move->other);
+    if (gain) add_information(g->q->team, g->trial, gain, move->robot, g->trial);
+    if (other) add_information(g->q->team, g->trial, other, move->other, g->trial);
     if ((gain > 0 || other > 0) && !(value_of(g->q->team, g->trial) < g->q->threshold)) return 0;
     memcpy(g->sums, g->trial, (size_t)g->width * sizeof(double));
     return 1;
@@ -103,7 +98,7 @@ EXPORTED int64_t anneal_column(const Pricing *q, int64_t first, int64_t moves, d
     if (!sums || !part) goto end;
     Group g = {q, n, width, part, sums, sums + width, *random};
     memcpy(sums, q->team->prior, (size_t)width * sizeof(double));
-    add_information(&g, sums, 1, (int)first);
+    add_information(q->team, sums, 1.0, first, sums);
     int senses = value_of(q->team, sums) < q->threshold;
     if (!senses && (q->n_blinded == 0 || q->seeing[first])) goto end;
     if (!senses) memcpy(sums, q->team->prior, (size_t)width * sizeof(double));

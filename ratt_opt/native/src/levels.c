@@ -10,18 +10,16 @@
 #include "sets.h"
 #include "team.h"
 
-static const double ROUNDING = 1e-10; /* relative: averages must be higher to prove anything */
-
 enum { RATIOS = 5 };             /* tried to compare the weights of two sizes */
 
-static double error_before(const Team *team) {
+double error_before(const Team *team) {
     double total = 0.0;
     for (int j = 0; j < team->targets; j++) total += team->weights[j] * team->before[j];
     return team->criterion == LARGEST ? team->before_all : total;
 }
 
-double level_of(const Team *team, double value) {
-    return team->criterion == LOG_DET ? value : 1.0 / (error_before(team) - value);
+static double level_of(const Search *s, double value) {
+    return s->q.team->criterion == LOG_DET ? value : 1.0 / (s->before - value);
 }
 
 /* The level from which sets are not below a threshold, rounding included; infinite where no value is sure to be as high. */
@@ -31,20 +29,14 @@ EXPORTED double level_of_threshold(const Team *team, double threshold) {
     return error > 0.0 ? 1.0 / error : INFINITY;
 }
 
-void add_copies(const Search *s, double *sums, double times, int i) {
-    const double *own = s->q.team->information + (size_t)i * s->width;
-    for (int t = 0; t < s->width; t++) sums[t] += times * own[t];
-}
-
 double value_of_copies(const Search *s, const double *sums, double times, int i, int j) {
-    memcpy(s->spare, sums, (size_t)s->width * sizeof(double));
-    add_copies(s, s->spare, times, i);
-    if (j >= 0) add_copies(s, s->spare, times, j);
+    add_information(s->q.team, sums, times, i, s->spare);
+    if (j >= 0) add_information(s->q.team, s->spare, times, j, s->spare);
     return value_of(s->q.team, s->spare);
 }
 
 double level_of_copies(const Search *s, const double *sums, double times, int i, int j) {
-    return level_of(s->q.team, value_of_copies(s, sums, times, i, j));
+    return level_of(s, value_of_copies(s, sums, times, i, j));
 }
 
 static int compare(const void *a, const void *b) {
@@ -117,7 +109,7 @@ static double most_weight(Search *s, const int8_t *state, int size, double least
     for (int p = count - size; p < count; p++) most += s->sorted[p];
     if (most <= least) return most; /* no need to look closer */
     weigh_size(s, state, size, s->own);
-    double sum = 0.0, sum_own = 0.0, room = size * s->level * (1 + ROUNDING);
+    double sum = 0.0, sum_own = 0.0, room = size * s->q.level * (1 + ROUNDING);
     for (int i = 0; i < s->robots; i++)
         if (state[i] & SENSES) sum += s->weight[i], sum_own += s->own[i];
     for (int step = 0; step < RATIOS && isfinite(sum_own) && isfinite(room); step++) {
@@ -135,10 +127,10 @@ static double weigh_all(Search *s, Node *node) {
     for (; node->most > 0; node->most--) {
         weigh_size(s, node->state, node->most, s->weight);
         int count = gather(s, node->state, s->weight, s->sorted);
-        double enough = node->most * s->level * (1 + ROUNDING);
+        double enough = node->most * s->q.level * (1 + ROUNDING);
         if (count >= node->most && sum_of_least(s->sorted, count, node->most) < enough) break;
     }
-    double room = node->most > 0 ? node->most * s->level * (1 + ROUNDING) : 0.0;
+    double room = node->most > 0 ? node->most * s->q.level * (1 + ROUNDING) : 0.0;
     int least = node->low - (int)s->q.n_blinded; /* fewer do not sense in any group of the node */
     for (int size = node->most - 1; size > 0 && size >= least; size--) room = fmax(room, most_weight(s, node->state, size, room));
     return room;
@@ -159,7 +151,7 @@ static int pairs_may_be_below(Search *s, const Node *node, int size) {
             if (q != p) s->sorted[others++] = levels[p * n + q];
         s->own[p] = sum_of_least(s->sorted, others, size - 1) / (size - 1);
     }
-    return sum_of_least(s->own, count, size) < size * s->level * (1 + ROUNDING);
+    return sum_of_least(s->own, count, size) < size * s->q.level * (1 + ROUNDING);
 }
 
 /* Where some sense for sure: others add to their level, at least what copies of each do, and nobody adds nothing. */
@@ -168,12 +160,12 @@ static double weigh_more(Search *s, Node *node, int fixed) {
         int more = node->most - fixed, count = 0;
         for (int i = 0; i < s->robots; i++)
             if (MAY_SENSE(node->state[i])) s->sorted[count++] = s->weight[i] = level_of_copies(s, node->sums, more, i, -1);
-        if (sum_of_least(s->sorted, count, more) >= more * s->level * (1 + ROUNDING)) continue;
+        if (sum_of_least(s->sorted, count, more) >= more * s->q.level * (1 + ROUNDING)) continue;
         if (more < 2 || !s->q.levels || pairs_may_be_below(s, node, more)) break;
     }
-    double level = level_of(s->q.team, value_of(s->q.team, node->sums));
+    double level = level_of(s, value_of(s->q.team, node->sums));
     for (int i = 0; i < s->robots; i++) s->weight[i] -= level;
-    return (node->most - fixed) * (s->level * (1 + ROUNDING) - level);
+    return (node->most - fixed) * (s->q.level * (1 + ROUNDING) - level);
 }
 
 double weigh(Search *s, Node *node, int fresh) {

@@ -7,13 +7,6 @@
 #include "sets.h"
 #include "team.h"
 
-/* out = sums + times * information of robot i */
-static void added(const Team *team, const double *sums, double times, int64_t i, double *out) {
-    int width = team->targets * entries_of(team);
-    const double *own = team->information + (size_t)i * width;
-    for (int t = 0; t < width; t++) out[t] = sums[t] + times * own[t];
-}
-
 /* smallest[p]: the sum of the `count` smallest worths after position p, infinite where there are fewer. `kept` (count + 1). */
 static void smallest_after(int robots, int64_t first, const double *worths, int64_t count, double *kept, double *smallest) {
     int64_t number = 0;
@@ -58,7 +51,7 @@ EXPORTED int list_low_sets(const Team *team, LowSets *list, int64_t work, double
             if (done >= work || list->counters[1] + robots >= list->capacity) break;
             done += (robots - p) * team->targets;
             for (int64_t i = p; i < robots; i++) {
-                added(team, sums, (double)left, i, one);
+                add_information(team, sums, (double)left, i, one);
                 worths[i] = value_of(team, one);
             }
             smallest_after(robots, p, worths, left - 1, kept, smallest);
@@ -75,7 +68,7 @@ EXPORTED int list_low_sets(const Team *team, LowSets *list, int64_t work, double
         }
         list->position[depth] = p + 1;
         list->spent[depth + 1] = list->spent[depth] + list->costs[p];
-        added(team, sums, 1.0, p, list->sums + (depth + 1) * width);
+        add_information(team, sums, 1.0, p, list->sums + (depth + 1) * width);
         list->position[++depth] = p + 1;
         fresh = 1;
     }
@@ -129,7 +122,7 @@ EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const 
     if (!memory) return -1;
     Family f = {team, home, must, groups, memory, memory + (size_t)(groups + 2) * width, memory + (size_t)(groups + 1) * width};
     for (int g = 0; g <= groups; g++) memcpy(f.sums + g * width, team->prior, (size_t)width * sizeof(double));
-    for (int64_t i = 0; i < team->robots; i++) added(team, f.sums + home[i] * width, 1.0, i, f.sums + home[i] * width);
+    for (int64_t i = 0; i < team->robots; i++) add_information(team, f.sums + home[i] * width, 1.0, i, f.sums + home[i] * width);
     f.values[0] = -INFINITY;
     for (int g = 1; g <= groups; g++) f.values[g] = value_of(team, f.sums + g * width);
     while (1) {
@@ -167,11 +160,11 @@ EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where
     if (!sums) return -1;
     memcpy(sums, kept, (size_t)width * sizeof(double));
     for (int64_t i = 0; i < team->robots; i++)
-        if (where[i] == INSIDE) added(team, sums, 1.0, i, sums);
+        if (where[i] == INSIDE) add_information(team, sums, 1.0, i, sums);
     double value = value_of(team, sums), scale = fabs(value);
     memcpy(changed, sums, (size_t)width * sizeof(double));
     for (int64_t i = 0; i < team->robots; i++)
-        if (where[i] == OUTSIDE) added(team, changed, 1.0, i, changed);
+        if (where[i] == OUTSIDE) add_information(team, changed, 1.0, i, changed);
     scale = fmax(scale, fabs(value_of(team, changed))); /* less than 1e-12 of it is rounding */
     while (steps-- > 0) {
         int64_t leaves = -1, enters = -1;
@@ -180,8 +173,8 @@ EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where
             if (where[i] != INSIDE) continue;
             for (int64_t e = 0; e < team->robots; e++) {
                 if (where[e] != OUTSIDE) continue;
-                added(team, sums, -1.0, i, changed);
-                added(team, changed, 1.0, e, changed);
+                add_information(team, sums, -1.0, i, changed);
+                add_information(team, changed, 1.0, e, changed);
                 double other = value_of(team, changed);
                 if (other < lowest) lowest = other, leaves = i, enters = e;
             }
@@ -191,8 +184,8 @@ EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where
             break;
         }
         where[leaves] = OUTSIDE, where[enters] = INSIDE;
-        added(team, sums, -1.0, leaves, sums);
-        added(team, sums, 1.0, enters, sums);
+        add_information(team, sums, -1.0, leaves, sums);
+        add_information(team, sums, 1.0, enters, sums);
         value = lowest;
     }
     free(sums);

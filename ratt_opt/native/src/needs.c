@@ -27,10 +27,8 @@ static int some_are_below(Search *s, int depth, int count, int size, int64_t *ef
     for (int p = 0; p < size; p++) sum += worth[p];
     for (int p = 0; p + size <= count; p++) { /* sets whose first robot is this one */
         if (p > 0) sum += worth[p + size - 1] - worth[p - 1];
-        if (sum >= size * s->level * (1 + 1e-10)) return 0;
-        double *following = sums + s->width + n;
-        memcpy(following, sums, (size_t)s->width * sizeof(double));
-        add_copies(s, following, 1.0, order[p]);
+        if (sum >= size * s->q.level * (1 + ROUNDING)) return 0;
+        add_information(s->q.team, sums, 1.0, order[p], sums + s->width + n);
         memcpy(order + n, order + p + 1, (size_t)(count - p - 1) * sizeof(int));
         int answer = some_are_below(s, depth + 1, count - p - 1, size - 1, effort);
         if (answer == 1) s->chosen[order[p]] = 1;
@@ -50,7 +48,7 @@ int may_be_below(Search *s, Node *node, int blinded, int64_t effort) {
         if (node->state[i] & BLINDED) {
             s->order[count++] = i;
         } else {
-            add_copies(s, s->sums, 1.0, i);
+            add_information(s->q.team, s->sums, 1.0, i, s->sums);
             s->chosen[i] = 1;
             size--;
         }
@@ -65,7 +63,7 @@ int may_be_below(Search *s, Node *node, int blinded, int64_t effort) {
 static int is_below(Search *s, const Node *node) {
     memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
     for (int i = 0; i < s->robots; i++)
-        if (IS_INSIDE(node->state[i]) && !node->blind[i]) add_copies(s, s->sums, 1.0, i);
+        if (IS_INSIDE(node->state[i]) && !node->blind[i]) add_information(s->q.team, s->sums, 1.0, i, s->sums);
     return value_of(s->q.team, s->sums) < s->q.threshold;
 }
 

@@ -142,7 +142,7 @@ static Node *begin(Search *s) {
 static int take_in(Search *s, Node *node, int robot) {
     node->state[robot] &= ~OUTSIDE;
     if (node->state[robot] != SENSES) return 0;
-    add_copies(s, node->sums, 1.0, robot);
+    add_information(s->q.team, node->sums, 1.0, robot, node->sums);
     return 1;
 }
 
@@ -241,7 +241,7 @@ static int by_senses(Search *s, int8_t *group, int64_t *column) {
     copy_node(s, node, other);
     if (robot >= 0) {
         other->state[robot] = SENSES, node->state[robot] &= ~SENSES;
-        add_copies(s, other->sums, 1.0, robot);
+        add_information(s->q.team, other->sums, 1.0, robot, other->sums);
         int senses = may_pay(s, other, 1), not = may_pay(s, node, 0);
         keep(s, not, senses);
         return PAUSED;
@@ -278,7 +278,7 @@ EXPORTED Search *open_pricing(const Pricing *question) {
     if (!s) return NULL;
     size_t n = (size_t)question->team->robots, nodes = 3 * n + 4, arcs = (size_t)question->start[n];
     size_t width = (size_t)question->team->targets * (size_t)entries_of(question->team);
-    s->q = *question, s->robots = (int)n, s->width = (int)width, s->level = question->level;
+    s->q = *question, s->robots = (int)n, s->width = (int)width, s->before = error_before(question->team);
     s->nodes = calloc(nodes, sizeof(Node));
     int8_t *states = malloc(nodes * 2 * n);
     double *sums = malloc(nodes * (width + n) * sizeof(double));

@@ -6,6 +6,8 @@
 
 #include "records.h"
 
+static const double ROUNDING = 1e-10; /* relative: averages must be higher to prove anything */
+
 /* What a robot may still be to the group, as bits; OUTSIDE alone and without OUTSIDE are decided. */
 enum { SENSES = 1, BLINDED = 2, OUTSIDE = 4 };
 
@@ -33,7 +35,7 @@ typedef struct {
 struct Search {
     Pricing q;
     int robots, width;
-    double level;                 /* sets whose level is as high are not below the threshold */
+    double before;                /* error without a robot */
     Node *nodes;
     int depth, first;
     int64_t visited;
@@ -44,10 +46,9 @@ struct Search {
 };
 
 /* levels.c */
-double level_of(const Team *team, double value);
+double error_before(const Team *team);
 double value_of_copies(const Search *s, const double *sums, double times, int i, int j);
 double level_of_copies(const Search *s, const double *sums, double times, int i, int j);
-void add_copies(const Search *s, double *sums, double times, int i);
 /* What the robots of a node that may sense weigh, in `weight`; lowers `most` and closes robots that cannot sense. Returns the
    most that those of a set below the threshold weigh besides robots that sense for sure. `fresh`: more of these than before. */
 double weigh(Search *s, Node *node, int fresh);

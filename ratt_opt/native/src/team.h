@@ -2,6 +2,7 @@
 #ifndef RATT_TEAM_H
 #define RATT_TEAM_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 enum { TRACE = 0, LOG_DET = 1, LARGEST = 2 }; /* compiled_code of the criteria */
@@ -26,6 +27,13 @@ double log_determinant(int dimension, const double *matrix);
 /* Rotate a symmetric matrix until what is left beside its diagonal is rounding; `axes`, unless it is NULL, become its
    columns' axes where it was the unit matrix. */
 void diagonalise(int dimension, double matrix[][LARGEST_DIMENSION], double axes[][LARGEST_DIMENSION]);
+
+/* out = sums + times * information of a robot, all (targets, entries); `out` may be `sums`. */
+static inline void add_information(const Team *team, const double *sums, double times, int64_t robot, double *out) {
+    int width = team->targets * entries_of(team);
+    const double *own = team->information + (size_t)robot * width;
+    for (int t = 0; t < width; t++) out[t] = sums[t] + times * own[t];
+}
 
 /* Value of the posterior information `sums` (targets, entries). */
 double value_of(const Team *team, const double *sums);
