@@ -150,7 +150,7 @@ class Plan:
             question.most,
             *map(address, arrays),
             question.blinding,
-            UNIT,
+            question.unit,
             question.limit,
             order is Order.SENSES,
             min(EFFORT, EFFORT_WORK // self.team.work + 1),
@@ -160,7 +160,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Groups below a threshold of less reduced cost than ``limit``, in units of 1 / ``UNIT`` links that leave them.
+    """Groups below a threshold of less reduced cost than ``limit``, in units of 1 / ``unit`` links that leave them.
 
     ``most`` : sensing robots of a set below the threshold; ``duals`` : (N,) of each robot; ``blinding`` >= 0 : of a
     blinded robot
@@ -171,6 +171,7 @@ class Question:
     duals: IntArray
     blinding: int
     limit: int
+    unit: int = UNIT
 
     def claim(self, n_blinded: int) -> int:
         """What groups that cover the team cost at least, links from both sides, if no group costs less than nothing."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.pricing import Plan
 from ratt_opt.certificates.verifier.work import tick
 
 if TYPE_CHECKING:
@@ -26,9 +28,9 @@ class NotClosedError(Exception):
     """The proof is too large, or one of its cases is worth less than the threshold."""
 
 
-@dataclass(slots=True)
+@dataclass
 class PlanSets:
-    """The plan's robots, strongest first, and whether a set of them is worth the threshold.
+    """The plan's robots, and whether a set of them is worth the threshold.
 
     ``looked_at`` : criteria of single targets so far
     """
@@ -43,9 +45,10 @@ class PlanSets:
         """The criterion."""
         return self.problem.information_objective
 
-    def order(self) -> list[int]:
-        """Robots, strongest first."""
-        return [int(i) for i in np.argsort(-self.objective.singletons()[self.elements], kind="stable")]
+    @cached_property
+    def plan(self) -> Plan | None:
+        """The plan as the compiled loops read it; ``None`` if they do not have the criterion."""
+        return Plan.of(self.objective, self.elements, self.problem.threat)
 
     def start(self) -> FloatArray:
         """The posterior information of nobody, (M, d, d)."""
@@ -64,10 +67,6 @@ class PlanSets:
         """(K,) values of sets with these posteriors."""
         self._count(len(posteriors))
         return np.asarray(self.objective.value(posteriors))
-
-    def completions_enough(self, posteriors: FloatArray, missing: int) -> bool:
-        """Whether any ``missing`` of these sets are worth it on average (see the verifier's leaf -3)."""
-        return self.average_enough(self.values(posteriors), missing)
 
     def average_enough(self, values: FloatArray, missing: int) -> bool:
         """Whether any ``missing`` of these values are: on average, or each where the verifier cannot take averages."""

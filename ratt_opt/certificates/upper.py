@@ -106,7 +106,7 @@ class _Nodes:
     def node(self, node: Node) -> dict[str, Any]:
         if isinstance(node, Leaf):
             pairs = _weighed(node.cuts, node.weights)
-            return {"cuts": [self._cuts[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
+            return {"fenchel": [self._cuts[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
         if isinstance(node, CoverLeaf):
             pairs = _weighed(node.covers, node.weights)
             return {"covers": [self._covers[k] for k, _ in pairs], "weights": [w for _, w in pairs]}
@@ -114,14 +114,14 @@ class _Nodes:
             listed = node.parts[:-1] if self._covers else node.parts  # the last part is what is left
             parts = [list(part) for part in listed]
             if parts == self._parts.get(node.robot):
-                return {"robot": node.robot}
+                return {"element": node.robot}
             self._parts[node.robot] = parts
-            return {"robot": node.robot, "parts": parts}
+            return {"element": node.robot, "parts": parts}
         attack = self._proof.attacks[node.attack]
         if isinstance(node, MarginalLeaf):
             return {"marginals": self._pool.attack(attack)}
         assert list(node.parts) == self._pool.groups(attack)
-        return {"attack": self._pool.attack(attack)}
+        return {"part": self._pool.attack(attack)}
 
 
 def _short(value: Any) -> Any:

@@ -28,6 +28,7 @@ def verify(
     verified: Annotated[
         bool, typer.Option("--verified", help="Ask ratt-check too, the checker extracted from its Coq proof.")
     ] = False,
+    explain: Annotated[bool, typer.Option("--explain", help="Tell the proof of the lower end in words, too.")] = False,
     as_json: JsonFlag = False,
 ) -> int:
     """Check a certificate without trusting what wrote it, and say what it proves.
@@ -56,14 +57,21 @@ def verify(
     with Step("checking the certificate") as step, watched(step.say):
         found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
         second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
+    story = []
+    if explain:
+        from ratt_opt.certificates.explanation import explained
+        from ratt_opt.certificates.verifier.reading import load
+
+        story = explained(load(file))
     if as_json:
         about = {} if given is None else {"given": given.digest}
         checked = {} if second is None else {"verified": asdict(second)}
-        print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **about, **checked})
+        told = {"explanation": story} if explain else {}
+        print_json({"format": "ratt-opt verification", "version": 1, **asdict(found), **about, **checked, **told})
     else:
         about_given = [] if given is None else [_about(given.digest, found.made_from)]
         checked_lines = [] if second is None else [f"ratt-check, whose proof is checked: {second.text}"]
-        print_lines([*found.lines(), *about_given, *checked_lines])
+        print_lines([*found.lines(), *about_given, *checked_lines, *story])
     return 0 if found.lower_proved and (second is None or second.lower_proved) else UPPER_ONLY
 
 

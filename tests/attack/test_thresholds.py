@@ -22,6 +22,7 @@ from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
 from ratt_opt.attackers.by_size.low_lists import LowSetsRecord
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.certificates.group_tree import TreeRecord
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.native.library import function
@@ -253,9 +254,9 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(6, np.int64)
+    sizes = np.zeros(7, np.int64)
     layout(sizes.ctypes.data)
-    records = [ctypes.sizeof(record) for record in (LowSetsRecord, AnnealRecord, QuestionRecord)]
+    records = [ctypes.sizeof(record) for record in (LowSetsRecord, AnnealRecord, QuestionRecord, TreeRecord)]
     assert sizes.tolist() == [ctypes.sizeof(TeamRecord), BRANCH.itemsize, exact_cover.LEVEL.itemsize, *records]
 
 

@@ -13,10 +13,7 @@ from flint import fmpq
 
 from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, problem_document, ratt
 from ratt_opt.certificates import write
-from ratt_opt.certificates.forced_by_trees import forced_size_proof
-from ratt_opt.certificates.group_covers.all_groups import all_groups_proof
-from ratt_opt.certificates.group_covers.proof import group_cover_proof
-from ratt_opt.certificates.group_prices import group_price_proof
+from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
@@ -50,16 +47,15 @@ __all__ = [
     "weaker_lower_proof",
 ]
 
-PROVERS = {
-    "group_prices": (group_price_proof, 20_000),
-    "group_sizes": (group_size_proof, 50_000),
-    "group_covers": (group_cover_proof, 50_000),
-    "all_groups": (all_groups_proof, 50_000),
-    "forced_size_trees": (forced_size_proof, 20_000),
-}
+
+def plain_proof(sets, max_nodes):
+    """As for a criterion without compiled loops."""
+    sets.__dict__["plan"] = None
+    return cover_proof(sets, max_nodes)
 
 
-GRAPH_PROOFS = [kind for kind in PROVERS if kind != "forced_size_trees"]
+PROVERS = {"cover": (cover_proof, 50_000), "plain": (plain_proof, 50_000), "sizes": (group_size_proof, 50_000)}
+GRAPH_PROOFS = list(PROVERS)
 
 STEPS = {
     "lower end": "lower_proof",

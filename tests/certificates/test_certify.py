@@ -25,7 +25,7 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced
+from ratt_opt.certificates.verifier.lower import is_forced
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
 from tests.certificates.engine import UndecidedError, accepted_leaves, lower_proof, refuse, step
@@ -47,10 +47,10 @@ def test_parts_are_named_once_and_may_be_named_again(seed, tmp_path):
     problem = random_problem(np.random.default_rng([22, seed]), 3, kind=KINDS[seed % 3])
     written, document = certified(problem, tmp_path / "c.json")
     before: dict[int, list[list[int]]] = {}
-    branches = [node for node in document["upper"]["tree"] if "robot" in node]
+    branches = [node for node in document["upper"]["tree"] if "element" in node]
     assert any("parts" not in node for node in branches)
     for node in branches:
-        before[node["robot"]] = node.setdefault("parts", before.get(node["robot"]))
+        before[node["element"]] = node.setdefault("parts", before.get(node["element"]))
     (tmp_path / "named.json").write_text(json.dumps(document))
     named = verify_certificate(tmp_path / "named.json")
     assert (named.lower, named.upper) == (written.verified.lower, written.verified.upper)
@@ -124,7 +124,7 @@ def test_says_what_was_proved_and_what_was_not(tmp_path):
     text = "\n".join(verify_certificate(path).lines())
     assert "ball arithmetic" in text
     assert "NOT proved" not in text
-    document["lower"] = {"kind": "enumerated"}
+    document["lower"] = {"conclusion": "enumerated"}
     path.write_text(json.dumps(document))
     verified = verify_certificate(path)
     assert not verified.lower_proved
@@ -165,7 +165,7 @@ def test_large_teams_by_forced_size(tmp_path):
     result = solve_maxmin(problem, max_nodes=3)
     verified = certify(problem, result, tmp_path / "c.json").verified
     assert verified.lower_proved
-    assert verified.lower_method == "forced_size"
+    assert verified.lower_method == "forced"
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -175,14 +175,15 @@ def test_leaves_that_average_over_the_robots_missing_prove_no_more_than_the_wors
     elements = ratt_opt.ratt(problem).elements
     worst = brute_force_worst_case(problem, elements)
     part = lower_proof(problem, elements, worst * (1 - 1e-12))
-    assert part["kind"] == "forced_size"
-    assert -3 in part["tree"]
-    leaves = sum(node < 0 for node in part["tree"])
+    assert part["conclusion"] == "forced"
+    size, tree = part["sets"]["size"], part["sets"]["tree"]
+    assert "copies" in tree
+    leaves = sum(isinstance(node, str) for node in tree)
     assert accepted_leaves(problem, elements, part, worst * (1 - 1e-11)) == leaves
     refuse(problem, elements, part, worst * (1 + 1e-9), "worth less")
-    crude = {**part, "tree": [-3]}
-    singles = problem.objective.prior_information + part["size"] * problem.objective.information[elements]
-    values = np.sort(problem.objective.value(singles))[: part["size"]]
+    crude = {**part, "sets": {"size": size, "tree": ["copies"]}}
+    singles = problem.objective.prior_information + size * problem.objective.information[elements]
+    values = np.sort(problem.objective.value(singles))[:size]
     level = values.mean()
     assert accepted_leaves(problem, elements, crude, level - 1e-9 * abs(level)) == 1
     refuse(problem, elements, crude, level + 1e-9 * abs(level), "worth less")
@@ -231,7 +232,7 @@ def test_where_time_ends_the_upper_end_is_proved_alone(kind, tmp_path, monkeypat
     problem, asked = random_scenario(5, 4, alpha_s=1, alpha_c=4, seed=2).problem(kind), []
 
     def endless(file, **options):
-        asked.append(json.loads(file.read_text())["lower"]["kind"])
+        asked.append(json.loads(file.read_text())["lower"]["conclusion"])
         if asked[-1] != "enumerated":
             raise UndecidedError("not decided within 1 s")
         return verify_certificate(file, **options)

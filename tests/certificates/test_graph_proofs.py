@@ -19,35 +19,23 @@ from tests.certificates.mutants import refused_lower_ends
 
 FIFTH, THIRD = (0.2, 0.15), (1 / 3, 0.3)
 
-# The last four of prices: fewer robots may see because of an average that robots that cannot see spoil.
 # The last of sizes: no attack splits the team; then, the largest eigenvalue of targets of one or three coordinates, of
-# which the verifier takes no averages.
+# which the verifier takes no averages. Such ones are among those of covers too, and one that needs a list of groups.
 SMALL = {
-    "group_prices": ([*range(24), 332, 401, 660, 731], 8),
-    "group_sizes": ([*range(24), 111, 248, 263, 491], 5),
-    "group_covers": (range(24), 15),
-    "all_groups": (range(24), 15),
+    "cover": ([*range(24), 111, 248, 263, 491], 28),
+    "plain": (range(24), 24),
+    "sizes": ([*range(24), 111, 248, 263, 491], 5),
 }
-MORE_SMALL = {
-    "group_prices": (range(100, 1100), 500),
-    "group_sizes": (range(100, 500), 80),
-    "group_covers": (range(100, 400), 200),
-    "all_groups": (range(100, 700), 400),
-}
-MUTATED = {"group_prices": (6, 0.05), "group_sizes": (24, 0.08), "group_covers": (6, 0.03), "all_groups": (6, 0.1)}
-MORE_MUTATED = {
-    "group_prices": (70, 1.0, 20_000),
-    "group_sizes": (40, 0.3, 3_000),
-    "group_covers": (30, 0.5, 3_000),
-    "all_groups": (40, 1.0, 3_000),
-}
+MORE_SMALL = {"cover": (range(100, 1100), 950), "plain": (range(100, 700), 570), "sizes": (range(100, 500), 80)}
+MUTATED = {"cover": (8, 0.15), "plain": (8, 0.05), "sizes": (24, 0.08)}
+MORE_MUTATED = {"cover": (150, 1.0, 20_000), "plain": (20, 0.5, 2_000), "sizes": (40, 0.3, 3_000)}
 
 
 def check_small(kind, seeds, least):
     """A proof of the worst case is accepted, of more there is none; worst cases that are not proved are as they must.
 
-    Covers and lists of all groups prove all but some with protected robots; prices and sizes not every one (a
-    second group may be the best one, and links may be protected).
+    Duals and covers prove all of them, sizes not every one (a second group may be the best one, and links may be
+    protected).
     """
     closed, unproved = 0, []
     for problem, plan, worst, part in small_proofs(kind, seeds):
@@ -59,10 +47,7 @@ def check_small(kind, seeds, least):
         assert accepted_leaves(problem, plan, part, worst * (1 - 2e-7)) > 0
         refuse(problem, plan, part, worst * (1 + 1e-6))
     assert closed >= least
-    if kind in {"group_covers", "all_groups"}:
-        assert all(problem.protected_robots for problem in unproved)
-    else:
-        assert unproved
+    assert bool(unproved) == (kind == "sizes")
 
 
 @pytest.mark.parametrize("kind", GRAPH_PROOFS)
@@ -102,44 +87,27 @@ def agreement(kind, *drawn):
     return part is not None
 
 
-AGREED = [
-    ("group_prices", "disk-6", THIRD, range(3)),
-    ("group_covers", "disk-6", FIFTH, [0]),
-    ("all_groups", "small-world", FIFTH, [0]),
-]
+AGREED = [("disk-6", THIRD, range(3)), ("disk-6", FIFTH, [0]), ("small-world", FIFTH, [0])]
 
 
-@pytest.mark.parametrize(("kind", "family", "shares", "seeds"), AGREED)
-def test_agrees_with_the_attacker(kind, family, shares, seeds):
-    proved = [agreement(kind, family, 20, shares, seed, CRITERIA[seed]) for seed in seeds]
-    assert any(proved)
-
-
-PROVED_ALL = [("all_groups", 22), ("group_sizes", 20)]
+@pytest.mark.parametrize(("family", "shares", "seeds"), AGREED)
+def test_agrees_with_the_attacker(family, shares, seeds):
+    assert all(agreement("cover", family, 20, shares, seed, CRITERIA[seed]) for seed in seeds)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("family", ["dense", "disk-12", "disk-6", "small-world", "hubs"])
-@pytest.mark.parametrize(
-    ("kind", "n_robots", "shares"),
-    [
-        *(("group_prices", n_robots, THIRD) for n_robots in (20, 24, 30)),
-        *(("group_covers", n_robots, FIFTH) for n_robots in (20, 24)),
-        *((kind, n_robots, shares) for kind, n_robots in PROVED_ALL for shares in (FIFTH, THIRD)),
-    ],
-)
-def test_agrees_with_the_attacker_on_every_family(kind, family, n_robots, shares):
+@pytest.mark.parametrize("shares", [FIFTH, THIRD])
+@pytest.mark.parametrize(("kind", "n_robots"), [("cover", 22), ("cover", 30), ("sizes", 20)])
+def test_agrees_with_the_attacker_on_every_family(kind, n_robots, family, shares):
     """The criteria in turn, of one seed each; by sizes all of one seed.
 
-    Proved are: by prices some of the disks of mean degree 6, by covers their first,
-    by lists of all groups all but dense graphs, by sizes dense graphs of that seed.
+    Proved are by duals and covers of 22 robots all but some dense graphs, by sizes dense graphs of that seed.
     """
-    seeds = [0, 0, 0] if kind == "group_sizes" else range(3)
+    seeds = [0, 0, 0] if kind == "sizes" else range(3)
     cases = zip(seeds, CRITERIA, strict=True)
     proved = [agreement(kind, family, n_robots, shares, seed, criterion) for seed, criterion in cases]
-    if kind == "group_prices":
-        assert any(proved) or family != "disk-6"
-    elif kind == "group_covers":
-        assert proved[0] or family != "disk-6"
-    else:
-        assert all(proved) or (family == "dense") != (kind == "group_sizes")
+    if n_robots < 30 and family != "dense":
+        assert all(proved) == (kind == "cover")
+    if kind == "sizes":
+        assert all(proved) == (family == "dense")

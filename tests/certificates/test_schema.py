@@ -56,22 +56,23 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     made["with its source"] = made["trace, path"] | {"made_from": "0123456789abcdef" * 4}
     problem = Problem(OBJECTIVES["trace"], np.repeat(np.arange(3), 2), nx.path_graph(3), 1, 1, protected_robots={0})
     plan, lower = np.array(made["trace, path"]["plan"]), made["trace, path"]["claim"]["lower"]
-    for kind in ("group_prices", "group_covers", "all_groups"):
-        made[kind] = made["trace, path"] | {"lower": proof(kind, problem, plan, lower * (1 - 1e-13), 1000)}
+    duals = proof("cover", problem, plan, lower * (1 - 1e-13), 1000)
+    made["duals"] = made["trace, path"] | {"lower": duals}
     low = made["trace, path"]["claim"] | {"lower": 0.0}
-    sized = proof("forced_size_trees", problem, plan, 0.0, 1000)
-    made["trees"] = made["trace, path"] | {"claim": low, "lower": sized}
-    scored = proof("group_sizes", problem, plan, 0.0, 1000)
-    scored["bounds"] = [{"vector": 0, "diagonal": [0, 0, 0]}]
-    made["group_sizes"] = made["trace, path"] | {"claim": low, "lower": scored}
+    cover = {**duals, "conclusion": "cover", "partition": [0], "tree": ["worth"]}
+    cover["duals"] = {"link": 0, "robots": [0, 0, 0], "blinded": 0}
+    made["cover"] = made["trace, path"] | {"claim": low, "lower": cover}
+    sized = proof("sizes", problem, plan, 0.0, 1000)
+    sized["bounds"] = [{"duals": 0, "diagonal": [0, 0, 0]}]
+    made["sizes"] = made["trace, path"] | {"claim": low, "lower": sized}
     return made
 
 
 def test_every_kind_is_covered(documents: dict[str, Any], schema: jsonschema.Draft202012Validator) -> None:
-    assert {document["lower"]["kind"] for document in documents.values()} == {
-        "forced_size", "attack_tree", "group_prices", "group_covers", "all_groups", "group_sizes", "enumerated",
+    assert {document["lower"]["conclusion"] for document in documents.values()} == {
+        "forced", "duals", "cover", "sizes", "enumerated",
     }  # fmt: skip
-    assert any("attack" in node for document in documents.values() for node in document["upper"]["tree"])
+    assert any("part" in node for document in documents.values() for node in document["upper"]["tree"])
     for document in documents.values():
         schema.validate(document)
 

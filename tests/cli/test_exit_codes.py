@@ -46,7 +46,7 @@ def test_verify_tells_proved_refuted_unreadable_half_proved_and_undecided_apart(
     assert code(document) == 0
     assert code(document | {"claim": document["claim"] | {"upper": document["claim"]["upper"] / 2}}) == 1
     assert code(document | {"version": 7}) == 2
-    assert code(document | {"lower": {"kind": "enumerated"}}) == 3
+    assert code(document | {"lower": {"conclusion": "enumerated"}}) == 3
     capsys.readouterr()
     assert code(document, "--time-limit", "1e-9") == 4
     assert capsys.readouterr().err == "error: not decided within 1e-09 s\n"

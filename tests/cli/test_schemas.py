@@ -161,7 +161,7 @@ def test_a_mission(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFi
 def test_a_half_proved_certificate(scenario_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["bound", str(scenario_file), "--out", str(tmp_path / "o")]) == 0
     path = tmp_path / "o" / "certificate.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"lower": {"kind": "enumerated"}}))
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"lower": {"conclusion": "enumerated"}}))
     found = _printed(capsys, "verify", str(path), code=3)
     assert not found["lower_proved"]
     _check(found, "verification")

@@ -48,7 +48,7 @@ def test_the_real_checker_and_the_verifier_decide_together(document, code, monke
     assert code(document, "--json") == 0
     second = json.loads(capsys.readouterr().out)["verified"]
     assert second["lower_proved"] is True
-    assert code(document | {"lower": {"kind": "enumerated"}}) == 3
+    assert code(document | {"lower": {"conclusion": "enumerated"}}) == 3
     assert code(document | {"claim": document["claim"] | {"upper": document["claim"]["upper"] * (1 - 1e-9)}}) == 1
     assert code(document | {"version": 7}) == 2
 

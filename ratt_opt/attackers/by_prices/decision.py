@@ -229,4 +229,4 @@ class ThresholdDecision:
                 group[columns[k].robots] = label
             blind = np.any([columns[k].blinded for k in members], axis=0)
             return Answer(verdict=Threshold.REACHED, partition=Partition(group=group, blind=blind, value=threshold))
-        return Answer(verdict=Threshold.REFUTED)
+        return Answer(verdict=Threshold.REFUTED, prices=prices)

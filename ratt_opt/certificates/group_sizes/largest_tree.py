@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
     from ratt_opt.certificates.plan_sets import PlanSets
-    from ratt_opt.certificates.verifier.lower_end.largest_groups import LargestGroup
+    from ratt_opt.certificates.verifier.sizes import LargestGroup
 
 __all__ = ["Found", "grow_tree"]
 
@@ -47,7 +47,7 @@ class Found:
         return self.bounds.setdefault(bound, len(self.bounds))
 
 
-def grow_tree(sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> list[int]:
+def grow_tree(sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> list[Any]:
     """Return the tree.
 
     Raises
@@ -65,9 +65,9 @@ class _Tree:
         self.bounds, self.own = CaseBounds(bounds, group), sets.objective.information[sets.elements]
         self.everyone = (1 << len(self.own)) - 1
         self.safe = sum(1 << i for i in sets.problem.threat.protected_robots)
-        self.tree: list[int] = []
+        self.tree: list[Any] = []
 
-    def run(self) -> list[int]:
+    def run(self) -> list[Any]:
         stack = [_Case(self.sets.start(), self.bounds.start())]
         while stack:
             tick()
@@ -79,21 +79,21 @@ class _Tree:
 
     def _expand(self, case: _Case, stack: list[_Case]) -> None:
         may_see = self.everyone & ~(case.seeing | case.others | case.outside)
-        missing = self.group.seeing - case.seeing.bit_count()
+        missing = self.group.sensing - case.seeing.bit_count()
         if self._is_impossible(case, missing, may_see):
-            self.tree.append(-2)
+            self.tree.append("budget")
             return
         if case.grown and self.sets.enough(case.posterior):
-            self.tree.append(-1)
+            self.tree.append("worth")
             return
         waiting = np.array(robots_of(may_see if missing else 0), dtype=np.int64)
         values = self.sets.values(case.posterior + missing * self.own[waiting])
         if missing and self.sets.average_enough(values, missing):
-            self.tree.append(-3)
+            self.tree.append("copies")
             return
         looked = self.bounds.look(case.inside, case.outside, case.start)
         if looked.diagonal:
-            self.tree.append(-4 - self.found.number((looked.vector, looked.diagonal)))
+            self.tree.append({"form": self.found.number((looked.vector, looked.diagonal))})
             return
         case = replace(case, start=looked.multipliers, grown=False)
         if missing:
@@ -102,16 +102,17 @@ class _Tree:
             self._ask_place(case, looked.place, stack)
 
     def _is_impossible(self, case: _Case, missing: int, may_see: int) -> bool:
-        """What the verifier asks of a leaf -2."""
-        blinded, size = case.inside & case.others, self.group.seeing + self.group.blinded
+        """What the verifier asks of a leaf that is beyond the budgets."""
+        blinded, size = case.inside & case.others, self.group.sensing + self.group.blinded
         if missing < 0 or blinded.bit_count() > self.group.blinded or case.inside.bit_count() > size:
             return True
         too_few = (self.everyone & ~case.outside).bit_count() < size
         return too_few or bool(blinded & self.safe) or may_see.bit_count() < missing
 
     def _ask_sight(self, case: _Case, i: int, stack: list[_Case]) -> None:
-        self.tree.append(2 * i)
-        stack.append(replace(case, others=case.others | 1 << i))
+        self.tree.append({"sense": i})
+        gone = 1 << i & self.safe  # as it cannot be blinded
+        stack.append(replace(case, others=case.others | 1 << i, outside=case.outside | gone))
         joined, posterior = 1 << i, self.sets.extend(case.posterior, i)
         case = replace(case, seeing=case.seeing | joined, inside=case.inside | joined)
         stack.append(replace(case, posterior=posterior, grown=True))
@@ -122,6 +123,6 @@ class _Tree:
         if not open_:
             raise NotClosedError
         i = min(open_, key=lambda robot: abs(place[robot] - 0.5))
-        self.tree.append(2 * i + 1)
+        self.tree.append({"inside": i})
         stack.append(replace(case, outside=case.outside | 1 << i))
         stack.append(replace(case, inside=case.inside | 1 << i))

@@ -13,10 +13,9 @@ import numpy as np
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.group_sizes.largest_tree import Found, grow_tree
 from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
+from ratt_opt.certificates.group_tree import sets_proof
 from ratt_opt.certificates.plan_sets import NotClosedError
-from ratt_opt.certificates.size_tree import size_tree
-from ratt_opt.certificates.threatened import Team
-from ratt_opt.certificates.verifier.lower_end.largest_groups import largest_groups
+from ratt_opt.certificates.verifier.sizes import largest_groups
 from ratt_opt.certificates.verifier.work import seconds_left
 
 if TYPE_CHECKING:
@@ -45,35 +44,35 @@ def group_size_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     n_robots, n_blinded = threat.graph.n_robots, threat.n_blinded
     if n_robots > LARGEST_TEAM or n_blinded == n_robots:
         raise NotClosedError
-    bounds = ScoreBounds(threat.graph, Team.of(threat), Budget(None if seconds == np.inf else seconds))
-    least = largest_groups(bounds.scores, n_blinded, n_robots + 1)[0].seeing
+    bounds = ScoreBounds(threat.graph, threat.alpha_c, Budget(None if seconds == np.inf else seconds))
+    least = largest_groups(bounds.costs, n_blinded, n_robots + 1)[0].sensing
     found = Found({}, min(LARGEST_PROOF, max_nodes * n_robots))
-    size, sizes = _size(sets, least, min(FEW, max_nodes))
+    lemma = _lemma(sets, least, min(FEW, max_nodes))
     try:
-        trees = [grow_tree(sets, bounds, group, found) for group in largest_groups(bounds.scores, n_blinded, size)]
+        groups = largest_groups(bounds.costs, n_blinded, lemma["size"])
+        trees = [grow_tree(sets, bounds, group, found) for group in groups]
     except NotClosedError:
-        size, sizes, trees = least, size_tree(sets, least, max_nodes), []
+        lemma, trees = sets_proof(sets, least, max_nodes), []
         found.bounds.clear()
     return {
-        "kind": "group_sizes",
-        "prices": [one.price for one in bounds.scores],
-        "most": bounds.records,
-        "size": size,
-        "sizes": sizes,
-        "bounds": [{"vector": vector, "diagonal": list(diagonal)} for vector, diagonal in found.bounds],
+        "conclusion": "sizes",
+        "sets": lemma,
+        "duals": bounds.duals,
+        "forms": bounds.forms,
+        "bounds": [{"duals": vector, "diagonal": list(diagonal)} for vector, diagonal in found.bounds],
         "trees": trees,
     }
 
 
-def _size(sets: PlanSets, least: int, max_nodes: int) -> tuple[int, list[int]]:
+def _lemma(sets: PlanSets, least: int, max_nodes: int) -> dict[str, Any]:
     """The first size from the least one on of which all sets are worth the threshold, and its tree.
 
-    A size that no set has where those that can see in a group do not do.
+    A size that no set has if those that can sense in a group do not do.
     """
     threat = sets.problem.threat
     for size in range(least, threat.graph.n_robots - threat.n_blinded + 1):
         try:
-            return size, size_tree(sets, size, max_nodes)
+            return sets_proof(sets, size, max_nodes)
         except NotClosedError:
             continue
-    return threat.graph.n_robots + 1, [-2]
+    return {"size": threat.graph.n_robots + 1, "tree": ["budget"]}

@@ -1,4 +1,4 @@
-"""Diagonals that show what groups score at most (``verifier/lower_end/link_scores.py``), by descent.
+"""Diagonals that show what groups score at most (``verifier/sizes.py``), by descent.
 
 The attacker's bounds (``graph/link_scores.py``) are those of the same relaxation: at the best multiplier of the sphere,
 added to those of the robots, their quadratic form is definite. Here it is rounded up, and decided in integers.
@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.certificates.verifier.lower_end.link_scores import UNIT, LinkScores
+from ratt_opt.certificates.verifier.sizes import UNIT, LinkCosts
 from ratt_opt.graph.link_scores import SHARES, most_scores
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.certificates.threatened import Team
-    from ratt_opt.certificates.verifier.lower_end.largest_groups import LargestGroup
+    from ratt_opt.certificates.verifier.sizes import LargestGroup
     from ratt_opt.graph.communication import CommunicationGraph
     from ratt_opt.graph.link_scores import RelaxedScores, Top
 
@@ -30,6 +29,9 @@ NEAR, STEPS = 1.5, 6
 """Links (twice) above what a group must score from which a bound is not tried to be lowered, and values it may take.
 Measured on RATT's plans for 24 robots of a dense graph: with 3 and 18 a tree has a quarter fewer nodes, and takes three
 to ten times as long to find."""
+
+LINK = 2
+"""Of costs, each link that leaves a group: twice as much as in the attacker's scores."""
 
 SPARE = 0.02
 """What is left below a bound for rounding the diagonal, in twice the links."""
@@ -49,41 +51,48 @@ class Looked:
 class ScoreBounds:
     """Bounds for one graph and each of the attacker's shares.
 
-    ``records`` : those of groups of each size, as the verifier reads them; ``scores`` has taken them over
+    ``duals``, ``forms`` : as the verifier reads them; ``costs`` has taken them over
     """
 
-    def __init__(self, graph: CommunicationGraph, team: Team, budget: Budget) -> None:
-        self.known, degrees = most_scores(graph), [len(others) for others in team.near]
+    def __init__(self, graph: CommunicationGraph, alpha_c: int, budget: Budget) -> None:
+        self.known = most_scores(graph)
         self.known.run(budget)
-        self.scores = [LinkScores(team, [round(2 * (1 - share) * degree) for degree in degrees]) for share in SHARES]
-        self.records = [
-            record
-            for vector in range(len(self.scores))
-            for size in range(2, team.n)
-            if (record := self._record(vector, size)) is not None
+        near = [0] * graph.n_robots
+        for i, j in graph.links:
+            near[i], near[j] = near[i] | 1 << j, near[j] | 1 << i
+        degrees = [others.bit_count() for others in near]
+        duals = [[LINK * degree - round(2 * (1 - share) * degree) for degree in degrees] for share in SHARES]
+        self.duals = [{"link": LINK, "robots": own} for own in duals]
+        self.costs = [LinkCosts(near, alpha_c, LINK, own) for own in duals]
+        self.forms = [
+            form
+            for vector in range(len(self.costs))
+            for size in range(2, graph.n_robots)
+            if (form := self._form(vector, size)) is not None
         ]
 
-    def _record(self, vector: int, size: int) -> dict[str, Any] | None:
-        one, start = self.scores[vector], self.known.multipliers[vector, size]
+    def _form(self, vector: int, size: int) -> dict[str, Any] | None:
+        one, start = self.costs[vector], self.known.multipliers[vector, size]
         top = self.known.relaxed[vector].top(start, size)
-        below = (floor(2 * (top.value + SPARE) / one.step) + 1) * one.step
-        if below > one.most[size]:
+        least = 1 - (floor(2 * (top.value + SPARE) / one.step) + 1) * one.step
+        if least <= one.least[size]:
             return None
         diagonal = _rounded(start + top.level).tolist()
-        if not one.are_below(below, diagonal, (0, (1 << one.n) - 1), size):
+        if not one.are_above(least - 1, diagonal, (0, (1 << len(one.near)) - 1), size):
             return None
-        one.lower(size, below, diagonal)
-        return {"vector": vector, "robots": size, "below": below, "diagonal": diagonal}
+        one.raise_least(size, least, diagonal)
+        return {"duals": vector, "robots": size, "least": least, "diagonal": diagonal}
 
 
 class CaseBounds:
     """Bounds of what groups of a case score, and groups that score enough, of which no case is closed."""
 
     def __init__(self, bounds: ScoreBounds, group: LargestGroup) -> None:
-        self._known, self._scores, self._group = bounds.known, bounds.scores, group
-        self._size, self._n = group.seeing + group.blinded, bounds.scores[0].n
+        self._known, self._costs, self._group = bounds.known, bounds.costs, group
+        self._size, self._n = group.robots, len(bounds.costs[0].near)
         self._adjacent = bounds.known.relaxed[0].adjacent
-        self._enough: list[list[int]] = [[] for _ in bounds.scores]
+        self._enough: list[list[int]] = [[] for _ in bounds.costs]
+        self._need = [-int(limit) for limit in group.limits]
 
     def start(self) -> FloatArray:
         """(K, N) multipliers to begin with."""
@@ -94,13 +103,13 @@ class CaseBounds:
         members, others = _robots(inside, self._n), ~_robots(inside | outside, self._n)
         case, joining = (inside, (1 << self._n) - 1 & ~(inside | outside)), self._size - inside.bit_count()
         place, multipliers = np.where(others, 0.5, 0.0), start.copy()
-        for vector in reversed(range(len(self._scores))):
+        for vector in reversed(range(len(self._costs))):
             if any(inside & group == inside and not group & outside for group in self._enough[vector]):
                 continue
             diagonal = np.zeros(self._n, dtype=np.int64)
             if 0 < joining < others.sum():
                 fixed, relaxed = self._known.relaxed[vector].around(members, others)
-                below = self._group.need[vector] / 2 - fixed - SPARE
+                below = self._need[vector] / 2 - fixed - SPARE
                 top = relaxed.top(multipliers[vector, others], joining)
                 place[others] = top.place
                 if self._holds_one(vector, members, others, place):
@@ -111,18 +120,18 @@ class CaseBounds:
                 if top.value >= below:
                     continue
             kept = tuple(diagonal.tolist())
-            if self._scores[vector].are_below(self._group.need[vector], list(kept), case, joining):
+            if self._costs[vector].are_above(self._group.limits[vector], list(kept), case, joining):
                 return Looked(vector, kept, place, multipliers)
         return Looked(-1, (), place, multipliers)
 
     def _holds_one(self, vector: int, members: BoolArray, others: BoolArray, place: FloatArray) -> bool:
         """Whether a group of the case that is found by exchanges, from the fractional one, scores enough; keep it."""
-        price, joining = np.array(self._scores[vector].price), self._size - int(members.sum())
+        price, joining = np.array(self._costs[vector].price), self._size - int(members.sum())
         group, (open_,) = members.copy(), np.nonzero(others)
         group[open_[np.argsort(-place[open_], kind="stable")[:joining]]] = True
         while True:
             gain = 4 * (self._adjacent @ group) - price
-            if 2 * float((self._adjacent @ group) @ group) - price @ group >= self._group.need[vector]:
+            if 2 * float((self._adjacent @ group) @ group) - price @ group >= self._need[vector]:
                 self._enough[vector].append(sum(1 << int(i) for i in np.flatnonzero(group)))
                 return True
             leaving, entering = np.flatnonzero(others & group), np.flatnonzero(others & ~group)

@@ -1,34 +1,28 @@
-"""The plan keeps at least the claim's lower end under every attack: a cover of all attacks by cases."""
+"""The plan keeps at least the claim's lower end under every attack: one tree of cases, and what follows from it."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.certificates.verifier.lower_end.all_groups import check_all_groups
-from ratt_opt.certificates.verifier.lower_end.forced_size import is_forced, is_forced_by_trees
-from ratt_opt.certificates.verifier.lower_end.group_covers import check_group_covers
-from ratt_opt.certificates.verifier.lower_end.group_prices import check_group_prices
-from ratt_opt.certificates.verifier.lower_end.group_sizes import check_group_sizes
-from ratt_opt.certificates.verifier.lower_end.size_tree import check_size_tree
-from ratt_opt.certificates.verifier.lower_end.worth import Worth
-from ratt_opt.certificates.verifier.reading import fields, index, need, walk
+from ratt_opt.certificates.verifier.cases import Cases
+from ratt_opt.certificates.verifier.duals import Duals, check_partition
+from ratt_opt.certificates.verifier.reading import fields, index, need
+from ratt_opt.certificates.verifier.sizes import check_sizes
+from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.certificates.verifier.worth import Worth
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from flint import fmpq
 
+    from ratt_opt.certificates.verifier.cases import Close
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["LowerCheck"]
+__all__ = ["ENUMERATED", "LowerCheck"]
 
-BY_GROUPS: dict[str, Callable[[Statement, Any, Worth], int]] = {
-    "group_prices": check_group_prices,
-    "group_covers": check_group_covers,
-    "all_groups": check_all_groups,
-    "group_sizes": check_group_sizes,
-}
-"""Proofs by what the groups of an attack cost or score."""
+ENUMERATED = "enumerated"
+"""The conclusion that says that the outcomes were enumerated in floating point: no proof."""
 
 
 class LowerCheck:
@@ -40,72 +34,64 @@ class LowerCheck:
     def check(self, part: Any, lower: fmpq) -> int:
         """Check that the plan's value is at least ``lower`` under every attack.
 
-        Returns the number of leaves; 0 when the part says that it is no proof.
+        Returns the number of leaves; 0 if the part says that it is no proof.
         """
-        kind = part.get("kind") if isinstance(part, dict) else None
-        if kind == "forced_size":
-            return self._check_forced_size(part, Worth(self.about, lower))
-        if kind == "attack_tree":
-            return self._check_attack_tree(fields("lower proof", part, "kind tree")[1], Worth(self.about, lower))
-        if isinstance(kind, str) and kind in BY_GROUPS:
-            return BY_GROUPS[kind](self.about, part, Worth(self.about, lower))
-        fields("lower proof", part, "kind")
-        kinds = f"attack_tree, forced_size, {', '.join(BY_GROUPS)} or enumerated"
-        need(kind == "enumerated", f"lower proof: the kind must be {kinds}")
+        conclusion = part.get("conclusion") if isinstance(part, dict) else None
+        if conclusion == ENUMERATED:
+            fields("lower proof", part, "conclusion")
+            return 0
+        ways: dict[str, tuple[str, Callable[..., int]]] = {
+            "forced": ("", self._check_forced),
+            "duals": (" duals bounds tree", self._check_duals),
+            "cover": (" duals bounds tree partition", self._check_duals),
+            "sizes": (" duals forms bounds trees", check_sizes),
+        }
+        known = isinstance(conclusion, str) and conclusion in ways
+        need(known, f"lower proof: the conclusion must be {', '.join(ways)} or {ENUMERATED}")
+        names, check = ways[str(conclusion)]
+        _, sets, *given = fields("lower proof", part, f"conclusion sets{names}")
+        cases = Cases(self.about, Worth(self.about, lower))
+        size, leaves = _check_sets(cases, sets)
+        return leaves + check(cases, size, *given)
+
+    def _check_forced(self, cases: Cases, size: int) -> int:
+        about = cases.about
+        complete = 2 * len(about.links) == about.n * (about.n - 1)
+        forced = complete and is_forced(about.n, about.alpha_s, about.alpha_c, size)
+        need(forced, f"lower proof: not every attack is shown to leave a group of {size}")
         return 0
 
-    def _check_forced_size(self, part: dict[str, Any], worth: Worth) -> int:
-        """Every attack leaves a group with ``size`` seeing robots, and every such set is worth it."""
-        about, has_trees = self.about, "trees" in part
-        _, given, tree, *trees = fields("lower proof", part, "kind size tree trees" if has_trees else "kind size tree")
-        size = index("forced size", given, about.n + 1)
-        if has_trees:
-            forced = is_forced_by_trees(about, size, trees[0])
-        else:
-            complete = 2 * len(about.links) == about.n * (about.n - 1)
-            forced = complete and is_forced(about.n, about.alpha_s, about.alpha_c, size)
-        need(forced, f"lower proof: not every attack is shown to leave a group of {size}")
-        return check_size_tree(about.n, size, tree, worth)
+    def _check_duals(self, cases: Cases, size: int, *given: Any) -> int:
+        dual_values, bounds, tree, *partition = given
+        duals = Duals(cases, dual_values)
+        duals.read_bounds(bounds)
+        closing: dict[str, Close] = {"flow": duals.close_by_flow}
+        if partition:
+            closing["listed"] = duals.list_group
+        need(bool(partition) == (duals.slack >= 0), "lower proof: whether duals claim more than the budgets is wrong")
+        leaves = cases.check(tree, cases.groups(min(size - 1, cases.about.n)), closing)
+        for groups in partition:
+            check_partition(duals, groups)
+        return leaves
 
-    def _check_attack_tree(self, tree: object, worth: Worth) -> int:
-        """Cases over attacks; ``parts`` are pairwise in different groups, each within one.
 
-        In preorder, 2i: robot i is blinded; or not. 2i + 1: robot i is in the group of the first part, of the
-        second, ..., or of none (a new part). -1: the case exceeds a budget or hits something protected.
-        -2 - p: the robots of part p that are known to see are worth it.
-        """
-        known: set[int] = set()
+def _check_sets(cases: Cases, given: object) -> tuple[int, int]:
+    """Check that any ``size`` robots are worth the claim: returns the size, and the leaves of the tree."""
+    number, tree = fields("sets", given, "size tree")
+    size = index("sets size", number, cases.about.n + 2)
+    return size, cases.check_sets(size, tree)
 
-        def expand(node: Any, case: Any) -> Iterator[Any]:
-            blind, see, parts = case
-            if node == -1:
-                need(self._infeasible(blind, parts), "lower proof: a case is an attack within the budgets")
-            elif type(node) is int and node < 0:
-                group = parts[index("lower tree part", -2 - node, len(parts))] & see
-                mask = sum(1 << i for i in group)
-                if mask not in known:
-                    worth.require(worth.of(sorted(group)))
-                    known.add(mask)
-            else:
-                i, asks_group = divmod(index("lower tree", node, 2 * self.about.n), 2)
-                decided = any(i in part for part in parts) if asks_group else i in blind | see
-                need(not decided, f"lower proof: robot {i} is decided twice")
-                if asks_group:
-                    yield from ((blind, see, (*parts[:p], x | {i}, *parts[p + 1 :])) for p, x in enumerate(parts))
-                yield (blind, see, (*parts, frozenset({i}))) if asks_group else (blind | {i}, see, parts)
-                yield from () if asks_group else [(blind, see | {i}, parts)]
 
-        return walk("lower", tree, (frozenset(), frozenset(), ()), expand)
+def is_forced(n: int, alpha_s: int, alpha_c: int, size: int) -> bool:
+    """Whether every attack on the complete graph of n robots leaves a group with ``size`` seeing robots.
 
-    def _infeasible(self, blind: frozenset[int], parts: tuple[frozenset[int], ...]) -> bool:
-        """Whether blinding ``blind`` and separating ``parts`` is beyond the adversary.
-
-        All links between parts are cut; a robot in no part shares a group with at most one part, so its links
-        to all parts but the best linked one are lost at least.
-        """
-        home = {i: p for p, part in enumerate(parts) for i in part}
-        between = {(i, j) for i, j in self.about.links if i in home and j in home and home[i] != home[j]}
-        counts = [[len(self.about.near[i] & part) for part in parts] for i in range(self.about.n) if i not in home]
-        lost = len(between) + sum(sum(c) - max(c, default=0) for c in counts)
-        protected = between & self.about.safe_links or blind & self.about.safe_robots
-        return lost > self.about.alpha_c or len(blind) > self.about.alpha_s or bool(protected)
+    Otherwise groups n_1 + ... = n have (n^2 - sum n_k^2) / 2 <= alpha_c links between them and, to bring each below
+    ``size``, sum max(0, n_k - size + 1) <= alpha_s. ``best[r][x]``: largest sum n_k^2 of r robots, blinding x.
+    """
+    best = [[0] * (alpha_s + 1)]
+    for r in range(1, n + 1):
+        tick()
+        options = [range(1, min(r, size - 1 + x) + 1) for x in range(alpha_s + 1)]
+        part = [[k * k + best[r - k][x - max(0, k - size + 1)] for k in ks] for x, ks in enumerate(options)]
+        best.append([max(values, default=-n * n - 1) for values in part])
+    return size == 0 or n * n - best[n][alpha_s] > 2 * alpha_c

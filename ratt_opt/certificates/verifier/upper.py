@@ -109,13 +109,13 @@ class UpperCheck:
             elif isinstance(node, dict) and "marginals" in node:
                 a = index("marginal leaf", fields("marginal leaf", node, "marginals")[0], len(groups))
                 bounds.append(marginals().bound(groups[a], left))
-            elif isinstance(node, dict) and "weights" in node:
+            elif isinstance(node, dict) and "fenchel" in node:
                 bounds.append(self._leaf(node, cuts, groups, left, winners))
                 if isinstance(bounds[-1], fmpq):
                     hold(bounds[-1])
-            elif isinstance(node, dict) and "attack" in node:
-                a = index("winner branch", fields("winner branch", node, "attack")[0], len(groups))
-                need(a not in winners, "upper proof: an attack's winner is declared twice")
+            elif isinstance(node, dict) and "part" in node:
+                a = index("part branch", fields("part branch", node, "part")[0], len(groups))
+                need(a not in winners, "upper proof: an attack's best part is declared twice")
                 yield from ((left, {**winners, a: group}) for group in groups[a])
             else:
                 i, blocks = self._parts(node, before)
@@ -132,7 +132,7 @@ class UpperCheck:
     def _parts(self, node: Any, before: dict[int, list[tuple[int, ...]]]) -> tuple[int, list[tuple[int, ...]]]:
         """The robot of an element branch and the parts that it names, or those that were named for it ``before``."""
         robot, *given = fields(
-            "element branch", node, "robot" if isinstance(node, dict) and "parts" not in node else "robot parts"
+            "element branch", node, "element" if isinstance(node, dict) and "parts" not in node else "element parts"
         )
         i = index("element branch robot", robot, self.about.n)
         if given:
@@ -141,7 +141,7 @@ class UpperCheck:
         return i, list(before[i])
 
     def _leaf(self, node: Any, cuts: list[_Cut], groups: list[Any], left: Any, winners: Any) -> Any:
-        chosen, given = fields("leaf", node, "cuts weights")
+        chosen, given = fields("leaf", node, "fenchel weights")
         used = [cuts[index("leaf cut", k, len(cuts))] for k in array("leaf cuts", chosen)]
         weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
         mass = total(weights)

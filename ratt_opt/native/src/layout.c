@@ -14,6 +14,7 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[3] = sizeof(LowSets);
     sizes[4] = sizeof(Anneal);
     sizes[5] = sizeof(Pricing);
+    sizes[6] = sizeof(GroupTree);
 }
 
 /* Those of the searches for best plans. */

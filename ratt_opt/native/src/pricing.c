@@ -14,8 +14,7 @@ static const double LINK = 0.05, BLIND = 0.2; /* weights of multipliers beside t
 
 static int is_open(int state) { return (state & OUTSIDE) && state != OUTSIDE; }
 
-/* The least reduced cost of the node's groups, for these multipliers; `room`: what those who may sense weigh at most. */
-static double bound_of(Search *s, const Node *node, Multipliers at, double room) {
+double bound_of(Search *s, const Node *node, Multipliers at, double room) {
     const double unit = (double)s->q.unit;
     double price = (double)s->q.blinding + at.blinded * unit, per = room > 0 ? at.value * unit / room : 0.0;
     for (int i = 0; i < s->robots; i++) {
@@ -44,8 +43,7 @@ static double moved(double multiplier, double step, double lowest) {
     return after < lowest ? lowest : after;
 }
 
-/* Better multipliers, by a subgradient step from a bound towards the limit; 0 where the group at hand keeps everything. */
-static int improve(const Search *s, const Node *node, Multipliers *at, double room, double bound) {
+int improve(const Search *s, const Node *node, Multipliers *at, double room, double bound) {
     double weight = 0, blinded = 0, links = 0;
     for (int i = 0; i < s->robots; i++) {
         if (!s->inside[i]) continue;
@@ -88,8 +86,7 @@ static int bound_sizes(const Search *s, Node *node) {
     return node->low <= node->high && node->need <= s->q.n_blinded;
 }
 
-/* The robot that may sense, inside the group at hand, that is worth most; -1 where there is none. */
-static int most_worth(const Search *s, const Node *node) {
+int most_worth(const Search *s, const Node *node) {
     int best = -1;
     for (int i = 0; i < s->robots; i++)
         if (s->inside[i] && MAY_SENSE(node->state[i]) && (best < 0 || node->worth[i] > node->worth[best])) best = i;
@@ -110,7 +107,7 @@ static int may_pay(Search *s, Node *node, int fresh) {
     return 1;
 }
 
-static void copy_node(const Search *s, const Node *from, Node *to) {
+void copy_node(const Search *s, const Node *from, Node *to) {
     Node arrays = *to;
     *to = *from;
     to->state = arrays.state, to->blind = arrays.blind, to->sums = arrays.sums, to->worth = arrays.worth;
@@ -160,8 +157,7 @@ static int split_sizes(Search *s) {
     return 1;
 }
 
-/* An open robot next to the group, with the most links to decided ones; -1 where there is none. */
-static int next_to_group(const Search *s, const int8_t *state) {
+int next_to_group(const Search *s, const int8_t *state) {
     int best = -1, most = 0;
     for (int i = 0; i < s->robots; i++) {
         int decided = 0, touches = 0;

@@ -45,6 +45,17 @@ struct Search {
     uint8_t *inside, *sense, *chosen;  /* (robots) */
 };
 
+/* pricing.c */
+/* The least reduced cost of the node's groups, for these multipliers; `room`: what those who may sense weigh at most. */
+double bound_of(Search *s, const Node *node, Multipliers at, double room);
+/* Better multipliers, by a subgradient step from a bound towards the limit; 0 where the group at hand keeps everything. */
+int improve(const Search *s, const Node *node, Multipliers *at, double room, double bound);
+/* The robot that may sense, inside the group at hand, that is worth most; -1 where there is none. */
+int most_worth(const Search *s, const Node *node);
+/* An open robot next to the group, with the most links to decided ones; -1 where there is none. */
+int next_to_group(const Search *s, const int8_t *state);
+void copy_node(const Search *s, const Node *from, Node *to);
+
 /* levels.c */
 double error_before(const Team *team);
 double value_of_copies(const Search *s, const double *sums, double times, int i, int j);

@@ -73,6 +73,19 @@ typedef struct {
     uint8_t *filled;                     /* (most of all + 1) */
 } Pricing;
 
+/* A tree of cases that is written for a proof: nodes in preorder, each what it says and a number. */
+typedef struct {
+    int64_t limit;                       /* groups that cost more are closed; with 0 or more, others are listed */
+    int64_t averages;                    /* whether a checker takes averages of values */
+    int64_t count, capacity;             /* of nodes */
+    int64_t n_flows, most_flows;
+    int64_t n_listed, most_listed;
+    int64_t *nodes;                      /* (capacity, 2) */
+    int64_t *flows, *recent;             /* (most_flows, 2 + arcs) prices of blinding and of cuts, flows; (most_flows) */
+    int8_t *listed;                      /* (most_listed, robots) who is inside */
+    int64_t *needs;                      /* (most_listed) blinded robots, at least */
+} GroupTree;
+
 /* An open search. */
 typedef struct Search Search;
 

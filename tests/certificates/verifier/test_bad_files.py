@@ -20,7 +20,7 @@ def good(tmp_path_factory):
     prior, information = information_data(rng, 6, 2)
     problem = Problem(TraceObjective(prior, information), np.repeat(np.arange(3), 2), None, 1, 1)
     document = certified(problem, tmp_path_factory.mktemp("good") / "c.json")[1]
-    assert document["lower"]["kind"] == "forced_size"
+    assert document["lower"]["conclusion"] == "forced"
     return document
 
 
@@ -48,7 +48,7 @@ FILES = {
     "must be finite": lambda d: json.dumps(d).replace(repr(d["claim"]["lower"]), "NaN"),
     "must not repeat a field": lambda d: json.dumps(d).replace('"plan"', '"claim": 1, "plan"', 1),
     "must be 'ratt-opt certificate'": lambda d: json.dumps({**d, "format": "other"}),
-    "version must be 1": lambda d: json.dumps({**d, "version": 2}),
+    "version must be 1 or 2": lambda d: json.dumps({**d, "version": 3}),
     "must be a record": lambda d: json.dumps({**d, "more": 1}),
     "must not nest this deep": lambda _: "[" * 200_000,
     "format must be": lambda _: "[]",
@@ -76,7 +76,11 @@ def test_unreadable_and_endless_files(tmp_path, monkeypatch, good):
 
 def negative_weight(d):
     leaf = first(d, "weights")
-    leaf["cuts"], leaf["weights"] = leaf["cuts"] * 2, [2.0, -1.0]
+    leaf["fenchel"], leaf["weights"] = leaf["fenchel"] * 2, [2.0, -1.0]
+
+
+def tree(d):
+    return d["lower"]["sets"]["tree"]
 
 
 PROOFS = {
@@ -84,21 +88,25 @@ PROOFS = {
     "all zero": lambda d: first(d, "weights").update(weights=[0.0]),
     "branches have no leaf|a case has no leaf": lambda d: d["upper"]["tree"].pop(),
     "repeated or follows": lambda d: d["upper"]["tree"].append(first(d, "weights")),
-    "do not partition": lambda d: first(d, "robot")["parts"].pop(),
-    "partition its elements": lambda d: first(d, "robot")["parts"].append([0]),
-    "no branch before names the parts": lambda d: first(d, "robot").pop("parts"),
+    "do not partition": lambda d: first(d, "element")["parts"].pop(),
+    "partition its elements": lambda d: first(d, "element")["parts"].append([0]),
+    "no branch before names the parts": lambda d: first(d, "element").pop("parts"),
     "exceeds its budget": lambda d: d["upper"]["attacks"][0].update(robots=[0, 1]),
     "lower is above upper": lambda d: d["claim"].update(lower=d["claim"]["upper"] * 2),
     "more than the claim": lambda d: d["claim"].update(lower=0.0, upper=d["claim"]["upper"] * 0.999999),
     "worth less than the claim": lambda d: d["claim"].update(lower=d["claim"]["lower"] * 1.000001, upper=1e9),
     "claim: upper is negative": lambda d: d["claim"].update(lower=-2.0, upper=-1.0),
-    "shown to leave a group": lambda d: d["lower"].update(size=d["lower"]["size"] + 1),
-    "lower proof: a case has no leaf": lambda d: d["lower"]["tree"].pop(),
-    "lower proof: a node is repeated": lambda d: d["lower"]["tree"].append(-1),
-    "no robot is missing": lambda d: d["lower"].update(tree=[0, 1, -3, -3, 1, -3, -2]),
-    "a leaf is not impossible": lambda d: d["lower"].update(tree=[-2]),
-    "decided twice": lambda d: d["lower"].update(tree=[0, 0, -1, -1, -1]),
-    "kind must be": lambda d: d.update(lower={"kind": "trust me"}),
+    "shown to leave a group": lambda d: d["lower"].update(sets={"size": 4, "tree": ["budget"]}),
+    "lower proof: a case has no leaf": lambda d: tree(d).pop(),
+    "lower proof: a node is repeated": lambda d: tree(d).append("worth"),
+    "no robot is missing": lambda d: tree(d).__setitem__(slice(None), [{"sense": 0}, {"sense": 1}, "copies"]),
+    "may have robots enough": lambda d: tree(d).__setitem__(slice(None), ["budget"]),
+    "decided twice": lambda d: tree(d).__setitem__(slice(None), [{"sense": 0}, {"sense": 0}]),
+    "none of this proof: flow": lambda d: tree(d).__setitem__(slice(None), [{"flow": 0}]),
+    "not as worth must be": lambda d: tree(d).__setitem__(slice(None), [{"worth": 0}]),
+    "not as sense must be": lambda d: tree(d).__setitem__(slice(None), ["sense"]),
+    "a record of one": lambda d: tree(d).__setitem__(slice(None), [{"sense": 0, "inside": 0}]),
+    "conclusion must be": lambda d: d.update(lower={"conclusion": "trust me"}),
     "an element is not its robot's": lambda d: d.update(plan=[2, 2, 4]),
     "a weight is not positive": lambda d: d["problem"].update(weights=[1.0, -1.0]),
     "prior is not positive definite": lambda d: d["problem"]["prior"][0].__setitem__(0, -1.0),
@@ -119,18 +127,35 @@ def test_a_group_that_may_lose_is_not_used(tmp_path):
     problem = Problem(TraceObjective(prior, information), np.repeat(np.arange(2), 2), None, 0, 1)
     document = certified(problem, tmp_path / "c.json")[1]
     tree = document["upper"]["tree"]
-    where = next(k for k, node in enumerate(tree) if "attack" in node)
+    where = next(k for k, node in enumerate(tree) if "part" in node)
     del tree[where], tree[where + 1]  # keep the first group's leaf alone
     assert "not known to win" in fault(document, tmp_path)
 
 
-def test_an_attack_tree_must_place_and_blind_by_the_rules(tmp_path, good):
-    worst = good["claim"]["lower"]
-    for tree, text in (
-        ([-1], "attack within the budgets"),
-        ([0, -1, -1], "attack within the budgets"),
-        ([1, -2], "worth less"),
-        ([1, 1, -2], "decided twice"),
+def test_conclusions_of_other_kinds_keep_their_rules(tmp_path, good):
+    """Of duals and covers: what each demands of its fields, by the first thing that is wrong."""
+    sets = {"size": 4, "tree": ["budget"]}
+    duals = {"link": 1, "robots": [0, 0, 0], "blinded": 0}
+    flow = {"blinding": 0, "cut": 0, "flow": [0, 0, 0]}
+    for more, text in (
+        ({"conclusion": "duals"}, "more than the budgets is wrong"),
+        ({"conclusion": "cover", "partition": [0]}, "cost too little"),
+        ({"conclusion": "cover", "partition": [0], "duals": duals | {"robots": [9, 9, 9]}}, "budgets is wrong"),
+        ({"conclusion": "cover", "partition": [0], "bounds": [flow | {"flow": [2, 0, 0]}]}, "exceeds what a link may"),
+        ({"conclusion": "cover", "partition": [0], "tree": ["listed"]}, "is not decided"),
+        ({"conclusion": "cover", "partition": [0], "tree": [{"blinded": 1}, "copies"]}, "no robot is missing"),
+        (
+            {"conclusion": "cover", "partition": [0], "tree": whole([])},
+            "tree of partitions is too short|partition the team",
+        ),
+        ({"conclusion": "cover", "partition": [0, 0], "tree": whole([])}, "has its group already|partition the team"),
     ):
-        document = {**good, "lower": {"kind": "attack_tree", "tree": tree}, "claim": {"lower": worst, "upper": 1e9}}
-        assert text in fault(document, tmp_path)
+        lower = {"sets": sets, "duals": duals, "bounds": [flow], "tree": [{"flow": 0}]} | more
+        message = fault({**good, "lower": lower, "claim": good["claim"] | {"upper": 1e9}}, tmp_path)
+        assert any(part in message for part in text.split("|")), message
+
+
+def whole(out):
+    """A tree that lists every group of three robots."""
+    robot = len(out)
+    return ["listed"] if robot == 3 else [{"inside": robot}, *whole([*out, 0]), *whole([*out, 1])]

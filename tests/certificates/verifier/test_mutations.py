@@ -112,7 +112,7 @@ def reshaped(value, rng):
             deep = [deep]
         return [value * 2, value * 300, [value], deep, value[: len(value) // 2], [], None][int(rng.integers(7))]
     if isinstance(value, str):
-        return ["", "attack_tree", "enumerated", 3, None][int(rng.integers(5))]
+        return ["", "copies", "enumerated", 3, None][int(rng.integers(5))]
     if isinstance(value, int):
         return [0, -1, 50, 10**6, 10**30, 2**63, True, None, "1", 1.5][int(rng.integers(10))]
     return [0.0, -value, 1e300, 1e-300, 5e-324, None, "1"][int(rng.integers(7))]

@@ -23,7 +23,8 @@ def test_every_part_of_the_work_counts_its_cases(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(Step, "say", lambda _, detail: said.append(detail))
     problem = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0).problem()
     written, document = certified(problem, tmp_path / "c.json")
-    nodes = {name: len(document[name]["tree"]) for name in ("upper", "lower")}
+    trees = {"upper": document["upper"]["tree"], "lower": document["lower"]["sets"]["tree"]}
+    nodes = {name: len(tree) for name, tree in trees.items()}
     parts = list(dict.fromkeys(re.sub(r", [\d,]+ (of|cases)", r" \1", line) for line in said))
     upper, lower = (f"{name} proof of {count:,} cases" for name, count in nodes.items())
     assert parts == [upper, "covering all attacks cases", lower]

@@ -6,10 +6,13 @@ import json
 from itertools import combinations
 
 import pytest
+from flint import fmpq
 
 from ratt_opt import FileFormatError, ProofError, verify_certificate
-from ratt_opt.certificates.verifier.lower_end import partitions
-from tests.certificates.engine import UndecidedError, check, stated_in
+from ratt_opt.certificates.verifier import duals
+from ratt_opt.certificates.verifier.cases import Cases
+from ratt_opt.certificates.verifier.worth import Worth
+from tests.certificates.engine import UndecidedError, stated_in
 
 
 def document(n, links, alpha_c, lower):
@@ -31,11 +34,11 @@ def document(n, links, alpha_c, lower):
         "attacks": [{"robots": [], "links": []}],
         "points": [[[0.0]]],
         "cuts": [[0, 0, 0]],
-        "tree": [{"cuts": [0], "weights": [1.0]}],
+        "tree": [{"fenchel": [0], "weights": [1.0]}],
     }
     return {
         "format": "ratt-opt certificate",
-        "version": 1,
+        "version": 2,
         "problem": problem,
         "plan": list(range(n)),
         "claim": {"lower": 0.4, "upper": 1.0},
@@ -45,8 +48,19 @@ def document(n, links, alpha_c, lower):
     }
 
 
-def prices(kind, robots, **more):
-    return {"kind": kind, "half_link": 1, "robots": robots, "blinded": 0, "group": 0, "sets": [], "triples": [], **more}
+def cover(n, tree, partition, **more):
+    """A proof with duals that are nothing."""
+    duals = {"link": 1, "robots": [0] * n, "blinded": 0}
+    sets = {"size": n + 1, "tree": ["budget"]}
+    return {
+        "conclusion": "cover",
+        "sets": sets,
+        "duals": duals,
+        "bounds": [],
+        "tree": tree,
+        "partition": partition,
+        **more,
+    }
 
 
 def refusal(tmp_path, written, kind, **limits):
@@ -58,30 +72,50 @@ def refusal(tmp_path, written, kind, **limits):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("robots", [[0, 0, -5], [0, 0, 0], [1, 1, 1]])
-def test_flows_without_sets(robots, tmp_path):
-    """A cover is looked for without the bounds that flows give for sets: these claims have no proof."""
-    tree = [0, 1, 2, -1, -1, 2, -1, -1, 1, 2, -1, -1, 2, -1, -1]
-    lower = prices("group_covers", robots, flows=[[0, 0]], tree=tree)
-    assert refusal(tmp_path, document(3, [(0, 1), (1, 2)], 1, lower), (ProofError, FileFormatError))
+def every_group(n, out=()):
+    """A tree that lists each set of robots."""
+    if len(out) == n:
+        return ["listed"]
+    return [{"inside": len(out)}, *every_group(n, (*out, 0)), *every_group(n, (*out, 1))]
+
+
+def test_groups_that_partition_the_team_are_no_proof(tmp_path):
+    written = document(3, [(0, 1), (1, 2)], 1, cover(3, every_group(3), [0]))
+    assert "partition the team" in refusal(tmp_path, written, ProofError)
 
 
 def test_many_lone_robots_are_no_recursion():
-    written = document(990, [], 0, prices("all_groups", [0] * 990))
-    with pytest.raises(ProofError, match="cover the team"):
-        check(stated_in(written), written["lower"], 0.4)
+    """Each of them is a listed group of its own."""
+    n = 990
+    about = stated_in(document(n, [], 0, None))
+    found = duals.Duals(Cases(about, Worth(about, fmpq(2, 5))), {"link": 1, "robots": [0] * n, "blinded": 0})
+    found._listed = {1 << i: duals.Listed(1 << i, 0, 0, 0) for i in range(n)}
+    with pytest.raises(ProofError, match="partition the team"):
+        duals.check_partition(found, list(range(n)))
+    with pytest.raises(ProofError, match="too short"):
+        duals.check_partition(found, list(range(n - 1)))
 
 
-def test_the_limit_counts_while_groups_are_listed_and_ordered(tmp_path):
-    """Of 16 robots there are 65,535 groups; ordering them took minutes in which nobody looked at the clock."""
-    few, many = (list(combinations(range(n), 2)) for n in (11, 16))
-    assert "cover the team" in refusal(tmp_path, document(11, few, 55, prices("all_groups", [0] * 11)), ProofError)
-    text = refusal(tmp_path, document(16, many, 120, prices("all_groups", [0] * 16)), UndecidedError, time_limit=0.2)
-    assert text == "not decided within 0.2 s"
+def test_the_limit_counts_in_every_loop(tmp_path):
+    """Deep trees, many flows, and partitions of which there are more than anybody can look at."""
+    n = 10
+    links = list(combinations(range(n), 2))
+    tree = every_group(n)
+    listed = document(n, links, len(links), cover(n, tree, [0] * 1000))
+    assert refusal(tmp_path, listed, UndecidedError, time_limit=0.01) == "not decided within 0.01 s"
+    flow = {"blinding": 0, "cut": 0, "flow": [0] * len(links)}
+    many = document(n, links, len(links), cover(n, tree, [0], bounds=[flow] * 20_000))
+    assert refusal(tmp_path, many, UndecidedError, time_limit=0.05) == "not decided within 0.05 s"
+
+
+def test_a_deep_tree_is_refused(tmp_path):
+    deep = [{"blinded": 1}] * 100_000
+    written = document(3, [(0, 1), (1, 2)], 1, cover(3, deep, [0]))
+    assert "depth" in refusal(tmp_path, written, FileFormatError)
 
 
 def test_more_groups_than_a_check_may_hold(tmp_path, monkeypatch):
-    monkeypatch.setattr(partitions, "MOST_LISTED", 100)
+    monkeypatch.setattr(duals, "MOST_LISTED", 100)
     links = list(combinations(range(8), 2))
-    text = refusal(tmp_path, document(8, links, len(links), prices("all_groups", [0] * 8)), UndecidedError)
-    assert text == "not decided: more than 100 groups are within the budgets"
+    written = document(8, links, len(links), cover(8, every_group(8), [0]))
+    assert refusal(tmp_path, written, UndecidedError) == "not decided: more than 100 groups are listed"

@@ -26,7 +26,7 @@ def _document(d: int, exponent: int, tree: list[Any], upper: float = 1.0) -> dic
     point = [zero]
     return {
         "format": "ratt-opt certificate",
-        "version": 1,
+        "version": 2,
         "problem": {
             "objective": "trace", "dimension": d, "prior": [prior], "information": [[zero], [prior]], "weights": [1.0],
             "owners": [0, 0], "links": [], "alpha_s": 0, "alpha_c": 0, "protected_robots": [], "protected_links": [],
@@ -35,11 +35,11 @@ def _document(d: int, exponent: int, tree: list[Any], upper: float = 1.0) -> dic
         "claim": {"lower": 0.0, "upper": upper},
         "prior_eigenvalue": [],
         "upper": {"attacks": [{"robots": [], "links": []}], "points": [point], "cuts": [[0, 0, 0]], "tree": tree},
-        "lower": {"kind": "enumerated"},
+        "lower": {"conclusion": "enumerated"},
     }  # fmt: skip
 
 
-LEAF = {"cuts": [0], "weights": [1.0]}
+LEAF = {"fenchel": [0], "weights": [1.0]}
 
 
 def _verify(document: dict[str, Any], path: Path, seconds: float) -> float:
@@ -71,11 +71,11 @@ def test_short_files_with_wide_numbers_are_refused_before_the_work(tmp_path: Pat
 
 def test_many_leaves_end_at_the_limit(tmp_path: Path) -> None:
     """Two megabytes of nodes over wide numbers."""
-    branch = {"robot": 0, "parts": [[0], [1]]}
+    branch = {"element": 0, "parts": [[0], [1]]}
     tree = [branch, LEAF, LEAF]
     for _ in range(12):  # a robot's single element may be branched on again and again
-        tree = [{"robot": 0, "parts": [[0, 1]]}, *tree]
-    wide = {"cuts": [0] * 100_000, "weights": [1.5] * 100_000}
+        tree = [{"element": 0, "parts": [[0, 1]]}, *tree]
+    wide = {"fenchel": [0] * 100_000, "weights": [1.5] * 100_000}
     document = _document(12, 300, [*tree[:-1], wide])
     assert _verify(document, tmp_path / "c.json", 0.2) < 5
 

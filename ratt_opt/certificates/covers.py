@@ -1,0 +1,163 @@
+"""Proofs by dual prices that every attack leaves a group worth a threshold.
+
+The attacker's search (``attackers/by_prices``) finds duals at which no group below the threshold costs less than
+nothing. Here they become integers, a tree closes or lists the groups (``group_tree.py``), and if some are listed, a
+search shows that they do not partition the team.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.attack.pricing import Question
+from ratt_opt.attackers.by_prices.answer import Threshold
+from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.certificates.group_tree import group_tree, sets_proof
+from ratt_opt.certificates.plain_trees import LARGEST_TEAM, PlainTrees
+from ratt_opt.certificates.plan_sets import NotClosedError
+from ratt_opt.certificates.verifier.work import seconds_left, tick
+
+if TYPE_CHECKING:
+    from ratt_opt.attack.pricing import Plan
+    from ratt_opt.attackers.by_prices.prices import PriceVector
+    from ratt_opt.certificates.plan_sets import PlanSets
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["cover_proof"]
+
+UNIT = 1 << 14
+"""Of duals, one link that leaves a group: by rounding, duals of 100 robots claim less by under a hundredth of a link,
+and flows are short to write."""
+SEARCHED = 2_000_000
+"""Nodes of the search for duals: seconds, up to half a minute at 30 robots."""
+MOST_PARTITIONS = 200_000
+"""Nodes of the search of partitions."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Listed:
+    robots: int
+    cost: int
+    need: int
+    links: int
+
+
+def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
+    """Return the record of a proof of the sets' threshold.
+
+    Raises
+    ------
+    NotClosedError : no duals were found, a group is left, or a tree is too large.
+    """
+    threat, plan = sets.problem.threat, sets.plan
+    if plan is None:
+        return _plain_proof(sets, max_nodes)
+    question = _question(plan, sets)
+    slack = 2 * threat.alpha_c * UNIT - question.claim(threat.n_blinded)
+    question = replace(question, limit=max(slack, -1))
+    record: dict[str, Any] = {"sets": sets_proof(sets, question.most + 1, max_nodes)}
+    record["duals"] = {"link": UNIT, "robots": question.duals.tolist(), "blinded": question.blinding}
+    tree = group_tree(sets, question, max_nodes)
+    record |= {"bounds": tree.bounds, "tree": tree.nodes}
+    if slack < 0:
+        return {"conclusion": "duals", **record}
+    listed = [_listed(threat, question, *group) for group in tree.listed]
+    return {"conclusion": "cover", **record, "partition": _partition(listed, threat, slack)}
+
+
+def _plain_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
+    """The same for a criterion without compiled loops: without dual prices, all groups are listed."""
+    threat, robots = sets.problem.threat, sets.problem.n_robots
+    if robots > LARGEST_TEAM:
+        raise NotClosedError
+    trees = PlainTrees(sets, max_nodes)
+    question = Question(sets.threshold, robots, np.zeros(robots, dtype=np.int64), 0, 0, unit=1)
+    tree = trees.over_groups()
+    listed = [_listed(threat, question, *group) for group in trees.listed]
+    return {
+        "conclusion": "cover",
+        "sets": {"size": robots + 1, "tree": ["budget"]},
+        "duals": {"link": 1, "robots": [0] * robots, "blinded": 0},
+        "bounds": [],
+        "tree": tree,
+        "partition": _partition(listed, threat, 2 * threat.alpha_c),
+    }
+
+
+def _question(plan: Plan, sets: PlanSets) -> Question:
+    """Duals that refute the threshold, in units, and the largest size of a set below it."""
+    from ratt_opt.attackers.by_prices.decision import ThresholdDecision
+
+    seconds = seconds_left()
+    budget = Budget(None if seconds == np.inf else seconds)
+    try:
+        answer = ThresholdDecision(plan).decide(sets.threshold, budget, SEARCHED)
+        most = plan.most_below(sets.threshold)
+    except OutOfBudget:
+        raise NotClosedError from None
+    if answer.verdict is not Threshold.REFUTED or answer.prices is None:
+        raise NotClosedError
+    return Question(sets.threshold, most, *_rounded(answer.prices), 0, UNIT)
+
+
+def _rounded(prices: PriceVector) -> tuple[Any, int]:
+    """Duals of robots and of a blinded one; prices are about half links."""
+    return np.floor(prices.robot * (2 * UNIT)).astype(np.int64), int(np.ceil(prices.blinded * (2 * UNIT)))
+
+
+def _listed(threat: Threat, question: Question, robots: int, need: int) -> _Listed:
+    inside = [robots >> i & 1 for i in range(threat.graph.n_robots)]
+    links = sum(inside[i] != inside[j] for i, j in threat.graph.links)
+    need = max(need, 0)
+    duals = sum(int(dual) for dual, is_in in zip(question.duals, inside, strict=True) if is_in)
+    return _Listed(robots, question.unit * links + question.blinding * need - duals, need, links)
+
+
+def _partition(groups: list[_Listed], threat: Threat, slack: int) -> list[int]:
+    """The tree that shows that groups, as a verifier lists them, do not partition the team.
+
+    Raises
+    ------
+    NotClosedError : they do, or the tree is too large.
+    """
+    alpha_c, most, robots = threat.alpha_c, threat.n_blinded, threat.graph.n_robots
+    listed: dict[int, _Listed] = {}
+    for group in groups:
+        fits = group.links <= alpha_c and group.need <= most and 0 <= group.cost <= slack
+        if fits and (group.robots not in listed or listed[group.robots].need > group.need):
+            listed[group.robots] = group
+    having = [[group for group in listed.values() if group.robots >> i & 1] for i in range(robots)]
+    tree: list[int] = []
+    waiting = [((1 << robots) - 1, slack, most, 2 * alpha_c)]
+    while waiting:
+        tick()
+        left, *budgets = waiting.pop()
+        if not left or len(tree) > MOST_PARTITIONS:
+            raise NotClosedError
+        children: list[tuple[int, int, int, int]] = []
+        best = -1
+        for i in range(robots):
+            if left >> i & 1:
+                fitting = [group for group in having[i] if not group.robots & ~left and _fits(group, budgets)]
+                if best < 0 or len(fitting) < len(children):
+                    best = i
+                    children = [
+                        (left & ~group.robots, *(b - x for b, x in zip(budgets, _spent(group), strict=True)))  # type: ignore[misc]
+                        for group in fitting
+                    ]
+                if not children:
+                    break
+        tree.append(best)
+        waiting.extend(reversed(children))
+    return tree
+
+
+def _spent(group: _Listed) -> tuple[int, int, int]:
+    return group.cost, group.need, group.links
+
+
+def _fits(group: _Listed, budgets: list[int]) -> bool:
+    return all(x <= budget for x, budget in zip(_spent(group), budgets, strict=True))

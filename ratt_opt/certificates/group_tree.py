@@ -1,0 +1,146 @@
+"""Trees over sets of robots, and over the groups of an attack, by compiled loops (``native/src/group_tree.c``)."""
+
+from __future__ import annotations
+
+from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ratt_opt.attack.pricing import GroupSearch, Order, Question
+from ratt_opt.certificates.plain_trees import PlainTrees
+from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
+from ratt_opt.certificates.verifier.work import tell, tick
+from ratt_opt.native.library import address, function
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attack.pricing import Plan
+    from ratt_opt.certificates.plan_sets import PlanSets
+
+__all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
+
+CASES = 2_000
+"""Between two looks at the clock."""
+MOST_CRITERIA = 20_000_000
+"""Criteria of single targets looked at for a tree over sets, without a look at the clock: half a second."""
+MOST_FLOWS, MOST_LISTED = 5_000, 20_000
+BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded"), ("worth", "copies", "budget", "flow", "listed")
+"""Nodes by the numbers that the loops have for them."""
+FINISHED, PAUSED = 0, 1
+
+
+class TreeRecord(Structure):
+    """``GroupTree`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *(
+            (name, c_int64)
+            for name in (
+                "limit",
+                "averages",
+                "count",
+                "capacity",
+                "n_flows",
+                "most_flows",
+                "n_listed",
+                "most_listed",
+            )
+        ),
+        *((name, c_void_p) for name in ("nodes", "flows", "recent", "listed", "needs")),
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class GroupTree:
+    """``nodes`` in preorder as a certificate has them; ``bounds`` : prices and flows; ``listed`` : masks of groups, and
+    how many of each are blinded at least."""
+
+    nodes: list[Any]
+    bounds: list[dict[str, Any]]
+    listed: list[tuple[int, int]]
+
+
+class _Trees:
+    """The arrays that a tree is written to."""
+
+    def __init__(
+        self, plan: Plan, limit: int, max_nodes: int, *, averages: bool, flows: int = 0, listed: int = 0
+    ) -> None:
+        robots, arcs = plan.robots, len(plan.links.robot)
+        self.nodes = np.zeros((max_nodes + 4 * robots + 8, 2), np.int64)
+        self.flows, self.recent = np.zeros((flows, 2 + arcs), np.int64), np.zeros(flows + 1, np.int64)
+        self.listed, self.needs = np.zeros((listed, robots), np.int8), np.zeros(listed, np.int64)
+        arrays = self.nodes, self.flows, self.recent, self.listed, self.needs
+        self.record = TreeRecord(limit, averages, 0, len(self.nodes), 0, flows, 0, listed, *map(address, arrays))
+
+    def named(self) -> list[Any]:
+        """The nodes as a certificate has them."""
+        names = (*BRANCHES, *LEAVES)
+        return [
+            {names[kind]: number} if kind < len(BRANCHES) or names[kind] == "flow" else names[kind]
+            for kind, number in self.nodes[: self.record.count].tolist()
+        ]
+
+
+def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
+    """Return the record of a proof that any ``size`` robots are worth the threshold.
+
+    Raises
+    ------
+    NotClosedError : a set is worth less, or the tree is too large.
+    """
+    plan = sets.plan
+    if plan is None:
+        return {"size": size, "tree": PlainTrees(sets, max_nodes).over_sets(size)}
+    if size > plan.robots:
+        return {"size": size, "tree": ["budget"]}
+    trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages)
+    nobody = np.zeros(plan.robots, dtype=np.int64)
+    call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_int64] * 2)
+    tick()
+    tell(COVERING, 0)
+    with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), Order.MEMBERS, nobody) as search:
+        code = call(search.handle, byref(trees.record), size, MOST_CRITERIA // sets.objective.n_targets)
+    if code != FINISHED:
+        raise NotClosedError
+    return {"size": size, "tree": trees.named()}
+
+
+def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
+    """Return a tree that closes or lists each group that costs at most ``question.limit``.
+
+    Raises
+    ------
+    NotClosedError : a group is neither, or the tree is too large.
+    """
+    plan = sets.plan
+    assert plan is not None, "the question is about one"
+    averages = sets.objective.verifier_averages
+    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=MOST_FLOWS, listed=MOST_LISTED)
+    first = np.argsort(-question.duals, kind="stable").astype(np.int64)
+    call = function("grow_group_tree", c_int, c_void_p, POINTER(TreeRecord), c_int64)
+    record, code = trees.record, PAUSED
+    with GroupSearch(plan, question, Order.MEMBERS, first) as search:
+        while code == PAUSED:
+            tick()
+            tell(COVERING, record.count)
+            code = call(search.handle, byref(record), CASES)
+    if code != FINISHED:
+        raise NotClosedError
+    masks = [sum(1 << int(i) for i in np.flatnonzero(row)) for row in trees.listed[: record.n_listed]]
+    bounds = [_bound(plan, flow) for flow in trees.flows[: record.n_flows]]
+    return GroupTree(trees.named(), bounds, list(zip(masks, trees.needs[: record.n_listed].tolist(), strict=True)))
+
+
+def _bound(plan: Plan, flow: IntArray) -> dict[str, Any]:
+    """A bound as a certificate has it: what each link carries from its lower robot to the other."""
+    links, carried = plan.links, flow[2:]
+    arcs = [
+        (i, int(links.robot[a]), int(carried[a]))
+        for i in range(plan.robots)
+        for a in range(int(links.start[i]), int(links.start[i + 1]))
+        if links.robot[a] > i
+    ]
+    return {"blinding": int(flow[0]), "cut": int(flow[1]), "flow": [value for _, _, value in sorted(arcs)]}

@@ -1,0 +1,169 @@
+"""What the groups of an attack cost at dual prices, and that no groups within the budgets partition the team.
+
+A group C of which b robots are blinded costs
+
+    link * (links between C and the others) + blinded * b - sum of the duals of its robots.
+
+The groups of an attack partition the team, and a cut link leaves two of them, so they cost
+
+    slack = 2 link alpha_c + blinded min(alpha_s, robots that may be blinded) - sum of all duals
+
+at most, together. If no group that is worth less than the claim costs less than 0, and the slack is negative, every
+attack leaves a group that is worth it. If the slack is not negative, groups that cost no more are listed, and a tree
+shows that they do not partition the team.
+
+Source: Johnson, Mehrotra and Nemhauser, Mathematical Programming 62 (1993).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ratt_opt.certificates.verifier.cases import robots_of
+from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed
+from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.errors import UndecidedError
+
+if TYPE_CHECKING:
+    from ratt_opt.certificates.verifier.cases import Case, Cases
+
+__all__ = ["Duals", "Listed", "check_partition"]
+
+LARGEST = 2**53
+"""Of duals and flows, in size."""
+MOST_LISTED = 250_000
+"""Groups to choose from, and so the memory of a check."""
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """A group within the budgets, as a bit mask: what it costs, robots blinded in it at least, links that leave it."""
+
+    robots: int
+    cost: int
+    need: int
+    links: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Bound:
+    """Prices of blinded robots and of cuts beside the duals; ``flow[i]`` : by neighbour, what is carried out of i."""
+
+    blinding: int
+    cut: int
+    flow: list[dict[int, int]]
+
+
+class Duals:
+    """Duals, the bounds that go with them, and the groups that are listed."""
+
+    def __init__(self, cases: Cases, given: object) -> None:
+        link, robots, blinded = fields("duals", given, "link robots blinded")
+        self.cases, self.about = cases, cases.about
+        self.link, self.blinded = index("duals link", link, LARGEST), index("duals blinded", blinded, LARGEST)
+        self.robot = [signed("duals robots", dual, LARGEST) for dual in array("duals robots", robots, self.about.n)]
+        self.slack = 2 * self.link * self.about.alpha_c + self.blinded * cases.blinded - sum(self.robot)
+        self._bounds: list[_Bound] = []
+        self._listed: dict[int, Listed] = {}
+
+    @property
+    def listed(self) -> list[Listed]:
+        """In the order in which leaves list them."""
+        return list(self._listed.values())
+
+    def read_bounds(self, given: object) -> None:
+        """Read flows and their prices, after checking that no link carries more than it may."""
+        pairs = sorted(self.about.links)
+        for bound in array("bounds", given):
+            tick()
+            blinding, cut, carried = fields("bound", bound, "blinding cut flow")
+            extra = index("bound cut", cut, LARGEST)
+            flow: list[dict[int, int]] = [{} for _ in range(self.about.n)]
+            for (i, j), value in zip(pairs, array("bound flow", carried, len(pairs)), strict=True):
+                amount = signed("bound flow", value, LARGEST)
+                fits = abs(amount) <= self.link + extra or (i, j) in self.about.safe_links
+                need(fits, "lower proof: a flow exceeds what a link may carry")
+                flow[i][j], flow[j][i] = amount, -amount
+            self._bounds.append(_Bound(index("bound blinding", blinding, LARGEST), extra, flow))
+
+    def close_by_flow(self, case: Case, number: object) -> None:
+        """Leaf ``flow``: every group of the case costs more than the slack, or than nothing if that is negative."""
+        bound = self._bounds[index("lower tree flow", number, len(self._bounds))]
+        limit = max(self.slack, -1)
+        need(self._least(case, bound) > limit, "lower proof: a group of a leaf may cost too little")
+
+    def _least(self, case: Case, bound: _Bound) -> int:
+        """No group of the case costs less.
+
+        Of the links that leave it those between decided robots count, those from an open robot to decided ones, and
+        from open robots to others what the flow carries.
+        """
+        near, link, price = self.cases.near, self.link + bound.cut, self.blinded + bound.blinding
+        inside, outside = case.inside, case.outside
+        open_ = case.everyone & ~inside & ~outside
+        total = -bound.cut * self.about.alpha_c - bound.blinding * self.cases.blinded
+        inner: list[int] = []
+        gains: list[int] = []
+        for i in robots_of(inside):
+            cost = -self.robot[i]
+            total += link * (near[i] & outside).bit_count()
+            if case.sensing >> i & 1:
+                total += cost
+            else:
+                total += cost + price
+                inner += [price] if case.may_sense >> i & 1 else []
+        for i in robots_of(open_):
+            flow = bound.flow[i]
+            joins = link * (near[i] & outside).bit_count() - self.robot[i]
+            joins += sum(flow[j] for j in robots_of(near[i] & open_))
+            stays = link * (near[i] & inside).bit_count()
+            best = min(stays, joins + price) if case.may_blind >> i & 1 else stays
+            total += best
+            if case.may_sense >> i & 1 and joins < best:
+                gains.append(best - joins)
+        within = inside.bit_count() - case.sensing.bit_count() - case.low
+        gains += inner[: max(within, 0)]
+        return total - sum(sorted(gains, reverse=True)[: max(case.more, 0)])
+
+    def list_group(self, case: Case, _: object) -> None:
+        """Leaf ``listed``: each robot is inside or out."""
+        inside, near = case.inside, self.cases.near
+        need(inside | case.outside == case.everyone, "lower proof: a listed group is not decided")
+        links = sum((near[i] & ~inside).bit_count() for i in robots_of(inside))
+        blinded = max(case.need, 0)
+        is_torn = any(self.cases.tied[i] & ~inside for i in robots_of(inside))
+        if not inside or is_torn or links > self.about.alpha_c or blinded > self.cases.blinded:
+            return
+        cost = self.link * links + self.blinded * blinded - sum(self.robot[i] for i in robots_of(inside))
+        need(cost >= 0, "lower proof: a listed group costs less than nothing")
+        known = self._listed.get(inside)
+        if cost <= self.slack and (known is None or known.need > blinded):
+            self._listed[inside] = Listed(inside, cost, blinded, links)
+            if len(self._listed) > MOST_LISTED:
+                raise UndecidedError(f"not decided: more than {MOST_LISTED} groups are listed")
+
+
+def check_partition(duals: Duals, tree: object) -> None:
+    """Check that the listed groups do not partition the team within the budgets.
+
+    ``tree`` : in preorder the robot whose group is chosen; there is one child for each listed group that has it and
+    fits.
+    """
+    listed, everyone = duals.listed, duals.cases.everyone
+    having = [[group for group in listed if group.robots >> i & 1] for i in range(duals.about.n)]
+    robots = iter(array("partition", tree))
+    waiting = [(everyone, duals.slack, duals.cases.blinded, 2 * duals.about.alpha_c)]
+    while waiting:
+        left, cost, blinded, links = waiting.pop()
+        need(left, "lower proof: listed groups partition the team within the budgets")
+        robot = next(robots, None)
+        need(robot is not None, "lower proof: the tree of partitions is too short")
+        i = index("partition", robot, duals.about.n)
+        need(left >> i & 1, "lower proof: a robot of the tree of partitions has its group already")
+        for group in reversed(having[i]):
+            tick()
+            fits = group.robots & ~left == 0 and group.cost <= cost and group.need <= blinded
+            if fits and group.links <= links:
+                waiting.append((left & ~group.robots, cost - group.cost, blinded - group.need, links - group.links))
+    need(next(robots, None) is None, "lower proof: the tree of partitions is too long")
