@@ -15,7 +15,7 @@ QUESTIONS = {
     "sense": ("does robot {} sense in the group?", "yes", "no"),
     "inside": ("is robot {} in the group?", "yes", "no"),
     "sensing": ("do at least {} robots of the group sense?", "yes", "no"),
-    "blinded": ("are fewer than {} of the robots that are in the group for sure blinded?", "yes", "no"),
+    "blinded": ("are fewer than {} robots of the group blinded?", "yes", "no"),
 }
 LEAVES = {
     "worth": "the robots that sense for sure are worth the claim",

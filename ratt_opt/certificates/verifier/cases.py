@@ -30,8 +30,8 @@ PLAIN = ("worth", "copies", "budget", "listed")
 class Case:
     """Masks: robots that sense for sure, and the others that may sense, may be blinded, may be out of the group.
 
-    ``known`` : those that sense for sure, as ``Worth`` has them; ``least`` to ``most`` robots sense; at least ``low``
-    of the robots inside are blinded, at most ``high`` of those in ``scope``; the group has ``members`` robots or more
+    ``known`` : those that sense for sure, as ``Worth`` has them; ``least`` to ``most`` robots of the group sense, and
+    ``low`` to ``high`` of them are blinded
     """
 
     known: Known
@@ -42,10 +42,8 @@ class Case:
     may_leave: int
     least: int
     most: int
-    scope: int
+    low: int
     high: int
-    low: int = 0
-    members: int = 0
 
     @property
     def inside(self) -> int:
@@ -65,12 +63,9 @@ class Case:
     @property
     def need(self) -> int:
         """Blinded robots, at least."""
-        return max(self.low, self.blinded_of(self.inside))
-
-    def blinded_of(self, inside: int) -> int:
-        """Blinded ones of robots inside, at least, as no more may sense."""
+        inside = self.inside
         more = min(self.more, (inside & self.may_sense).bit_count())
-        return (inside & ~self.sensing).bit_count() - more
+        return max(self.low, (inside & ~self.sensing).bit_count() - more)
 
 
 class Cases:
@@ -91,15 +86,13 @@ class Cases:
         Robots that are not in the set may be in its group, blinded: of the rules for groups none holds.
         """
         everyone = self.everyone
-        root = Case(self.worth.nobody, everyone, 0, everyone, 0, everyone, size, size, everyone, 0)
+        root = Case(self.worth.nobody, everyone, 0, everyone, 0, everyone, size, size, 0, 0)
         return self.check(tree, root, {"budget": self._close_too_few}, ("sense",))
 
     def groups(self, most: int, least: int = 0, blinded: int | None = None) -> Case:
         """Groups of an attack: ``least`` to ``most`` of the robots sense; so many are ``blinded``, if that is given."""
-        everyone, may_blind = self.everyone, self.everyone & ~self.safe
-        high, members = (self.blinded, 0) if blinded is None else (blinded, least + blinded)
-        nobody = self.worth.nobody
-        return Case(nobody, everyone, 0, everyone, may_blind, everyone, least, most, everyone, high, members=members)
+        everyone, low, high = self.everyone, blinded or 0, self.blinded if blinded is None else blinded
+        return Case(self.worth.nobody, everyone, 0, everyone, everyone & ~self.safe, everyone, least, most, low, high)
 
     def check(
         self, tree: object, root: Case, closing: Mapping[str, Close] | None = None, branches: tuple[str, ...] = BRANCHES
@@ -127,7 +120,7 @@ class Cases:
             yield replace(case, most=min(case.most, count - 1))
         elif name == "blinded":
             count = index("lower tree blinded", number, n + 1)
-            yield replace(case, scope=case.inside, high=count - 1)
+            yield replace(case, high=min(case.high, count - 1))
             yield replace(case, low=max(case.low, count))
         else:
             i = index(f"lower tree {name}", number, n)
@@ -161,7 +154,7 @@ class Cases:
         """So many robots sense besides those that do for sure, and with any so many of these the group is worth it."""
         among, count = case.may_sense, case.least - case.sensing.bit_count()
         if count <= 0:
-            inside = case.inside & case.scope
+            inside = case.inside
             among, count = case.may_sense & inside, (inside & ~case.sensing).bit_count() - case.high
         need(0 < count <= among.bit_count(), "lower proof: no robot is missing, or too few are left")
         self.worth.require(case.known, robots_of(among), count)
@@ -178,9 +171,7 @@ class Cases:
         possible = self.everyone & ~outside
         if _is_short(case) or max(case.sensing.bit_count(), case.least) > case.most:
             return True
-        if case.need > self.blinded or case.blinded_of(inside & case.scope) > case.high:
-            return True
-        if possible.bit_count() < case.members:
+        if case.need > case.high or possible.bit_count() < case.least + case.low:
             return True
         for i in robots_of(inside):
             lost += (self.near[i] & outside).bit_count()

@@ -97,12 +97,14 @@ class Duals:
         """No group of the case costs less.
 
         Of the links that leave it those between decided robots count, those from an open robot to decided ones, and
-        from open robots to others what the flow carries.
+        from open robots to others what the flow carries. Who of the robots that may sense is blinded does not matter
+        to the cost: say that they are inside, as far as ``low`` of the group's robots must be, but for those that are
+        not inside and cannot sense.
         """
         near, link, price = self.cases.near, self.link + bound.cut, self.blinded + bound.blinding
         inside, outside = case.inside, case.outside
         open_ = case.everyone & ~inside & ~outside
-        total = -bound.cut * self.about.alpha_c - bound.blinding * self.cases.blinded
+        total = -bound.cut * self.about.alpha_c - bound.blinding * case.high
         inner: list[int] = []
         gains: list[int] = []
         for i in robots_of(inside):
@@ -122,7 +124,8 @@ class Duals:
             total += best
             if case.may_sense >> i & 1 and joins < best:
                 gains.append(best - joins)
-        within = inside.bit_count() - case.sensing.bit_count() - case.low
+        elsewhere = (open_ & case.may_blind & ~case.may_sense).bit_count()
+        within = inside.bit_count() - case.sensing.bit_count() - max(case.low - elsewhere, 0)
         gains += inner[: max(within, 0)]
         return total - sum(sorted(gains, reverse=True)[: max(case.more, 0)])
 

@@ -58,14 +58,14 @@ static int64_t cost_by(const Proof *p, const Node *node, const int64_t *flow, in
     const Pricing *q = &p->s->q;
     int64_t link = q->unit + flow[1], price = q->blinding + flow[0];
     int64_t total = -flow[1] * q->most_cut - flow[0] * q->n_blinded;
-    int room = node->most, within = -blinded, count = 0, n_inner = 0;
+    int room = node->most, within = 0, count = 0, n_inner = 0;
     int64_t *inner = p->gains + p->robots;
     for (int i = 0; i < p->robots; i++) {
         int state = node->state[i];
         int64_t in = -q->duals[i], out = 0;
         if (state == OUTSIDE) continue;
         room -= state == SENSES;
-        within += IS_INSIDE(state) && state != SENSES;
+        within += IS_INSIDE(state) && state != SENSES, blinded -= state == (BLINDED | OUTSIDE);
         for (int64_t a = q->start[i]; a < q->start[i + 1]; a++) {
             int other = node->state[q->robot[a]];
             if (other == OUTSIDE) in += link;
@@ -84,6 +84,7 @@ static int64_t cost_by(const Proof *p, const Node *node, const int64_t *flow, in
         if (IS_INSIDE(state)) inner[n_inner++] = best - in;
         else p->gains[count++] = best - in;
     }
+    if (blinded > 0) within -= blinded; /* who can only be blinded, elsewhere, does not count */
     qsort(inner, (size_t)n_inner, sizeof(int64_t), compare_gains);
     for (int k = 0; k < n_inner && k < within; k++) p->gains[count++] = inner[k];
     qsort(p->gains, (size_t)count, sizeof(int64_t), compare_gains);
