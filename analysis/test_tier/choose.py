@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from analysis.test_tier.reached_lines import Reach
@@ -32,6 +32,7 @@ __all__ = [
     "read_costs",
     "read_list",
     "summary",
+    "write_costs",
     "write_list",
 ]
 
@@ -66,22 +67,28 @@ class Cost:
     compiling: float
     shared: float = 0.0
 
-
-def read_costs(paths: Iterable[Path]) -> dict[str, Cost]:
-    """What the plug-in wrote, of one or several processes."""
-    costs: dict[str, Cost] = {}
-    for path in paths:
-        with path.open(newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                name, tests = row["function"], int(row["tests"])
-                new = Cost(tests, *(float(row[field]) for field in ("seconds", "compiling", "shared")))
-                costs[name] = new if name not in costs else _sum(costs[name], new)
-    return costs
+    def __add__(self, other: Cost) -> Cost:
+        """The cost of more cases of the same function."""
+        seconds, compiling = self.seconds + other.seconds, self.compiling + other.compiling
+        return Cost(self.tests + other.tests, seconds, compiling, max(self.shared, other.shared))
 
 
-def _sum(one: Cost, other: Cost) -> Cost:
-    seconds, compiling = one.seconds + other.seconds, one.compiling + other.compiling
-    return Cost(one.tests + other.tests, seconds, compiling, max(one.shared, other.shared))
+def read_costs(path: Path) -> dict[str, Cost]:
+    """What was measured of each test function, if anything was."""
+    if not path.exists():
+        return {}
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))[1:]
+    return {name: Cost(int(tests), *(float(one) for one in seconds)) for name, tests, *seconds in rows}
+
+
+def write_costs(path: Path, costs: Mapping[str, Cost]) -> None:
+    """Write a row for each test function, sorted by name."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("function", "tests", "seconds", "compiling", "shared"))
+        for name, cost in sorted(costs.items()):
+            rows.writerow((name, cost.tests, *(f"{one:.3f}" for one in (cost.seconds, cost.compiling, cost.shared))))
 
 
 def reached_units(reach: Reach, tests: Sequence[str]) -> tuple[list[np.ndarray], np.ndarray]:
