@@ -213,20 +213,22 @@ class Campaign:
 
     def _blame(self, failing: str, tests: list[str], tier: str) -> list[str]:
         """Note which fault fails a test; the tests of its file that can still find others."""
-        short = tier == "short"
         function = failing.partition("[")[0].split(" ")[0]
         asked = [function] if function in tests else tests
-        left = [row for row in self._open() if {*asked} & {*self._measured.reaching(self._mutants[row.number])}]
 
         def fails(rows: Sequence[Row]) -> str:
-            return self._failing([self._mutants[row.number] for row in rows], asked, short=short)
+            return self._failing([self._mutants[row.number] for row in rows], asked, short=tier == "short")
 
-        while len(left) > 1:
-            half = len(left) // 2
-            left = left[:half] if fails(left[:half]) else left[half:]
-        if left and (found := fails(left)) and not fails([]):
-            self._note(replace(left[0], found=tier, test=found))
-            return tests
+        every = self._open()
+        likely = [row for row in every if {*asked} & {*self._measured.reaching(self._mutants[row.number])}]
+        for rows in (likely, every) if not fails([]) else ():  # what runs before the first test reaches more lines
+            left = rows
+            while len(left) > 1:
+                half = len(left) // 2
+                left = left[:half] if fails(left[:half]) else left[half:]
+            if left and (found := fails(left)):
+                self._note(replace(left[0], found=tier, test=found))
+                return tests
         self._say(f"{failing}: not by one fault alone")
         return [test for test in tests if test not in asked]
 
