@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING
 
 from analysis.test_tier.campaign import Campaign, Measured, draw, read_rows
 from analysis.test_tier.choose import (
-    CASES,
-    KEPT,
     chosen,
     parts_of,
     reached_units,
@@ -42,7 +40,7 @@ def main() -> int:
     parser.add_argument("step", choices=sorted(STEPS), help="what to do")
     parser.add_argument("tests", nargs="*", help="measure these files or functions only; the others stay as they are")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "test_tier", help="of what is measured")
-    parser.add_argument("--seconds", type=float, default=90.0, help="of the short tier (default %(default)s)")
+    parser.add_argument("--seconds", type=float, default=120.0, help="of the short tier (default %(default)s)")
     parser.add_argument("--mutants", type=int, default=200, help="how many (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the mutants (default %(default)s)")
     parser.add_argument("--time-limit", type=float, default=math.inf, help="seconds; run the same command to go on")
@@ -74,7 +72,7 @@ def _choose(options: argparse.Namespace) -> None:
     names = sorted(costs)
     units, worth = reached_units(Reach(ROOT, load(options.folder / REACH)), names)
     kept = chosen(parts_of(names, [costs[name] for name in names]), units, worth, options.seconds)
-    cases = {name: kept.get(i, CASES if name in KEPT else 0) for i, name in enumerate(names)}
+    cases = {name: kept.get(i, 0) for i, name in enumerate(names)}
     write_list(LIST, {name: n for name, n in cases.items() if n < costs[name].tests})
     _table(options)
 

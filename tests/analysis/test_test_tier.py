@@ -20,7 +20,9 @@ from analysis.test_tier.campaign import Campaign, Measured, draw, family_of, rea
 from analysis.test_tier.choose import (
     AGAIN,
     CASES,
-    KEPT,
+    CHECKERS,
+    EVERY,
+    OF_CHECKERS,
     Cost,
     chosen,
     parts_of,
@@ -131,24 +133,26 @@ def test_the_tier_takes_what_reaches_most_for_its_seconds() -> None:
 
 
 def test_a_function_of_many_cases_may_join_with_some() -> None:
-    (cost,) = costs(10, tests=10 * CASES)
+    (cost,) = costs(1000, tests=10 * CASES)
     units, worth = [np.array([0])], np.array([5.0])
-    assert chosen(parts_of("a", [cost]), units, worth, 0.9) == {}
-    assert chosen(parts_of("a", [cost]), units, worth, 1.5) == {0: CASES}
-    assert chosen(parts_of("a", [cost]), units, worth, 10.0) == {0: 10 * CASES}
+    assert chosen(parts_of("a", [cost]), units, worth, 90.0) == {}
+    assert chosen(parts_of("a", [cost]), units, worth, 150.0) == {0: CASES}
+    assert chosen(parts_of("a", [cost]), units, worth, 1001.0) == {0: 10 * CASES}
+
+
+def test_every_function_has_some_cases_in_the_tier_and_checkers_have_more() -> None:
+    """Unless one case takes longer than the seconds of a function."""
+    names = ("tests/a.py::quick", "tests/a.py::slow", f"{OF_CHECKERS}b.py::faults", f"{OF_CHECKERS}b.py::slow")
+    each = (EVERY / 3.5, 1.5 * EVERY, CHECKERS / 8.5, 1.5 * CHECKERS)
+    parts = parts_of(names, [Cost(9, 9 * one, 0.0) for one in each])
+    assert chosen(parts, [np.array([0])] * 4, np.array([1.0]), 0.0) == {0: 3, 2: 8}
 
 
 def test_functions_of_a_file_share_the_seconds_of_its_fixture() -> None:
     given = [Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0)]
-    assert [part.seconds for part in parts_of(["f::a", "f::b", "g::c"], given)] == [2.1, 2.1, 0.1]
-
-
-def test_what_came_back_is_in_the_tier() -> None:
-    cases = read_list(ROOT / "tests" / "short_tier.txt")
-    assert all(cases.get(name, 1) > 0 for name in KEPT)
-    for name in KEPT:
-        file, function = name.split("::")
-        assert f"def {function}(" in (ROOT / file).read_text(encoding="utf-8")
+    parts = parts_of(["f::a", "f::b", "g::c"], given)
+    assert [part.seconds for part in parts] == pytest.approx([2.1, 2.1, 0.1])
+    assert [part.always for part in parts] == [False, False, True]
 
 
 def test_the_list_says_what_is_left_out(tmp_path: Path) -> None:
