@@ -44,7 +44,7 @@ LEAST = 0.004
 """Seconds that every test costs: to collect and report it."""
 CASES, FIRST = 12, 0.7
 """A function can join with this many cases, which find this share of what all of them do."""
-EVERY, CHECKERS = 0.2, 2.0
+EVERY, CHECKERS = 0.2, 2.5
 """Seconds that every function has for some of its cases, and one that tests checkers of certificates: nothing else sees
 a rule that a checker no longer applies."""
 OF_CHECKERS = "tests/certificates/"
