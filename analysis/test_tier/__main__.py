@@ -116,6 +116,7 @@ STEPS: dict[str, Callable[[argparse.Namespace], None]] = {
     "choose": _choose,
     "mutate": partial(_campaign, step=Campaign.near),
     "together": partial(_campaign, step=Campaign.together),
+    "again": partial(_campaign, step=Campaign.again),
     "table": _table,
 }
 

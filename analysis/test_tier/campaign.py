@@ -182,6 +182,19 @@ class Campaign:
         for row in self._open():
             self._note(replace(row, found="none"))
 
+    def again(self, until: float) -> None:
+        """Judge found faults by a list that has changed since: by the test that found one, or all of the short tier."""
+        for number, row in sorted(self.rows.items()):
+            if monotonic() < until and row.found in {"short", "whole"}:
+                mutant, before = self._mutants[number], _function_of(row.test)
+                short = [test for test in self._measured.reaching(mutant) if self._measured.is_short(test)]
+                tries = ([test for test in short if test == before], short)
+                failing = (self._failing([mutant], tests, short=True) for tests in tries)
+                if found := next(filter(None, failing), ""):
+                    self._note(replace(row, found="short", test=found))
+                else:
+                    self._note(replace(row, found="whole"))
+
     def _open(self) -> list[Row]:
         return [row for _, row in sorted(self.rows.items()) if row.found == "open"]
 
@@ -213,7 +226,7 @@ class Campaign:
 
     def _blame(self, failing: str, tests: list[str], tier: str) -> list[str]:
         """Note which fault fails a test; the tests of its file that can still find others."""
-        function = failing.partition("[")[0].split(" ")[0]
+        function = _function_of(failing)
         asked = [function] if function in tests else tests
 
         def fails(rows: Sequence[Row]) -> str:
@@ -231,6 +244,10 @@ class Campaign:
                 return tests
         self._say(f"{failing}: not by one fault alone")
         return [test for test in tests if test not in asked]
+
+
+def _function_of(failing: str) -> str:
+    return failing.partition("[")[0].split(" ")[0]
 
 
 def _file_of(test: str) -> str:

@@ -224,6 +224,10 @@ def test_each_fault_is_found_by_the_tier_that_has_its_test(package: Path) -> Non
     assert found == ["short", "whole", "none", "whole", "short", "short", "none"]
     assert rows[1].test == f"{long}[0] failed"
     assert f"{bad}[0] failed: not by one fault alone" in said
+    measured = Measured(reach, measured.costs, {short: 0, long: 1, other: 0, dear: 0, bad: 0})
+    Campaign(_Tree(finds), measured, mutants, file, said.append).again(np.inf)
+    found = [row.found for _, row in sorted(read_rows(file).items())]
+    assert found == ["whole", "short", "none", "whole", "short", "whole", "none"]
 
 
 def test_nothing_is_tried_once_the_time_is_over(package: Path) -> None:
