@@ -13,23 +13,12 @@ if TYPE_CHECKING:
 __all__ = ["c_mutants"]
 
 NO_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"|^#[^\n]*', re.DOTALL | re.MULTILINE)
-OPERATORS = {
-    " < ": ("comparison", " <= "),
-    " <= ": ("comparison", " < "),
-    " > ": ("comparison", " >= "),
-    " >= ": ("comparison", " > "),
-    " == ": ("comparison", " != "),
-    " != ": ("comparison", " == "),
-    " && ": ("logic", " || "),
-    " || ": ("logic", " && "),
-    " + ": ("arithmetic", " - "),
-    " - ": ("arithmetic", " + "),
-    " += ": ("arithmetic", " -= "),
-    " -= ": ("arithmetic", " += "),
-    " / ": ("arithmetic", " * "),
-    " & ": ("arithmetic", " | "),
-    " | ": ("arithmetic", " & "),
+CHANGED = {
+    "comparison": ("< <=", "<= <", "> >=", ">= >", "== !=", "!= =="),
+    "logic": ("&& ||", "|| &&"),
+    "arithmetic": ("+ -", "- +", "+= -=", "-= +=", "/ *", "& |", "| &"),
 }
+OPERATORS = {f" {old} ": (kind, f" {new} ") for kind, of in CHANGED.items() for old, new in map(str.split, of)}
 OPERATOR = re.compile("|".join(re.escape(text) for text in sorted(OPERATORS, key=len, reverse=True)))
 NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?![\w.])")
 CONDITION = re.compile(r"\b(?:if|while) \(")

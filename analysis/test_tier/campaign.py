@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import random
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, replace
+from itertools import takewhile
 from pathlib import Path, PurePosixPath
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from analysis.test_tier.c_mutants import c_mutants
 from analysis.test_tier.mutants import Mutant, python_mutants
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from analysis.test_tier.reached_lines import Reach
     from analysis.test_tier.tree import Tree
 
-__all__ = ["Campaign", "Measured", "Row", "draw", "family_of"]
+__all__ = ["Campaign", "Measured", "Row", "draw", "family_of", "read_rows"]
 
 FIELDS = ("number", "family", "fault", "found", "test", "seconds")
 PATIENCE = 5.0
@@ -29,6 +30,7 @@ COMPILING = 30.0
 """Seconds besides, for what is compiled again."""
 NEAR = 6.0
 """Usual seconds of the tests that a fault is tried with alone; all the others run once for all faults together."""
+REFUSED = "does not compile"
 
 
 def family_of(file: str) -> str:
@@ -79,6 +81,15 @@ class Row:
     seconds: float
 
 
+def read_rows(file: Path) -> dict[int, Row]:
+    """The rows of a file, by number; the last one of a fault counts."""
+    if not file.exists():
+        return {}
+    with file.open(newline="", encoding="utf-8") as opened:
+        texts = list(csv.reader(opened))[1:]
+    return {int(n): Row(int(n), family, fault, found, test, float(s)) for n, family, fault, found, test, s in texts}
+
+
 @dataclass(frozen=True, slots=True)
 class Measured:
     """What reaches a line, the usual cost of every test function, and the cases that the short tier runs of some."""
@@ -87,149 +98,156 @@ class Measured:
     costs: Mapping[str, Cost]
     cases: Mapping[str, int]
 
+    def is_short(self, test: str) -> bool:
+        """Whether the short tier runs a test function, or some of its cases."""
+        return self.cases.get(test, 1) > 0
+
+    def seconds(self, test: str, *, short: bool) -> float:
+        """The usual ones, of all cases or of those in the short tier."""
+        cost = self.costs[test]
+        return cost.seconds * (min(self.cases.get(test, cost.tests), cost.tests) / cost.tests if short else 1.0)
+
+    def reaching(self, mutant: Mutant) -> list[str]:
+        """Tests that may find a fault, near and cheap files first."""
+        tests = self.reach.tests(mutant.file, mutant.line) & self.costs.keys()
+        of_file: dict[str, float] = defaultdict(float)
+        for test in tests:
+            of_file[_file_of(test)] += self.costs[test].seconds
+        return sorted(tests, key=lambda one: (-_common(_file_of(one), mutant.file), of_file[_file_of(one)], one))
+
 
 class Campaign:
     """Goes through drawn faults; what is known of each is a row of a file, so that it can be stopped."""
 
-    def __init__(self, tree: Tree, measured: Measured, mutants: Sequence[Mutant], file: Path) -> None:
+    def __init__(
+        self, tree: Tree, measured: Measured, mutants: Sequence[Mutant], file: Path, say: Callable[[str], None]
+    ) -> None:
         self._tree = tree
         self._measured = measured
         self._mutants = mutants
         self._file = file
-        self.rows = self.read(file)
+        self._say = say
+        self.rows = read_rows(file)
 
-    @staticmethod
-    def read(file: Path) -> dict[int, Row]:
-        """The rows of a file, by number; the last one of a fault counts."""
-        if not file.exists():
-            return {}
-        with file.open(newline="", encoding="utf-8") as opened:
-            texts = list(csv.reader(opened))[1:]
-        rows = [Row(int(n), family, fault, found, test, float(s)) for n, family, fault, found, test, s in texts]
-        return {row.number: row for row in rows}
-
-    def _note(self, row: Row, say: Callable[[str], None]) -> None:
+    def _note(self, row: Row) -> None:
         self.rows[row.number] = row
         new = not self._file.exists()
         with self._file.open("a", newline="", encoding="utf-8") as opened:
-            rows = csv.writer(opened, lineterminator="\n")
-            if new:
-                rows.writerow(FIELDS)
-            rows.writerow([getattr(row, field) for field in FIELDS])
-        say(f"{row.number}: {row.found} ({row.test}) {row.seconds:.1f} s, {row.fault}")
+            csv.writer(opened, lineterminator="\n").writerows([FIELDS, astuple(row)] if new else [astuple(row)])
+        self._say(f"{row.number}: {row.found} ({row.test}) {row.seconds:.1f} s, {row.fault}")
 
-    def reaching(self, mutant: Mutant) -> list[str]:
-        """Tests that may find a fault, near and cheap files first."""
-        costs = self._measured.costs
-        tests = self._measured.reach.tests(mutant.file, mutant.line) & costs.keys()
-        of_file: dict[str, float] = defaultdict(float)
-        for test in tests:
-            of_file[_file_of(test)] += costs[test].seconds
-        return sorted(tests, key=lambda one: (-_common(_file_of(one), mutant.file), of_file[_file_of(one)], one))
-
-    def _is_short(self, test: str) -> bool:
-        return self._measured.cases.get(test, 1) > 0
-
-    def _seconds(self, test: str, *, short: bool) -> float:
-        """The usual ones, of all cases or of those in the short tier."""
-        cost = self._measured.costs[test]
-        return cost.seconds * (
-            min(self._measured.cases.get(test, cost.tests), cost.tests) / cost.tests if short else 1.0
-        )
-
-    def _run(self, tests: Iterable[str], *, short: bool, all_tests: bool = False) -> dict[str, Any]:
-        limits = {test: PATIENCE * self._seconds(test, short=short) + COMPILING for test in tests}
-        return self._tree.run(limits, cases=self._measured.cases if short else {}, all_tests=all_tests)
-
-    def near(self, until: float, say: Callable[[str], None]) -> None:
+    def near(self, until: float) -> None:
         """Run the nearest tests of the short tier for every fault that has no row."""
         for number, mutant in enumerate(self._mutants):
-            if number in self.rows:
-                continue
-            if monotonic() > until:
-                return
-            self._note(self._by_near(number, mutant), say)
+            if monotonic() < until and number not in self.rows:
+                began = monotonic()
+                test = self._found_near(mutant)
+                found = {"": "open", REFUSED: "none"}.get(test, "short")
+                self._note(Row(number, family_of(mutant.file), str(mutant), found, test, monotonic() - began))
 
-    def _by_near(self, number: int, mutant: Mutant) -> Row:
+    def _found_near(self, mutant: Mutant) -> str:
         tests: list[str] = []
         seconds = 0.0
-        for test in filter(self._is_short, self.reaching(mutant)):
-            seconds += self._seconds(test, short=True)
+        for test in filter(self._measured.is_short, self._measured.reaching(mutant)):
+            seconds += self._measured.seconds(test, short=True)
             if seconds > NEAR and tests:
                 break
             tests.append(test)
-        about = (number, family_of(mutant.file), str(mutant))
-        with self._tree.with_faults([mutant]) as compiles:
-            if not compiles:
-                return Row(*about, "short", "does not compile", 0.0)
-            if not tests:
-                return Row(*about, "open", "", 0.0)
-            answer = self._run(tests, short=True)
-        if answer["ended"] in {"passed", "no tests"}:
-            return Row(*about, "open", "", answer["seconds"])
-        return Row(*about, "short", f"{answer['test']} {answer['ended']}", answer["seconds"])
+        return self._failing([mutant], tests, short=True)
 
-    def together(self, until: float, say: Callable[[str], None]) -> None:
-        """Run each tier once with all the faults left over, and what failed then with each of them alone."""
+    def _failing(self, mutants: Iterable[Mutant], tests: Sequence[str], *, short: bool) -> str:
+        """The first test that fails with some faults, or what else they break; empty if all is well."""
+        with self._tree.with_faults(mutants) as compiles:
+            return self._run(tests, short=short) if compiles else REFUSED
+
+    def _run(self, tests: Sequence[str], *, short: bool) -> str:
+        if not tests:
+            return ""
+        limits = {test: PATIENCE * self._measured.seconds(test, short=short) + COMPILING for test in tests}
+        ended, test = self._tree.run(limits, self._measured.cases if short else {})
+        return "" if ended in {"passed", "no tests"} else f"{test} {ended}"
+
+    def together(self, until: float) -> None:
+        """Run each tier with all the faults left over; halve them for every test that fails, until one is left."""
         for tier in ("short", "whole"):
-            left = [number for number, row in sorted(self.rows.items()) if row.found == "open"]
-            suspects = self._failing([self._mutants[number] for number in left], tier, until, say)
-            for number in left:
-                if monotonic() > until:
-                    return
-                row = self.rows[number]
-                test = self._alone(self._mutants[number], suspects, short=tier == "short")
-                if test or tier == "whole":
-                    found = tier if test else "none"
-                    self._note(Row(number, row.family, row.fault, found, test, row.seconds), say)
+            done = self._file.with_suffix(f".{tier}-{len(self.rows)}.txt")
+            known = done.read_text(encoding="utf-8").split() if done.exists() else []
+            ahead = {file: tests for file, tests in self._files(tier).items() if file not in known}
+            while ahead and monotonic() < until:
+                file, failing = self._first_failing(ahead, tier, done, until)
+                if failing:
+                    ahead[file] = self._blame(failing, ahead[file], tier)
+            if ahead:
+                return
+        for row in self._open():
+            self._note(replace(row, found="none"))
 
-    def _failing(self, left: Sequence[Mutant], tier: str, until: float, say: Callable[[str], None]) -> set[str]:
-        """Test functions of a tier that fail with all these faults at once; files done before are not run again."""
-        done = self._file.with_suffix(f".{tier}.csv")
-        known: dict[str, str] = {}
-        if done.exists():
-            known = dict(line.split(",", 1) for line in done.read_text(encoding="utf-8").splitlines())
-        files: dict[str, set[str]] = defaultdict(set)
-        for test in set[str]().union(*(self.reaching(mutant) for mutant in left)):
-            if self._is_short(test) if tier == "short" else test in self._measured.cases:
-                files[_file_of(test)].add(test)
-        with self._tree.with_faults(left):
-            for file in sorted(set(files) - set(known)):
-                if monotonic() > until:
-                    break
-                known[file] = " ".join(sorted(self._failures(sorted(files[file]), short=tier == "short")))
+    def again(self, until: float) -> None:
+        """Judge found faults by a list that has changed since: by the test that found one, or all of the short tier."""
+        for number, row in sorted(self.rows.items()):
+            if monotonic() < until and row.found in {"short", "whole"}:
+                mutant, before = self._mutants[number], _function_of(row.test)
+                short = [test for test in self._measured.reaching(mutant) if self._measured.is_short(test)]
+                tries = ([test for test in short if test == before], short)
+                failing = (self._failing([mutant], tests, short=True) for tests in tries)
+                if found := next(filter(None, failing), ""):
+                    self._note(replace(row, found="short", test=found))
+                else:
+                    self._note(replace(row, found="whole"))
+
+    def _open(self) -> list[Row]:
+        return [row for _, row in sorted(self.rows.items()) if row.found == "open"]
+
+    def _files(self, tier: str) -> dict[str, list[str]]:
+        """Files of tests that reach a fault that is left, with these tests; cheap ones first."""
+        reaching = {test for row in self._open() for test in self._measured.reaching(self._mutants[row.number])}
+        files: dict[str, list[str]] = defaultdict(list)
+        for test in sorted(reaching):
+            if self._measured.is_short(test) if tier == "short" else test in self._measured.cases:
+                files[_file_of(test)].append(test)
+
+        def seconds(file: str) -> float:
+            return sum(self._measured.seconds(test, short=tier == "short") for test in files[file])
+
+        return {file: files[file] for file in sorted(files, key=seconds)}
+
+    def _first_failing(self, ahead: dict[str, list[str]], tier: str, done: Path, until: float) -> tuple[str, str]:
+        """Go through the files ahead with all faults that are left; stop at one that fails."""
+        with self._tree.with_faults([self._mutants[row.number] for row in self._open()]):
+            while ahead and monotonic() < until:
+                file = next(iter(ahead))
+                if failing := self._run(ahead[file], short=tier == "short"):
+                    return file, failing
+                del ahead[file]
                 with done.open("a", encoding="utf-8") as opened:
-                    opened.write(f"{file},{known[file]}\n")
-                say(f"{file}: {known[file] or 'passed'}")
-        return {test for tests in known.values() for test in tests.split()}
+                    opened.write(f"{file}\n")
+                self._say(f"{tier}, {len(ahead)} files ahead: {file} passed")
+        return "", ""
 
-    def _failures(self, tests: Sequence[str], *, short: bool) -> set[str]:
-        failed: set[str] = set()
-        while left := [test for test in tests if test not in failed]:
-            answer = self._run(left, short=short, all_tests=True)
-            new = {test.partition("[")[0] for test in answer["failed"]}
-            if answer["ended"] == "broken":
-                return failed | set(left)
-            if answer["ended"] in {"passed", "failed", "no tests"}:
-                return failed | new
-            failed |= new | {self._tree.last().partition("[")[0]}  # it ended the process
-        return failed
+    def _blame(self, failing: str, tests: list[str], tier: str) -> list[str]:
+        """Note which fault fails a test; the tests of its file that can still find others."""
+        function = _function_of(failing)
+        asked = [function] if function in tests else tests
 
-    def _alone(self, mutant: Mutant, suspects: set[str], *, short: bool) -> str:
-        """A suspect that fails for a fault alone, and passes without."""
-        tests = [test for test in self.reaching(mutant) if test in suspects]
-        while tests:
-            with self._tree.with_faults([mutant]):
-                answer = self._run(tests, short=short)
-            if answer["ended"] in {"passed", "no tests"}:
-                return ""
-            found = str(answer["test"]).partition("[")[0]
-            if found not in tests:  # the fault is found before a test begins
-                return str(answer["ended"])
-            if self._run([found], short=short)["ended"] == "passed":
-                return f"{answer['test']} {answer['ended']}"
-            tests.remove(found)
-        return ""
+        def fails(rows: Sequence[Row]) -> str:
+            return self._failing([self._mutants[row.number] for row in rows], asked, short=tier == "short")
+
+        every = self._open()
+        likely = [row for row in every if {*asked} & {*self._measured.reaching(self._mutants[row.number])}]
+        for rows in (likely, every) if not fails([]) else ():  # what runs before the first test reaches more lines
+            left = rows
+            while len(left) > 1:
+                half = len(left) // 2
+                left = left[:half] if fails(left[:half]) else left[half:]
+            if left and (found := fails(left)):
+                self._note(replace(left[0], found=tier, test=found))
+                return tests
+        self._say(f"{failing}: not by one fault alone")
+        return [test for test in tests if test not in asked]
+
+
+def _function_of(failing: str) -> str:
+    return failing.partition("[")[0].split(" ")[0]
 
 
 def _file_of(test: str) -> str:
@@ -240,11 +258,4 @@ def _common(test_file: str, file: str) -> int:
     """Folders that a test and a source share: tests mirror the package."""
     own = PurePosixPath(file.removeprefix("ratt_opt/")).parts
     tests = PurePosixPath(test_file.removeprefix("tests/")).parts[:-1]
-    return sum(1 for _ in _equal(own, tests))
-
-
-def _equal(one: Sequence[str], other: Sequence[str]) -> Iterable[str]:
-    for a, b in zip(one, other, strict=False):
-        if a != b:
-            return
-        yield a
+    return len(list(takewhile(lambda pair: pair[0] == pair[1], zip(own, tests, strict=False))))

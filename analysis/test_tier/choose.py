@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import csv
 import heapq
+import math
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,13 +18,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from analysis.test_tier.reached_lines import Reach
 
 __all__ = [
-    "KEPT",
     "Cost",
     "Part",
     "chosen",
@@ -32,6 +32,7 @@ __all__ = [
     "read_costs",
     "read_list",
     "summary",
+    "write_costs",
     "write_list",
 ]
 
@@ -42,19 +43,11 @@ OWN = 10.0
 LEAST = 0.004
 """Seconds that every test costs: to collect and report it."""
 CASES, FIRST = 12, 0.7
-"""A function with more cases can join with this many, which find this share of what all of them do."""
-
-
-KEPT = (
-    # Checkers refuse each damaged field by name: nothing else sees a rule that a checker no longer applies.
-    "tests/certificates/test_group_covers.py::test_every_fault_has_its_name",
-    "tests/certificates/test_group_prices.py::test_every_fault_has_its_name",
-    "tests/certificates/test_group_sizes.py::test_every_fault_has_its_name",
-    # Enumerations are complete: searches still end with true brackets if a branch is missing.
-    "tests/attack/test_pricing.py::test_every_group_that_costs_less_is_listed_with_what_it_needs",
-    "tests/attackers/weakest_set/by_targets/test_decomposition.py::test_what_a_target_chooses_is_worth_what_is_proved",
-)
-"""Functions that found faults which the tier had missed, and others for the same kind of fault: they are always in."""
+"""A function can join with this many cases, which find this share of what all of them do."""
+EVERY, CHECKERS = 0.2, 2.5
+"""Seconds that every function has for some of its cases, and one that tests checkers of certificates: nothing else sees
+a rule that a checker no longer applies."""
+OF_CHECKERS = "tests/certificates/"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,22 +59,28 @@ class Cost:
     compiling: float
     shared: float = 0.0
 
-
-def read_costs(paths: Iterable[Path]) -> dict[str, Cost]:
-    """What the plug-in wrote, of one or several processes."""
-    costs: dict[str, Cost] = {}
-    for path in paths:
-        with path.open(newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                name, tests = row["function"], int(row["tests"])
-                new = Cost(tests, *(float(row[field]) for field in ("seconds", "compiling", "shared")))
-                costs[name] = new if name not in costs else _sum(costs[name], new)
-    return costs
+    def __add__(self, other: Cost) -> Cost:
+        """The cost of more cases of the same function."""
+        seconds, compiling = self.seconds + other.seconds, self.compiling + other.compiling
+        return Cost(self.tests + other.tests, seconds, compiling, max(self.shared, other.shared))
 
 
-def _sum(one: Cost, other: Cost) -> Cost:
-    seconds, compiling = one.seconds + other.seconds, one.compiling + other.compiling
-    return Cost(one.tests + other.tests, seconds, compiling, max(one.shared, other.shared))
+def read_costs(path: Path) -> dict[str, Cost]:
+    """What was measured of each test function, if anything was."""
+    if not path.exists():
+        return {}
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))[1:]
+    return {name: Cost(int(tests), *(float(one) for one in seconds)) for name, tests, *seconds in rows}
+
+
+def write_costs(path: Path, costs: Mapping[str, Cost]) -> None:
+    """Write a row for each test function, sorted by name."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("function", "tests", "seconds", "compiling", "shared"))
+        for name, cost in sorted(costs.items()):
+            rows.writerow((name, cost.tests, *(f"{one:.3f}" for one in (cost.seconds, cost.compiling, cost.shared))))
 
 
 def reached_units(reach: Reach, tests: Sequence[str]) -> tuple[list[np.ndarray], np.ndarray]:
@@ -104,34 +103,42 @@ def reached_units(reach: Reach, tests: Sequence[str]) -> tuple[list[np.ndarray],
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Some cases of a test function that may join the tier; all of them, or ``cases`` as a first part."""
+    """Some more cases of a test function that may join the tier, which then runs ``cases`` of them."""
 
     test: int
     cases: int
     seconds: float
     share: float
-    after: int | None = None
+    after: int | None
     """The part that has to be there before."""
+    always: bool
 
 
 def parts_of(names: Sequence[str], costs: Sequence[Cost]) -> list[Part]:
-    """A function of many cases can join with some of them, and with the others later.
+    """A function joins with the cases that it always has; it can join with some more, and with the others later.
 
     Functions that share fixtures have equal parts of their seconds: if one joins, the others tend to follow.
     """
     files = [name.partition("::")[0] for name in names]
     users = Counter(file for file, cost in zip(files, costs, strict=True) if cost.shared)
     parts: list[Part] = []
-    for test, cost in enumerate(costs):
+    for test, (name, cost) in enumerate(zip(names, costs, strict=True)):
+        each = max((cost.seconds - cost.compiling) / cost.tests, LEAST)
+        few = min(cost.tests, CASES)
         shared = cost.shared / max(1, users[files[test]])
-        seconds = max(cost.seconds - cost.compiling, LEAST * cost.tests)
-        if cost.tests <= CASES:
-            parts.append(Part(test, cost.tests, seconds + shared, 1.0))
-            continue
-        first = seconds * CASES / cost.tests
-        parts.append(Part(test, CASES, first + shared, FIRST))
-        parts.append(Part(test, cost.tests, seconds - first, 1.0 - FIRST, after=len(parts) - 1))
+        always = min(few, max(0, int(((CHECKERS if name.startswith(OF_CHECKERS) else EVERY) - shared) / each)))
+        begun = 0
+        for cases in sorted({always, few, cost.tests} - {0}):
+            share = _share(cases, cost.tests) - _share(begun, cost.tests)
+            seconds = each * (cases - begun) + (0.0 if begun else shared)
+            parts.append(Part(test, cases, seconds, share, len(parts) - 1 if begun else None, cases == always))
+            begun = cases
     return parts
+
+
+def _share(cases: int, tests: int) -> float:
+    """What some cases find, of what all do."""
+    return 1.0 if cases == tests else FIRST * cases / min(tests, CASES)
 
 
 def chosen(parts: Sequence[Part], units: Sequence[np.ndarray], worth: np.ndarray, budget: float) -> dict[int, int]:
@@ -141,13 +148,14 @@ def chosen(parts: Sequence[Part], units: Sequence[np.ndarray], worth: np.ndarray
     then = {part.after: i for i, part in enumerate(parts) if part.after is not None}
 
     def gain(i: int) -> float:
-        return parts[i].share * float(worth[units[parts[i].test]].sum()) / parts[i].seconds
+        one = parts[i]
+        return math.inf if one.always else one.share * float(worth[units[one.test]].sum()) / one.seconds
 
     ahead = [(-gain(i), i) for i, part in enumerate(parts) if part.after is None]
     heapq.heapify(ahead)
     while ahead:
         _, i = heapq.heappop(ahead)
-        if parts[i].seconds > budget:
+        if parts[i].seconds > budget and not parts[i].always:
             continue
         if ahead and -gain(i) > ahead[0][0]:
             heapq.heappush(ahead, (-gain(i), i))

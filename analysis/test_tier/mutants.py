@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -15,37 +16,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Mutant", "python_mutants"]
 
-COMPARISONS: dict[type[ast.cmpop], str] = {
-    ast.Lt: "<=",
-    ast.LtE: "<",
-    ast.Gt: ">=",
-    ast.GtE: ">",
-    ast.Eq: "!=",
-    ast.NotEq: "==",
-    ast.Is: "is not",
-    ast.IsNot: "is",
-    ast.In: "not in",
-    ast.NotIn: "in",
-}
-ARITHMETIC: dict[type[ast.operator], ast.operator] = {
-    ast.Add: ast.Sub(),
-    ast.Sub: ast.Add(),
-    ast.Mult: ast.Div(),
-    ast.Div: ast.Mult(),
-    ast.FloorDiv: ast.Mult(),
-    ast.BitAnd: ast.BitOr(),
-    ast.BitOr: ast.BitAnd(),
-}
-EXCHANGED = {
-    "min": "max",
-    "minimum": "maximum",
-    "argmin": "argmax",
-    "any": "all",
-    "floor": "ceil",
-    "union": "intersection",
-    "append": "remove",
-}
-EXCHANGED |= {other: name for name, other in EXCHANGED.items() if name != "append"}
+COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq, ast.Is, ast.IsNot, ast.In, ast.NotIn)
+COMPARISONS = dict(zip(COMPARED, ("<=", "<", ">=", ">", "!=", "==", "is not", "is", "not in", "in"), strict=True))
+ADDED = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.BitAnd, ast.BitOr)
+ARITHMETIC = dict(zip(ADDED, ("-", "+", "/", "*", "*", "|", "&"), strict=True))
+PAIRS = ("min max", "minimum maximum", "argmin argmax", "any all", "floor ceil", "union intersection")
+EXCHANGED = {"append": "remove"} | {a: b for pair in PAIRS for a, b in (pair.split(), pair.split()[::-1])}
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,19 +59,16 @@ class _Places:
     """Where nodes are in a text; Python counts bytes of UTF-8 in a line."""
 
     def __init__(self, source: str) -> None:
-        self._lines = source.splitlines(keepends=True)
-        self._starts = [0]
-        for line in self._lines:
-            self._starts.append(self._starts[-1] + len(line))
         self._source = source
-
-    def _place(self, line: int, byte: int) -> int:
-        return self._starts[line - 1] + len(self._lines[line - 1].encode()[:byte].decode())
+        self._lines = source.splitlines(keepends=True)
+        self._starts = [0, *accumulate(len(line) for line in self._lines)]
 
     def of(self, node: ast.expr | ast.stmt) -> tuple[int, int]:
         assert node.end_lineno is not None
         assert node.end_col_offset is not None
-        return self._place(node.lineno, node.col_offset), self._place(node.end_lineno, node.end_col_offset)
+        ends = ((node.lineno, node.col_offset), (node.end_lineno, node.end_col_offset))
+        begin, end = (self._starts[i - 1] + len(self._lines[i - 1].encode()[:byte].decode()) for i, byte in ends)
+        return begin, end
 
     def text(self, node: ast.expr) -> str:
         begin, end = self.of(node)
@@ -123,9 +96,8 @@ def _changes(node: ast.AST, places: _Places) -> Iterator[tuple[str, ast.expr | a
         yield "condition", node.test, f"(not ({places.text(node.test)}))"
     if isinstance(node, ast.expr):
         yield from ((kind, node, text) for kind, text in _other_values(node, places))
-    if isinstance(node, ast.AugAssign) or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)):
-        yield "statement", node, "pass"
-    if isinstance(node, ast.Break | ast.Continue):
+    calls = isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)
+    if isinstance(node, ast.AugAssign | ast.Break | ast.Continue) or (isinstance(node, ast.stmt) and calls):
         yield "statement", node, "pass"
     if isinstance(node, ast.Call):
         name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
@@ -143,9 +115,10 @@ def _other_values(node: ast.expr, places: _Places) -> Iterator[tuple[str, str]]:
             other = " or " if isinstance(operator, ast.And) else " and "
             yield "logic", "(" + other.join(f"({text(value)})" for value in values) + ")"
         case ast.BinOp(left=left, op=operator, right=right) if type(operator) in ARITHMETIC:
-            if not any(isinstance(side, ast.JoinedStr) or _is_text(side) for side in (left, right)):
-                changed = ast.unparse(ast.BinOp(ast.Name("x"), ARITHMETIC[type(operator)], ast.Name("y")))
-                yield "arithmetic", f"(({text(left)}) {changed[2:-2]} ({text(right)}))"
+            if not any(
+                isinstance(one, ast.JoinedStr) or isinstance(getattr(one, "value", 0), str) for one in (left, right)
+            ):
+                yield "arithmetic", f"(({text(left)}) {ARITHMETIC[type(operator)]} ({text(right)}))"
         case ast.UnaryOp(op=ast.USub() | ast.Not(), operand=operand):
             yield "sign", f"({text(operand)})"
         case ast.Constant(value=bool() as value):
@@ -156,7 +129,3 @@ def _other_values(node: ast.expr, places: _Places) -> Iterator[tuple[str, str]]:
             yield "function", f"({text(argument)})"
         case _:
             return
-
-
-def _is_text(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and isinstance(node.value, str)

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -87,33 +87,26 @@ class Tree:
                 path.write_bytes(content)
             self._give_back_compiled()
 
-    def run(
-        self, limits: Mapping[str, float], *, cases: Mapping[str, int] | None = None, all_tests: bool = False
-    ) -> dict[str, Any]:
-        """Run test functions, or some cases of them, each within its seconds, until one fails or to the end."""
+    def run(self, limits: Mapping[str, float], cases: Mapping[str, int]) -> tuple[str, str]:
+        """Run test functions, or some cases of them, each within its seconds: how it ended, and the last test."""
         shutil.rmtree(self.root / ".hypothesis", ignore_errors=True)
         if self._worker is None:
-            environment = os.environ | {"PYTHONPATH": str(self.root), "PYTHONDONTWRITEBYTECODE": "1"}
+            own = {
+                "PYTHONPATH": str(self.root),
+                "PYTHONDONTWRITEBYTECODE": "1",
+                "OMP_NUM_THREADS": "1",
+                "MPLBACKEND": "Agg",
+            }
+            command = [sys.executable, str(Path(__file__).with_name("worker.py")), str(self.folder)]
             self._worker = subprocess.Popen(
-                [sys.executable, Path(__file__).with_name("worker.py"), self.folder],
-                cwd=self.root,
-                env=environment | {"OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"},
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                text=True,
+                command, cwd=self.root, env=os.environ | own, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
             )
         assert self._worker.stdin is not None
         assert self._worker.stdout is not None
-        self._worker.stdin.write(
-            json.dumps({"tests": dict(limits), "cases": dict(cases or {}), "all": all_tests}) + "\n"
-        )
+        self._worker.stdin.write(json.dumps([dict(limits), dict(cases)]) + "\n")
         self._worker.stdin.flush()
-        answer: dict[str, Any] = json.loads(self._worker.stdout.readline())
-        return answer
-
-    def last(self) -> str:
-        """The test that began last."""
-        return (self.folder / "now.txt").read_text(encoding="utf-8")
+        ended, test = json.loads(self._worker.stdout.readline())
+        return ended, test
 
     def close(self) -> None:
         """End the process."""

@@ -1,7 +1,7 @@
 """Runs chosen tests in forks of a process that has imported what all of them need; a program, not a module.
 
-``python analysis/test_tier/worker.py FOLDER`` in the tree to be tested. A line of its input is a request, ``{"tests":
-{function: seconds}}``. It prints a line for each: how it ended, at which test, and the processor's seconds.
+``python analysis/test_tier/worker.py FOLDER`` in the tree to be tested. A line of its input is a request, ``[{function:
+seconds}, {function: cases}]``. It answers each with a line, ``[how it ended, the last test]``.
 """
 
 from __future__ import annotations
@@ -13,59 +13,41 @@ import signal
 import sys
 import time
 from contextlib import suppress
-from typing import Any
+from typing import TextIO
 
 import pytest
 
-OPTIONS = (
-    "-q",
-    "-x",
-    "--import-mode=importlib",
-    "-m",
-    "not slow",
-    "--tb=line",
-    "-p",
-    "no:cacheprovider",
-    "-p",
-    "no:faulthandler",
-)
-INI = "addopts="
+OPTIONS = ("-qx", "-oaddopts=", "--import-mode=importlib", "--tb=line", "-pno:cacheprovider", "-pno:faulthandler")
 IMPORTED = (
     *("cvxpy", "distributed", "highspy", "matplotlib.pyplot", "networkx", "numba", "pandas", "pydantic"),
     *("scipy.optimize", "stonesoup.platform", "typer"),
 )
 """What the tests import and no fault changes; without Hypothesis, whose plug-in must come after pytest."""
-TOO_LONG = 77
-"""Exit code of a run in which a test took too long."""
+ENDS = {0: "passed", 1: "failed", 5: "no tests", -signal.SIGALRM: "too long"}
+LEAST = 5.0
+"""Seconds that every test has."""
 
 
 class Chosen:
-    """Keeps the chosen functions, in the given order, and ends a run if one takes too long."""
+    """Keeps the chosen functions, in the given order, and ends the process if one takes too long."""
 
-    def __init__(self, limits: dict[str, float], cases: dict[str, int], note: Any) -> None:
-        self._cases = cases
-        self._limits = limits
+    def __init__(self, limits: dict[str, float], cases: dict[str, int], note: TextIO) -> None:
         self._left = dict(limits)
+        self._cases = cases
         self._note = note
 
     @pytest.hookimpl(trylast=True)
-    def pytest_collection_modifyitems(self, config: Any, items: list[Any]) -> None:
-        """By file in the given order, since tests of a file share fixtures."""
-        place = {file: i for i, file in reversed(list(enumerate(name.partition("::")[0] for name in self._limits)))}
-        of_function: dict[str, list[Any]] = {}
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """By file in the given order, since tests of a file share fixtures; cases as tests/conftest.py chooses them."""
+        of_function: dict[str, list[pytest.Item]] = {name: [] for name in self._left}
         for item in items:
-            of_function.setdefault(_function(item), []).append(item)
-        kept = [item for name, all_of in of_function.items() for item in self._some(name, all_of)]
-        staying = set(kept)
-        config.hook.pytest_deselected(items=[item for item in items if item not in staying])
-        items[:] = sorted(kept, key=lambda item: place[_function(item).partition("::")[0]])
-
-    def _some(self, name: str, items: list[Any]) -> list[Any]:
-        """Cases as tests/conftest.py chooses them."""
-        if name not in self._limits:
-            return []
-        n = min(self._cases.get(name, len(items)), len(items))
-        return [items[i * len(items) // n] for i in range(n)]
+            of_function.get(_function(item.nodeid), []).append(item)
+        kept = []
+        for name, every in of_function.items():
+            n = min(self._cases.get(name, len(every)), len(every))
+            kept += [every[i * len(every) // n] for i in range(n)]
+        files = list(dict.fromkeys(item.path for item in kept))
+        items[:] = sorted(kept, key=lambda item: files.index(item.path))
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """Set the clock."""
@@ -75,66 +57,44 @@ class Chosen:
         self._note.flush()
         self._began = time.monotonic()
         signal.signal(signal.SIGALRM, signal.SIG_DFL)  # which ends the process, whatever it does
-        signal.setitimer(signal.ITIMER_REAL, max(self._left[nodeid.partition("[")[0]], 5.0))
+        signal.setitimer(signal.ITIMER_REAL, max(self._left[_function(nodeid)], LEAST))
 
     def pytest_runtest_logfinish(self, nodeid: str) -> None:
         """Stop the clock."""
         signal.setitimer(signal.ITIMER_REAL, 0)
-        self._left[nodeid.partition("[")[0]] -= time.monotonic() - self._began
-
-    def pytest_runtest_logreport(self, report: Any) -> None:
-        """Note what fails."""
-        if report.failed:
-            print("FAILED", report.nodeid, flush=True)
+        self._left[_function(nodeid)] -= time.monotonic() - self._began
 
 
-def _function(item: Any) -> str:
-    return str(item.nodeid.partition("[")[0])
+def _function(nodeid: str) -> str:
+    return nodeid.partition("[")[0]
 
 
-def _child(request: dict[str, Any], note: Any, log: int) -> int:
+def _child(limits: dict[str, float], cases: dict[str, int], note: TextIO, log: int) -> int:
     os.setsid()
     os.dup2(log, 1)
     os.dup2(log, 2)
-    limits = request["tests"]
     sys.argv = ["pytest"]
-    files = list(dict.fromkeys(name.partition("::")[0] for name in limits))
-    options = [option for option in OPTIONS if option != "-x" or not request.get("all")]
-    return int(pytest.main([*options, "-o", INI, *files], plugins=[Chosen(limits, request["cases"], note)]))
+    files = dict.fromkeys(name.partition("::")[0] for name in limits)
+    return int(pytest.main([*OPTIONS, "-m", "not slow", *files], plugins=[Chosen(limits, cases, note)]))
 
 
-def _ended(status: int) -> str:
-    if os.WIFSIGNALED(status):
-        return "too long" if os.WTERMSIG(status) == signal.SIGALRM else "crashed"
-    code = os.WEXITSTATUS(status)
-    return {0: "passed", 1: "failed", 5: "no tests"}.get(code, "broken")
-
-
-def run(request: dict[str, Any], folder: str) -> dict[str, Any]:
+def run(limits: dict[str, float], cases: dict[str, int], folder: str) -> tuple[str, str]:
     """Fork, run, wait."""
-    note_path, log_path = f"{folder}/now.txt", f"{folder}/worker.log"
-    with open(note_path, "w", encoding="utf-8") as note, open(log_path, "wb") as log:
+    with open(f"{folder}/now.txt", "w+", encoding="utf-8") as note, open(f"{folder}/worker.log", "wb") as log:
         child = os.fork()
         if child == 0:
             code = 3
             try:
-                code = _child(request, note, log.fileno())
+                code = _child(limits, cases, note, log.fileno())
             finally:
                 sys.stdout.flush()
                 os._exit(code)
-        _, status, used = os.wait4(child, 0)
+        _, status = os.waitpid(child, 0)
         with suppress(ProcessLookupError):
             os.killpg(child, signal.SIGKILL)
-    with open(note_path, encoding="utf-8") as note:
-        last = note.read()
-    with open(log_path, encoding="utf-8", errors="replace") as log_text:
-        failed = [line.split()[1] for line in log_text if line.startswith("FAILED ") or " FAILED tests/" in line]
-    return {
-        "ended": _ended(status),
-        "test": failed[0] if failed else last,
-        "failed": failed,
-        "seconds": used.ru_utime + used.ru_stime,
-    }
+        note.seek(0)
+        code = os.waitstatus_to_exitcode(status)
+        return ENDS.get(code, "crashed" if code < 0 else "broken"), note.read()
 
 
 def main() -> None:
@@ -144,7 +104,8 @@ def main() -> None:
         with suppress(ImportError):
             importlib.import_module(name)
     for line in sys.stdin:
-        print(json.dumps(run(json.loads(line), sys.argv[1])), flush=True)
+        limits, cases = json.loads(line)
+        print(json.dumps(run(limits, cases, sys.argv[1])), flush=True)
 
 
 if __name__ == "__main__":

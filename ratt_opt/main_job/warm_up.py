@@ -24,9 +24,9 @@ SECONDS = 20.0
 def warm_up() -> float:
     """Do small tasks of every common kind, and return the seconds that took.
 
-    The first search after an installation compiles its loops, which counts against its time limit: a minute or two in
-    all. They are kept on disk, so later processes need nothing. Call this once after an installation, or where a
-    measurement of time must not hold any compiling. A terminal shows what it is at.
+    The first search of a kind after an installation compiles its loops, which counts against its time limit: up to ten
+    seconds. All kinds take about twenty. Compiled loops are kept on disk, so later processes need nothing. Call this
+    once after an installation, or before a measurement of time. A terminal shows what it is at.
     """
     began = perf_counter()
     cameras = limited_view_scenario(6, 6, alpha_s=1, alpha_c=2, seed=0, view=60)

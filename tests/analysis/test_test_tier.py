@@ -5,22 +5,39 @@ from __future__ import annotations
 import ast
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from analysis.test_tier.c_mutants import c_mutants
-from analysis.test_tier.campaign import Campaign, Measured, Row, draw, family_of
-from analysis.test_tier.choose import AGAIN, CASES, KEPT, Cost, chosen, parts_of, read_list, summary, write_list
+from analysis.test_tier.campaign import Campaign, Measured, draw, family_of, read_rows
+from analysis.test_tier.choose import (
+    AGAIN,
+    CASES,
+    CHECKERS,
+    EVERY,
+    OF_CHECKERS,
+    Cost,
+    chosen,
+    parts_of,
+    read_costs,
+    read_list,
+    summary,
+    write_costs,
+    write_list,
+)
 from analysis.test_tier.mutants import Mutant, python_mutants
-from analysis.test_tier.reached_lines import Reach, load, save
+from analysis.test_tier.reached_lines import Reach, collect, load, merged, save
 from tests.documents import ROOT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 TESTS_OF_EACH_KIND = """
@@ -116,24 +133,26 @@ def test_the_tier_takes_what_reaches_most_for_its_seconds() -> None:
 
 
 def test_a_function_of_many_cases_may_join_with_some() -> None:
-    (cost,) = costs(10, tests=10 * CASES)
+    (cost,) = costs(1000, tests=10 * CASES)
     units, worth = [np.array([0])], np.array([5.0])
-    assert chosen(parts_of("a", [cost]), units, worth, 0.9) == {}
-    assert chosen(parts_of("a", [cost]), units, worth, 1.5) == {0: CASES}
-    assert chosen(parts_of("a", [cost]), units, worth, 10.0) == {0: 10 * CASES}
+    assert chosen(parts_of("a", [cost]), units, worth, 90.0) == {}
+    assert chosen(parts_of("a", [cost]), units, worth, 150.0) == {0: CASES}
+    assert chosen(parts_of("a", [cost]), units, worth, 1001.0) == {0: 10 * CASES}
+
+
+def test_every_function_has_some_cases_in_the_tier_and_checkers_have_more() -> None:
+    """Unless one case takes longer than the seconds of a function."""
+    names = ("tests/a.py::quick", "tests/a.py::slow", f"{OF_CHECKERS}b.py::faults", f"{OF_CHECKERS}b.py::slow")
+    each = (EVERY / 3.5, 1.5 * EVERY, CHECKERS / 8.5, 1.5 * CHECKERS)
+    parts = parts_of(names, [Cost(9, 9 * one, 0.0) for one in each])
+    assert chosen(parts, [np.array([0])] * 4, np.array([1.0]), 0.0) == {0: 3, 2: 8}
 
 
 def test_functions_of_a_file_share_the_seconds_of_its_fixture() -> None:
     given = [Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0)]
-    assert [part.seconds for part in parts_of(["f::a", "f::b", "g::c"], given)] == [2.1, 2.1, 0.1]
-
-
-def test_what_came_back_is_in_the_tier() -> None:
-    cases = read_list(ROOT / "tests" / "short_tier.txt")
-    assert all(cases.get(name, 1) > 0 for name in KEPT)
-    for name in KEPT:
-        file, function = name.split("::")
-        assert f"def {function}(" in (ROOT / file).read_text(encoding="utf-8")
+    parts = parts_of(["f::a", "f::b", "g::c"], given)
+    assert [part.seconds for part in parts] == pytest.approx([2.1, 2.1, 0.1])
+    assert [part.always for part in parts] == [False, False, True]
 
 
 def test_the_list_says_what_is_left_out(tmp_path: Path) -> None:
@@ -159,8 +178,8 @@ def package(tmp_path: Path) -> Path:
 
 def test_compiled_lines_are_reached_by_what_reaches_their_callers(package: Path) -> None:
     lines = {5: frozenset({"a", "b"}), 6: frozenset({"a"}), 7: frozenset({"b"})}
-    save(package / "reach.json", {f"{package}/ratt_opt/calls.py": lines}, package)
-    reach = load(package / "reach.json", package)
+    save(package / "reach.json", {"ratt_opt/calls.py": lines})
+    reach = Reach(package, load(package / "reach.json"))
     assert reach.tests("ratt_opt/calls.py", 7) == {"b"}
     assert reach.tests("ratt_opt/loops.py", 7) == {"a"}
     assert reach.tests("ratt_opt/loops.py", 2) == {"a", "b"}
@@ -168,48 +187,81 @@ def test_compiled_lines_are_reached_by_what_reaches_their_callers(package: Path)
 
 
 class _Tree:
-    """Runs nothing: a test fails if it is told so for the fault that is made."""
+    """Runs nothing: a test fails if it is told so for a fault that is made."""
 
     def __init__(self, finds: dict[str, set[str]]) -> None:
         self._finds = finds
         self._made: list[str] = []
 
-    def with_faults(self, mutants: list[Mutant]):
-        from contextlib import contextmanager
+    @contextmanager
+    def with_faults(self, mutants: list[Mutant]) -> Iterator[bool]:
+        self._made = [one.text for one in mutants]
+        yield "no code" not in self._made
+        self._made = []
 
-        @contextmanager
-        def made():
-            self._made = [one.text for one in mutants]
-            yield True
-            self._made = []
-
-        return made()
-
-    def run(self, limits: dict[str, float], *, cases: object = None, all_tests: bool = False) -> dict[str, object]:
-        del all_tests, cases
-        failed = [test for test in limits if any(test in self._finds[text] for text in self._made)]
-        ended = "failed" if failed else "passed"
-        return {"ended": ended, "test": (failed or [""])[0], "failed": failed, "seconds": 1.0}
+    def run(self, limits: dict[str, float], cases: dict[str, int]) -> tuple[str, str]:
+        del cases
+        failed = [test for test in limits if any(test in self._finds[text] for text in self._made) or "bad" in test]
+        return ("failed", f"{failed[0]}[0]") if failed else ("passed", "")
 
 
 def test_each_fault_is_found_by_the_tier_that_has_its_test(package: Path) -> None:
-    """What is left over by the short tier is tried at once, and what fails then with each fault alone."""
-    tests = ("tests/test_x.py::short", "tests/test_y.py::long", "tests/test_y.py::other")
+    """Faults that near tests leave over are made at once, and halved for a test that fails until one is left."""
+    short, long, other, dear, bad = tests = [
+        f"tests/test_{name}" for name in ("x::a", "y::b", "y::c", "z::d", "y::bad")
+    ]
     reach = Reach(package, {"ratt_opt/calls.py": {7: frozenset(tests)}})
-    mutants = [Mutant("ratt_opt/calls.py", 7, "constant", 0, 0, text) for text in ("one", "two", "three")]
-    tree = _Tree({"one": {tests[0]}, "two": {tests[1]}, "three": set()})
-    measured = Measured(reach, dict(zip(tests, costs(1, 1, 1), strict=True)), dict.fromkeys(tests[1:], 0))
-    file = package / "rows.csv"
-    campaign = Campaign(tree, measured, mutants, file)
-    said: list[str] = []
-    campaign.near(np.inf, said.append)
-    assert [row.found for row in campaign.rows.values()] == ["short", "open", "open"]
-    campaign = Campaign(tree, measured, mutants, file)  # goes on with what is in the file
-    campaign.near(np.inf, said.append)
-    campaign.together(np.inf, said.append)
-    assert [row.found for row in Campaign.read(file).values()] == ["short", "whole", "none"]
-    assert Campaign.read(file)[1].test.startswith(tests[1])
-    assert isinstance(campaign.rows[2], Row)
+    finds = {"one": {short}, "two": {long}, "three": set(), "four": {other}, "five": {dear, long}, "six": {dear}}
+    texts = [*finds, "no code"]
+    mutants = [Mutant("ratt_opt/calls.py", 7, "constant", 0, 0, text) for text in texts]
+    cases = {test: 1 if test == dear else 0 for test in tests[1:]}
+    measured = Measured(reach, dict(zip(tests, costs(1, 1, 1, 7, 1), strict=True)), cases)
+    file, said = package / "rows.csv", list[str]()
+    for step in (Campaign.near, Campaign.near, Campaign.together):  # each goes on with what is in the file
+        step(Campaign(_Tree(finds), measured, mutants, file, said.append), np.inf)
+    rows = read_rows(file)
+    found = [rows[number].found for number in range(len(texts))]
+    assert found == ["short", "whole", "none", "whole", "short", "short", "none"]
+    assert rows[1].test == f"{long}[0] failed"
+    assert f"{bad}[0] failed: not by one fault alone" in said
+    measured = Measured(reach, measured.costs, {short: 0, long: 1, other: 0, dear: 0, bad: 0})
+    Campaign(_Tree(finds), measured, mutants, file, said.append).again(np.inf)
+    found = [row.found for _, row in sorted(read_rows(file).items())]
+    assert found == ["whole", "short", "none", "whole", "short", "whole", "none"]
+
+
+def test_nothing_is_tried_once_the_time_is_over(package: Path) -> None:
+    reach = Reach(package, {})
+    campaign = Campaign(_Tree({}), Measured(reach, {}, {}), [], package / "rows.csv", print)
+    campaign.near(-np.inf)
+    campaign.together(-np.inf)
+    assert read_rows(package / "rows.csv") == {}
+
+
+def test_costs_and_lines_of_a_test_are_measured(tmp_path: Path) -> None:
+    """By the plug-in, in a process of its own; what is known of other tests stays."""
+    pytest.importorskip("coverage")
+    name = "tests/test_aliases.py"
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "TIER_FOLDER": str(tmp_path)}
+    command = [sys.executable, "-m", "pytest", "-n0", "-p", "no:cacheprovider", "-p", "analysis.test_tier.reach", name]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    measured = read_costs(tmp_path / "measured.csv")
+    assert measured.keys() == {
+        f"{name}::{function}" for function in re.findall(r"def (test_\w+)", (ROOT / name).read_text())
+    }
+    assert all(cost.tests > 0 and cost.seconds > 0 for cost in measured.values())
+    lines = collect(tmp_path, ROOT, measured)
+    assert any(found & measured.keys() for found in lines["ratt_opt/__init__.py"].values())
+    write_costs(tmp_path / "again.csv", measured)
+    assert read_costs(tmp_path / "again.csv") == measured
+
+
+def test_what_is_measured_again_replaces_what_was_known() -> None:
+    old = {"a.py": {1: frozenset({"x", "y"}), 2: frozenset({"x"})}}
+    new = {"a.py": {1: frozenset({"x"}), 3: frozenset({"x"})}, "b.py": {1: frozenset({"x"})}}
+    of_a = {1: frozenset({"x", "y"}), 2: frozenset(), 3: frozenset({"x"})}
+    assert merged(old, new, {"x"}) == {"a.py": of_a, "b.py": new["b.py"]}
 
 
 SOME = ["first", "third"]
