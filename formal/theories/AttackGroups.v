@@ -114,13 +114,13 @@ move=> x /mapP[i]; rewrite mem_enum => iB ->; rewrite mem_filter mem_iota add0n 
 by have := disjointFr dis iB; rewrite inE => ->.
 Qed.
 
-Lemma part_blinded r : (blinded_in (part r) B <= spare w)%N.
+Lemma part_blinded r : (blinded_size (part r) B <= spare w)%N.
 Proof. by apply: leq_trans blinded_few; apply: subset_leq_card; apply: subsetIr. Qed.
 
-Lemma all_blinded : (\sum_(r | roots e r) blinded_in (part r) B <= spare w)%N.
+Lemma all_blinded : (\sum_(r | roots e r) blinded_size (part r) B <= spare w)%N.
 Proof.
 apply: leq_trans blinded_few; rewrite -sum1_card [X in (_ <= X)%N]big_mkcond -sum_parts leq_eqVlt; apply/orP; left.
-apply/eqP/eq_bigr => r _; rewrite /blinded_in -sum1_card [LHS]big_mkcond [RHS]big_mkcond /=; apply: eq_bigr => i _.
+apply/eqP/eq_bigr => r _; rewrite /blinded_size -sum1_card [LHS]big_mkcond [RHS]big_mkcond /=; apply: eq_bigr => i _.
 by rewrite !inE; case: (_ == r).
 Qed.
 
@@ -142,11 +142,11 @@ have prices : zsum (robot_prices d) = \sum_(r | roots e r) \sum_(i in part r) pr
   by rewrite sum_parts -(zsum_nth Z0 (fun x => x) sz) map_id.
 have le1 : Z.le (Z.of_nat (\sum_(r | roots e r) links_left (part r))%N) (Z.of_nat (cut_budget w + cut_budget w)).
   by have := all_links; lia.
-have le2 : Z.le (Z.of_nat (\sum_(r | roots e r) blinded_in (part r) B)%N) (Z.of_nat (spare w)).
+have le2 : Z.le (Z.of_nat (\sum_(r | roots e r) blinded_size (part r) B)%N) (Z.of_nat (spare w)).
   by have := all_blinded; lia.
 have sums s : \sum_(r <- s | roots e r) cost d (part r) B =
     Z.sub (Z.add (Z.mul (link_price d) (Z.of_nat (\sum_(r <- s | roots e r) links_left (part r))%N))
-                 (Z.mul (blind_price d) (Z.of_nat (\sum_(r <- s | roots e r) blinded_in (part r) B)%N)))
+                 (Z.mul (blind_price d) (Z.of_nat (\sum_(r <- s | roots e r) blinded_size (part r) B)%N)))
       (\sum_(r <- s | roots e r) \sum_(i in part r) price_of d i).
   elim: s => [|r s IH]; first by rewrite !big_nil; lia.
   by rewrite !big_cons; case: ifP => _; rewrite ?IH // {1}/cost; lia.

@@ -60,27 +60,36 @@ Definition bound_ok (b : flow_bound) : bool :=
     & all (fun i => let row := nth [::] near i in
         all (fun j => ~~ nth false row j || pair_ok b i j) (iota 0 (robots w))) (iota 0 (robots w))].
 
-(** What a robot adds at least if it does not sense (or must), and what it adds less by sensing. *)
+(** What a robot adds at least: inside, if it does not sense (or must); otherwise if it does not, and what it adds less
+    by sensing. *)
+Definition blinding (b : flow_bound) : Z := Z.add (blind_price d) (more_blind b).
 Definition robot_bound (b : flow_bound) (os : seq option_set) (x : option_set * seq bool * (seq Z * Z)) : Z * Z :=
   let: (o, row, (flow, u)) := x in
   if gone o then (Z0, Z0) else
   let: (to_in, to_out, f) := scan row flow os Z0 Z0 Z0 in
   let fixed := Z.mul (capacity b) to_out in
-  let blinding := Z.add (blind_price d) (more_blind b) in
-  if inside o then
-    (Z.sub fixed (if sure o then u else Z.sub u blinding), if open o then blinding else Z0)
+  if inside o then (Z.sub fixed (if sure o then u else Z.sub u (blinding b)), Z0)
   else
     let sense := Z.sub (Z.add fixed f) u in
     let out := Z.mul (capacity b) to_in in
-    let other := if may_blind o then Z.min (Z.add sense blinding) out else out in
+    let other := if may_blind o then Z.min (Z.add sense (blinding b)) out else out in
     (other, if may_sense o then Z.max Z0 (Z.sub other sense) else Z0).
+
+(** Open robots inside that sense at most, if others that sense are blinded in their place: [low] robots are blinded,
+    and only so many of those not inside can be that cannot sense. *)
+Definition only_blind (o : option_set) : bool := [&& ~~ inside o, may_blind o & ~~ may_sense o].
+Definition inner_sensing (S : Type) (c : case S) : nat :=
+  let blinded := Z.max Z0 (Z.sub (low c) (Z.of_nat (count only_blind (options c)))) in
+  minn (count open_inside (options c))
+       (Z.to_nat (Z.sub (Z.sub (Z.of_nat (count_inside c)) (Z.of_nat (seen c))) blinded)).
 
 (** No group of the case costs less. *)
 Definition flow_value (S : Type) (b : flow_bound) (c : case S) : Z :=
   let os := options c in
   let each := [seq robot_bound b os x | x <- zip (zip os near) (zip (carried b) (robot_prices d))] in
-  Z.sub (Z.sub (zsum [seq x.1 | x <- each]) (largest_sum (Z.to_nat (Z.sub (room c) (Z.of_nat (seen c)))) [seq x.2 | x <- each]))
-    (Z.add (Z.mul (more_cut b) (Z.of_nat (cut_budget w))) (Z.mul (more_blind b) (Z.of_nat spare))).
+  let gains := nseq (inner_sensing c) (blinding b) ++ [seq x.2 | x <- each] in
+  Z.sub (Z.sub (zsum [seq x.1 | x <- each]) (largest_sum (Z.to_nat (Z.sub (most c) (Z.of_nat (seen c)))) gains))
+    (Z.add (Z.mul (more_cut b) (Z.of_nat (cut_budget w))) (Z.mul (more_blind b) (high c))).
 
 (** *** Budgets *)
 Definition leaving (os : seq option_set) (rows : seq (seq bool)) : Z :=
@@ -104,8 +113,8 @@ Definition apart (os : seq option_set) : bool :=
   [&& (size reached == n), has (fun x => inside x.1 && x.2) (zip os reached), has (fun x => inside x.1 && ~~ x.2) (zip os reached)
     & closed os reached].
 Definition beyond_budgets (S : Type) (c : case S) : bool :=
-  [|| Z.ltb (Z.of_nat (blind_budget w)) (fewest_blinded c), Z.ltb (Z.of_nat (cut_budget w)) (leaving (options c) near),
-      Z.ltb Z0 (leaving (options c) tied) | apart (options c)].
+  [|| impossible c, Z.ltb (Z.of_nat (cut_budget w)) (leaving (options c) near), Z.ltb Z0 (leaving (options c) tied)
+    | apart (options c)].
 End Checker.
 
 (** ** Sums over lists and over robots *)
@@ -140,18 +149,32 @@ Proof. by elim/big_rec2: _ => // i x y _ <-; lia. Qed.
 Lemma sum_count (I : finType) (A : pred I) : \sum_(i | A i) Zpos xH = Z.of_nat #|A|.
 Proof. by rewrite sumr_const; elim: #|A| => // k IH; rewrite mulrS IH; lia. Qed.
 
-(** No [k] of some numbers that are not negative add up to more. *)
-Lemma largest_sumP n (f : 'I_n -> Z) (A : pred 'I_n) k (s : seq Z) : size s = n -> (forall i : 'I_n, nth Z0 s i = f i) ->
-  (#|A| <= k)%N -> Z.le (\sum_(i | A i) f i) (largest_sum k s).
+Lemma zsum_cat (s t : seq Z) : zsum (s ++ t) = Z.add (zsum s) (zsum t).
+Proof. by elim: s => [|x s IH] //=; rewrite IH; lia. Qed.
+
+Lemma zsum_nseq k (x : Z) : zsum (nseq k x) = Z.mul (Z.of_nat k) x.
+Proof. by elim: k => [|k IH]; rewrite // Nat2Z.inj_succ Z.mul_succ_l -IH Z.add_comm. Qed.
+
+(** [a] times [x] and some [f], [k] numbers in all, add up to no more than the [k] largest. *)
+Lemma largest_sumP n (f : 'I_n -> Z) (A : {set 'I_n}) k a b (x : Z) (s : seq Z) : size s = n ->
+  (forall i : 'I_n, nth Z0 s i = f i) -> (a <= b)%N -> (a + #|A| <= k)%N ->
+  Z.le (Z.add (Z.mul (Z.of_nat a) x) (\sum_(i in A) f i)) (largest_sum k (nseq b x ++ s)).
 Proof.
-move=> sz sf Ak; rewrite /largest_sum; set t := Z.max _ _; have t0 : Z.le 0 t by rewrite /t; lia.
-clearbody t; rewrite (zsum_nth Z0 (fun x => Z.max Z0 (Z.sub x t)) sz).
-have le1 : Z.le (\sum_(i | A i) f i) (\sum_(i < n) (Z.max Z0 (Z.sub (nth Z0 s i) t) + if A i then t else Z0)).
-  rewrite big_mkcond; apply: sum_le => i; rewrite sf; case: (A i); lia.
-apply: Z.le_trans le1 _; rewrite big_split /=.
-have -> : \sum_(i < n) (if A i then t else Z0) = Z.mul t (Z.of_nat #|A|).
-  by rewrite -sum_count -big_mkcond /=; elim/big_rec2: _ => [|i x y _ ->]; lia.
+move=> sz sf ab Ak; rewrite /largest_sum; set t := Z.max _ _; have t0 : Z.le 0 t by rewrite /t; lia.
+clearbody t; rewrite map_cat map_nseq zsum_cat zsum_nseq (zsum_nth Z0 (fun x => Z.max Z0 (Z.sub x t)) sz).
+set big := \sum_(i < n) _.
+have le1 : Z.le (\sum_(i in A) f i) (Z.add big (Z.mul t (Z.of_nat #|A|))).
+  have -> : Z.mul t (Z.of_nat #|A|) = \sum_(i < n) (if i \in A then t else Z0).
+    by rewrite -sum_count big_mkcond sum_scale; apply: eq_bigr => i _; case: ifP; lia.
+  by rewrite /big sum_add big_mkcond; apply: sum_le => i; rewrite sf; case: (_ \in A); lia.
+have le2 : Z.le (Z.mul (Z.of_nat a) x) (Z.add (Z.mul (Z.of_nat b) (Z.max Z0 (Z.sub x t))) (Z.mul t (Z.of_nat a))) by nia.
 nia.
+Qed.
+
+Lemma part_of_size (T : finType) (A : {set T}) k : (k <= #|A|)%N -> exists2 A' : {set T}, A' \subset A & #|A'| = k.
+Proof.
+move=> le; exists [set i in take k (enum A)]; first by apply/subsetP => i; rewrite inE => /mem_take; rewrite mem_enum.
+by rewrite cardsE; have /card_uniqP-> := take_uniq k (enum_uniq (mem A)); rewrite size_takel // -cardE.
 Qed.
 End Sums.
 
@@ -196,12 +219,11 @@ Definition adjacent (i j : robot) : bool := linkmem (link_list w) i j.
 Definition tied_to (i j : robot) : bool := linkmem (kept_links w) i j.
 Definition price_of (i : robot) : Z := nth Z0 (robot_prices d) i.
 Definition links_left : nat := (\sum_(i : robot) \sum_(j : robot) ([&& i \in C, j \notin C & adjacent i j]))%N.
-Definition blinded_in : nat := #|C :&: B|.
 Definition cost : Z :=
-  Z.sub (Z.add (Z.mul (link_price d) (Z.of_nat links_left)) (Z.mul (blind_price d) (Z.of_nat blinded_in)))
+  Z.sub (Z.add (Z.mul (link_price d) (Z.of_nat links_left)) (Z.mul (blind_price d) (Z.of_nat (blinded_size C B))))
     (\sum_(i in C) price_of i).
 
-Hypotheses (few_links : (links_left <= cut_budget w)%N) (few_blinded : (blinded_in <= spare w)%N).
+Hypothesis few_links : (links_left <= cut_budget w)%N.
 Hypothesis untied : forall i j, i \in C -> j \notin C -> ~~ tied_to i j.
 Variables (S : Type) (start : S) (add : S -> nat -> S) (c : case S).
 Hypothesis st : stands start add C B c.
@@ -297,7 +319,7 @@ Proof.
 case/and5P: good => _ _ /eqP sz /allP h _; apply/eqP/h; by rewrite mem_nth ?sz ?ltn_ord.
 Qed.
 
-Local Notation dearer := (Z.add (blind_price d) (more_blind b)).
+Local Notation dearer := (blinding d b).
 Definition bound_of (i : robot) : Z * Z :=
   robot_bound d b os (o i, nth [::] near i, (nth [::] (carried b) i, price_of i)).
 (** What robot [i] adds to the group's cost. *)
@@ -308,18 +330,73 @@ Lemma toward_const P (i : robot) :
   Z.mul H (\sum_(j : robot) if adjacent i j && P j then Zpos xH else Z0) = toward P (fun _ _ => H) i.
 Proof. by rewrite sum_scale; apply: eq_bigr => j _; case: ifP; lia. Qed.
 
-Lemma bound_ofP i : Z.le (Z.sub (bound_of i).1 (if (i \in C :\: B) && open (o i) then (bound_of i).2 else Z0)) (real_part i)
-  /\ (open (o i) = false -> (bound_of i).2 = Z0).
+Lemma dearer_ge0 : Z.le 0 dearer.
 Proof.
-have m0 : Z.le 0 dearer by case/and3P: prices_good => _ /Z.leb_le h _; case/and5P: good => /Z.leb_le; lia.
+rewrite /blinding; case/and3P: prices_good => _ /Z.leb_le h _; case/and5P: good => /Z.leb_le; lia.
+Qed.
+
+(** Open robots that sense, inside and not, and blinded robots not inside that may sense. *)
+Definition inner : {set robot} := [set i : robot | open_inside (o i) && (i \in C :\: B)].
+Definition outer : {set robot} := [set i : robot | (open (o i) && ~~ inside (o i)) && (i \in C :\: B)].
+Definition spared : {set robot} := [set i : robot | [&& ~~ inside (o i), may_sense (o i), i \in C & i \in B]].
+
+Lemma bound_ofP (X Q : {set robot}) i : X \subset inner -> Q \subset spared ->
+  Z.le (Z.add (Z.sub (bound_of i).1 (if i \in inner :\: X then dearer else Z0))
+              (Z.sub (if i \in Q then dearer else Z0) (if i \in X then dearer else Z0)))
+       (Z.add (real_part i) (if i \in outer :|: Q then (bound_of i).2 else Z0)).
+Proof.
+move=> /subsetP/(_ i) Xi /subsetP/(_ i) Qi; have m0 := dearer_ge0; move: Xi Qi.
 rewrite /bound_of /robot_bound /real_part /link_part (scanE _ _ _ (size_row _ (ltn_ord i)) (flow_row i) (stands_size st)) /=.
 under [\sum_(k < _) if _ && inside _ then _ else _]eq_bigr do rewrite nth_rows ?ltn_ord // -/(adjacent i _).
 under [\sum_(k < _) if _ && gone _ then _ else _]eq_bigr do rewrite nth_rows ?ltn_ord // -/(adjacent i _).
 under [\sum_(k < _) if _ && (~~ _ && _) then _ else _]eq_bigr do rewrite nth_rows ?ltn_ord // -/(adjacent i _).
-rewrite !toward_const -/(third _) -/(out_flow i).
-move: (to_out i) (to_in i) (out_flow i) (price_of i) dearer m0 => x y z u e e0.
-have := stands_may st i; rewrite /third /may_be /inside /gone /open /sure !inE.
-by case: (o i) => [] [] [] []; case: (i \in C); case: (i \in B) => //= _; lia.
+rewrite !toward_const -/(third _) -/(out_flow i) !inE.
+move: (to_out i) (to_in i) (out_flow i) (price_of i) dearer m0 => x y z u m m0.
+have := stands_may st i; rewrite /third /may_be /inside /gone /open_inside /open /sure /inside.
+case: (o i) => [] [] [] []; case: (i \in C); case: (i \in B) => //= _;
+  by case: (i \in X) => [/(_ isT) // _|_]; case: (i \in Q) => [/(_ isT) // _|_];
+  rewrite /=; first [by [] | rewrite -[_ -> False]/(Z.le _ _); lia].
+Qed.
+
+Lemma inner_few : (#|inner| <= inner_sensing c + #|spared|)%N.
+Proof.
+pose i_blind := [set i : robot | inside (o i) && (i \in B)]; pose only := [set i : robot | only_blind (o i) && (i \in C :&: B)].
+have e1 : (count_inside c = #|i_blind| + (seen c + #|inner|))%N.
+  rewrite (seenE st) /count_inside (count_options st) !sum_mem -!big_split /=; apply: eq_bigr => i _.
+  have := stands_may st i; rewrite /may_be !inE /open_inside /open /inside /sure.
+  by case: (o i) => [] [] [] []; case: (i \in C); case: (i \in B).
+have e2 : (blinded_size C B = #|i_blind| + (#|only| + #|spared|))%N.
+  rewrite /blinded_size !sum_mem -!big_split /=; apply: eq_bigr => i _.
+  have := stands_may st i; rewrite /may_be !inE /only_blind /inside.
+  by case: (o i) => [] [] [] []; case: (i \in C); case: (i \in B).
+have l1 : (#|only| <= count only_blind (options c))%N.
+  by rewrite (count_options st) sum_mem; apply: leq_sum => i _; rewrite inE; case: (only_blind _); case: (_ \in _).
+have l2 : (#|inner| <= count open_inside (options c))%N.
+  by rewrite (count_options st) sum_mem; apply: leq_sum => i _; rewrite inE; case: (open_inside _); case: (_ \in _).
+have := stands_blinded st; move: e1 e2 l1 l2; rewrite /inner_sensing.
+move: #|i_blind| #|only| #|spared| #|inner| (blinded_size C B) => x y z u v; lia.
+Qed.
+
+Lemma inner_outer : (seen c + (#|inner| + #|outer|) = sensing_size C B)%N.
+Proof.
+rewrite (seenE st) /sensing_size !sum_mem -!big_split /=; apply: eq_bigr => i _.
+have := stands_may st i; rewrite /may_be !inE /open_inside /open /inside /sure.
+by case: (o i) => [] [] [] []; case: (i \in C); case: (i \in B).
+Qed.
+
+Lemma total_part : \sum_(i : robot) real_part i =
+  Z.add (\sum_(i : robot) link_part i) (Z.sub (Z.mul dearer (Z.of_nat (blinded_size C B))) (\sum_(i in C) price_of i)).
+Proof.
+have -> : Z.mul dearer (Z.of_nat (blinded_size C B)) = \sum_(i : robot) if i \in C :&: B then dearer else Z0.
+  by rewrite /blinded_size -sum_count big_mkcond sum_scale; apply: eq_bigr => i _; case: ifP; lia.
+rewrite [X in Z.sub _ X]big_mkcond -[Z.sub _ _]/(Z.add _ (Z.opp _)) sum_opp !sum_add; apply: eq_bigr => i _.
+by rewrite /real_part inE; case: (i \in C); case: (i \in B) => /=; lia.
+Qed.
+
+Lemma sum_set (A : {set robot}) (m : Z) : \sum_(i : robot) (if i \in A then m else Z0) = Z.mul m (Z.of_nat #|A|).
+Proof.
+rewrite (_ : \sum_(i : robot) _ = \sum_(i in A) m); last by rewrite [RHS]big_mkcond.
+by rewrite -sum_count; elim/big_rec2: _ => [|i x y _ ->]; lia.
 Qed.
 
 Theorem flow_valueP : Z.le (flow_value w d near b c) cost.
@@ -336,30 +413,40 @@ have nth_each (i : robot) : nth (Z0, Z0) each i = bound_of i.
   by rewrite prices_size; case/and5P: good => _ _ /eqP->.
 have firsts : zsum [seq x.1 | x <- each] = \sum_(i : robot) (bound_of i).1.
   by rewrite (zsum_nth (Z0, Z0) _ se); apply: eq_bigr => i _; rewrite nth_each.
-pose A (i : robot) := (i \in C :\: B) && open (o i).
-have gains : Z.le (\sum_(i | A i) (bound_of i).2) (largest_sum few [seq x.2 | x <- each]).
-  apply: largest_sumP => [|i|]; first by rewrite size_map.
-    by rewrite (nth_map (Z0, Z0)) ?se ?ltn_ord // nth_each.
-  have <- : (\sum_(i : robot) (open (o i) && (i \in C :\: B)) = #|A|)%N.
-    by rewrite -sum1_card [RHS]big_mkcond; apply: eq_bigr => i _; rewrite andbC [in RHS]unfold_in /= /A; case: (_ && _).
-  have := open_sensing st; have := stands_room st; rewrite /few; lia.
-have parts : Z.le (Z.sub (\sum_(i : robot) (bound_of i).1) (\sum_(i | A i) (bound_of i).2)) (\sum_(i : robot) real_part i).
-  rewrite [X in Z.sub _ X]big_mkcond -[Z.sub _ _]/(Z.add _ (Z.opp _)) sum_opp sum_add; apply: sum_le => i.
-  by have [h _] := bound_ofP i; move: h; rewrite -/(A i); case: (A i); lia.
-have total : \sum_(i : robot) real_part i =
-    Z.add (\sum_(i : robot) link_part i) (Z.sub (Z.mul dearer (Z.of_nat blinded_in)) (\sum_(i in C) price_of i)).
-  have -> : Z.mul dearer (Z.of_nat blinded_in) = \sum_(i : robot) if i \in C :&: B then dearer else Z0.
-    rewrite /blinded_in -sum_count big_mkcond sum_scale; apply: eq_bigr => i _; case: ifP; lia.
-  rewrite [X in Z.sub _ X]big_mkcond -[Z.sub _ _]/(Z.add _ (Z.opp _)) sum_opp !sum_add; apply: eq_bigr => i _.
-  by rewrite /real_part inE; case: (i \in C); case: (i \in B) => /=; lia.
+(* Robots inside that sense beyond what is allowed for take the places of blinded ones that may sense. *)
+have fewi := inner_few; pose excess := (#|inner| - inner_sensing c)%N.
+have [X Xin cX] : exists2 X : {set robot}, X \subset inner & #|X| = excess
+  by apply: part_of_size; rewrite /excess leq_subr.
+have [Q Qin cQ] : exists2 Q : {set robot}, Q \subset spared & #|Q| = excess
+  by apply: part_of_size; rewrite /excess leq_subLR.
+have cI : #|inner :\: X| = (#|inner| - excess)%N by rewrite cardsD (setIidPr Xin) cX.
+have cO : #|outer :|: Q| = (#|outer| + excess)%N.
+  rewrite cardsU cQ; have -> : outer :&: Q = set0; last by rewrite cards0 subn0.
+  apply/setP => i; rewrite !inE; apply/negP => /andP[/andP[_ /andP[iB _]] iQ].
+  by have := subsetP Qin i iQ; rewrite !inE (negbTE iB) !andbF.
+have gains : Z.le (Z.add (Z.mul (Z.of_nat #|inner :\: X|) dearer) (\sum_(i in outer :|: Q) (bound_of i).2))
+    (largest_sum few (nseq (inner_sensing c) dearer ++ [seq x.2 | x <- each])).
+  apply: largest_sumP => [|i||]; first by rewrite size_map.
+  - by rewrite (nth_map (Z0, Z0)) ?se ?ltn_ord // nth_each.
+  - by rewrite cI leq_subLR addnC -leq_subLR.
+  rewrite cI cO addnCA subnK ?leq_subr // addnC -(leq_add2l (seen c)) inner_outer.
+  by have := stands_sensing st; rewrite /few; lia.
+have parts : Z.le (Z.sub (\sum_(i : robot) (bound_of i).1) (Z.mul dearer (Z.of_nat #|inner :\: X|)))
+    (Z.add (\sum_(i : robot) real_part i) (\sum_(i in outer :|: Q) (bound_of i).2)).
+  have four (f g h k : robot -> Z) : \sum_(i : robot) Z.add (Z.sub (f i) (g i)) (Z.sub (h i) (k i)) =
+      Z.add (Z.sub (\sum_(i : robot) f i) (\sum_(i : robot) g i)) (Z.sub (\sum_(i : robot) h i) (\sum_(i : robot) k i)).
+    elim: (index_enum _) => [|i s IH]; first by rewrite !big_nil.
+    rewrite !big_cons IH; move: (\sum_(j <- s) f j) (\sum_(j <- s) g j) (\sum_(j <- s) h j) (\sum_(j <- s) k j).
+    by move=> x y z t; lia.
+  have := sum_le (fun i : robot => bound_ofP (i := i) Xin Qin); rewrite four !sum_set -sum_add cX cQ Z.sub_diag Z.add_0_r.
+  by rewrite [X in Z.le _ (Z.add _ X) -> _](_ : _ = \sum_(i in outer :|: Q) (bound_of i).2) // [RHS]big_mkcond.
 have lp := link_partP; rewrite firsts /cost.
-have h0 : Z.le 0 (more_blind b) /\ Z.le 0 (more_cut b).
-  by case/and5P: good => /Z.leb_le ? /Z.leb_le ? _ _ _.
+have h0 : Z.le 0 (more_blind b) /\ Z.le 0 (more_cut b) by case/and5P: good => /Z.leb_le ? /Z.leb_le ? _ _ _.
 have cutted : Z.le (Z.mul (more_cut b) (Z.of_nat links_left)) (Z.mul (more_cut b) (Z.of_nat (cut_budget w))).
   by apply: Z.mul_le_mono_nonneg_l; [case: h0 | lia].
-have blinded : Z.le (Z.mul (more_blind b) (Z.of_nat blinded_in)) (Z.mul (more_blind b) (Z.of_nat (spare w))).
-  by apply: Z.mul_le_mono_nonneg_l; [case: h0 | lia].
-move: lp parts gains cutted blinded; rewrite total /capacity !Z.mul_add_distr_r; lia.
+have blinded : Z.le (Z.mul (more_blind b) (Z.of_nat (blinded_size C B))) (Z.mul (more_blind b) (high c)).
+  by apply: Z.mul_le_mono_nonneg_l; [case: h0 | case: (stands_blinded st)].
+move: lp parts gains cutted blinded; rewrite total_part /capacity /blinding !Z.mul_add_distr_r; lia.
 Qed.
 End Flow.
 
@@ -429,8 +516,7 @@ Qed.
 
 Theorem not_beyond_budgets : ~~ beyond_budgets w near tied c.
 Proof.
-have := fewest_blindedP st; rewrite -/blinded_in => f; have := leaving_left => l; have a := not_apart.
-have b : (blinded_in <= blind_budget w)%N by apply: leq_trans few_blinded _; apply: geq_minl.
-rewrite /beyond_budgets leaving_tied (negbTE a); lia.
+have := not_impossible st; have := leaving_left => l; have a := not_apart.
+by rewrite /beyond_budgets leaving_tied (negbTE a) => /negbTE->; lia.
 Qed.
 End Group.

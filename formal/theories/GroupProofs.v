@@ -28,15 +28,12 @@ Local Notation n := (robots w).
 Definition check_sets (l : sets_lemma) : bool :=
   let k := Z.of_nat (set_size l) in
   (set_size l <= n.+1)%N &&
-  if check_cases add worth average_worth false k (impossible k) (fun _ _ => false) (fun _ => None : option (option unit))
-       (set_tree l) (Case start 0 k (nseq n (Options true false true))) [::] is Some _ then true else false.
+  if check_cases add worth average_worth (@impossible S) (fun _ _ => false) (fun _ => None : option (option unit))
+       (set_tree l) (Case start 0 k k Z0 Z0 (nseq n (Options true false true))) [::] is Some _ then true else false.
 
-Variable (size_k : nat).
+Variables (size_k : nat) (near tied : seq (seq bool)).
 Definition start_case : case S :=
-  Case start 0 (Z.sub (Z.of_nat size_k) (Zpos xH)) [seq Options true (i \notin kept_robots w) true | i <- iota 0 n].
-
-Variables (near tied : seq (seq bool)).
-Definition no_budget (c : case S) : bool := impossible Z0 c || beyond_budgets w near tied c.
+  Case start 0 Z0 (Z.pred (Z.of_nat size_k)) Z0 (Z.of_nat (spare w)) [seq Options true (i \notin kept_robots w) true | i <- iota 0 n].
 
 Variables (t : group_tree).
 Definition tree_ok : bool := prices_ok w (dual t) && all (bound_ok w (dual t) near tied) (bounds t).
@@ -52,7 +49,7 @@ Definition list_group (c : case S) : option (option listed_group) :=
     let links := leaving os near in
     let need := Z.max Z0 (fewest_blinded c) in
     if [|| ~~ has inside os, Z.ltb (Z.of_nat (cut_budget w)) links, Z.ltb Z0 (leaving os tied)
-         | Z.ltb (Z.of_nat (blind_budget w)) need] then Some None
+         | Z.ltb (Z.of_nat (spare w)) need] then Some None
     else
       let cost := cost_of_members os links need in
       if Z.ltb cost Z0 then None
@@ -102,11 +99,11 @@ Fixpoint no_partition (holds : seq (seq listed_group)) (nodes : seq nat) (stack 
 
 Definition check_duals : bool :=
   [&& tree_ok, Z.ltb (slack w (dual t)) Z0
-    & if check_cases add worth average_worth true Z0 no_budget (is_dear (Zneg xH)) (fun _ => None : option (option listed_group))
+    & if check_cases add worth average_worth (@beyond_budgets w near tied S) (is_dear (Zneg xH)) (fun _ => None : option (option listed_group))
            (groups t) start_case [::] is Some _ then true else false].
 Definition check_cover (nodes : seq nat) : bool :=
   [&& tree_ok, Z.leb Z0 (slack w (dual t))
-    & if check_cases add worth average_worth true Z0 no_budget (is_dear (slack w (dual t))) list_group
+    & if check_cases add worth average_worth (@beyond_budgets w near tied S) (is_dear (slack w (dual t))) list_group
            (groups t) start_case [::] is Some found then
         let gs := distinct (rev found) in
         all (fun g => [&& Z.leb Z0 (costs g), Z.leb Z0 (needs g) & Z.leb Z0 (loses g)]) gs &&
@@ -158,25 +155,23 @@ Local Notation check_sets := (check_sets w start add worth average_worth).
 
 Theorem check_setsP l (V : {set robot}) : check_sets l -> (set_size l <= #|V|)%N -> lower <= phi (contributed p V).
 Proof.
-rewrite /GroupProofs.check_sets; set k := set_size l => /andP[_]; case e: (check_cases _ _ _ _ _ _ _ _ _ _ _) => [f|//] _ le.
-pose C := [set i in take k (enum V)].
-have cC : #|C| = k by rewrite cardsE; have /card_uniqP-> := take_uniq k (enum_uniq (mem V)); rewrite size_takel // -cardE.
-have CV : C \subset V by apply/subsetP => i; rewrite inE => /mem_take; rewrite mem_enum.
+rewrite /GroupProofs.check_sets; set k := set_size l => /andP[_]; case e: (check_cases _ _ _ _ _ _ _ _ _) => [f|//] _ le.
+have [C CV cC] := part_of_size le.
 have sC : sensing_size C set0 = k by rewrite /sensing_size setD0.
+have bC : blinded_size C set0 = 0%N by rewrite /blinded_size setI0 cards0.
 have sub : C :\: set0 \subset V by rewrite setD0.
-pose first := Case start 0 (Z.of_nat k) (nseq (robots w) (Options true false true)).
+pose first := Case start 0 (Z.of_nat k) (Z.of_nat k) Z0 Z0 (nseq (robots w) (Options true false true)).
 have first_options i : options_of first i = if (i < robots w)%N then Options true false true else nothing.
   by rewrite /options_of nth_nseq.
 have st : stands start add C set0 first.
-  split; rewrite ?size_nseq ?sC //; last exact: Z.le_refl.
-    by exists [::]; split=> // i; rewrite first_options; case: ifP.
+  split; rewrite ?size_nseq ?sC ?bC //; last by split; apply: Z.le_refl.
+  - by exists [::]; split=> // i; rewrite first_options; case: ifP.
   by move=> i; rewrite /may_be first_options ltn_ord !inE; case: ifP.
-have least : Z.le (Z.of_nat k) (Z.of_nat (sensing_size C set0)) by rewrite sC; lia.
-have budget c : stands start add C set0 c -> ~~ impossible (Z.of_nat k) c by move=> st'; apply: not_impossible st' _ least.
+have budget (c : case S) : stands start add C set0 c -> ~~ impossible c by apply: not_impossible.
 have no_dear (i : nat) (c : case S) : stands start add C set0 c -> false -> False by [].
 have no_list (c : case S) (g : option unit) : stands start add C set0 c -> None = Some g ->
   False \/ exists2 h, g = Some h & False by [].
-by have [//|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub least budget
+by have [//|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub budget
   no_dear no_list e st.
 Qed.
 
@@ -218,12 +213,13 @@ split.
 - by rewrite size_map size_iota.
 - move=> i; rewrite /may_be root_options ltn_ord; case: ifP => // _; case: ifP => //= iB.
   by case/and5P: oka => _ _ _ dis _; have := disjointFr dis iB; rewrite inE => ->.
-have : ~~ (size_k <= sensing_size C B)%N by apply: contra (poor r); rewrite sees_part; apply: set_worth.
-by rewrite -ltnNge /=; lia.
+- have : ~~ (size_k <= sensing_size C B)%N by apply: contra (poor r); rewrite sees_part; apply: set_worth.
+  by rewrite -ltnNge /=; lia.
+by have := part_blinded oka r; rewrite /=; lia.
 Qed.
 
 Definition fits (g : listed_group) : Prop := [/\ size (who g) = robots w, forall i : robot, nth false (who g) i = (i \in C),
-  Z.le (costs g) real_cost, Z.le (needs g) (Z.of_nat (blinded_in C B)) & Z.le (loses g) (Z.of_nat (links_left C))].
+  Z.le (costs g) real_cost, Z.le (needs g) (Z.of_nat (blinded_size C B)) & Z.le (loses g) (Z.of_nat (links_left C))].
 
 Lemma is_dearP limit k c : stands start add C B c -> is_dear w near t limit k c -> Z.lt limit real_cost.
 Proof.
@@ -231,13 +227,12 @@ move=> st; rewrite /is_dear; case ed: (drop k (bounds t)) => [//|b bs] /Z.ltb_lt
 have good : bound_ok w d near tied b.
   by case/andP: tree_good => _; rewrite -(cat_take_drop k (bounds t)) all_cat ed => /and3P[].
 apply: Z.lt_le_trans lt _.
-exact: (flow_valueP (part_links ok oka r) (part_blinded oka r) (@untied_part _ _ ok oka r) st prices_good good).
+exact: (flow_valueP (part_links ok oka r) (@untied_part _ _ ok oka r) st prices_good good).
 Qed.
 
-Lemma no_budgetP c : stands start add C B c -> ~~ no_budget w near tied c.
+Lemma no_budgetP c : stands start add C B c -> ~~ beyond_budgets w near tied c.
 Proof.
-move=> st; apply/norP; split; first by apply: (not_impossible st); lia.
-exact: (not_beyond_budgets (part_links ok oka r) (part_blinded oka r) (@untied_part _ _ ok oka r) st (@whole_part _ _ ok r)).
+move=> st; exact: (not_beyond_budgets (part_links ok oka r) (@untied_part _ _ ok oka r) st (@whole_part _ _ ok r)).
 Qed.
 
 Lemma list_groupP c o : stands start add C B c -> list_group w near tied t c = Some o ->
@@ -249,14 +244,14 @@ have each (i : robot) : inside (options_of c i) || gone (options_of c i).
 have mem (i : robot) : inside (options_of c i) = (i \in C).
   apply/idP/idP => [h|h]; first by apply: contraTT h => iC; apply: (not_inside st iC).
   by have := each i; rewrite (negbTE (not_gone st h)) orbF.
-have few := fewest_blindedP st; rewrite -/(blinded_in C B) in few.
-have bl : (blinded_in C B <= blind_budget w)%N by apply: leq_trans (part_blinded oka r) _; apply: geq_minl.
+have few := fewest_blindedP st; rewrite -/(blinded_size C B) in few.
+have bl := part_blinded oka r.
 rewrite (leaving_all st each) (leaving_tied (@untied_part _ _ ok oka r) st).
 have links := part_links ok oka r.
 have -> : has inside (options c) by apply/(has_nthP nothing); exists (r : nat); rewrite ?so ?ltn_ord // -/(options_of c r) mem root_in.
 case: ifP => [|_]; first by rewrite /=; lia.
 set need := Z.max _ _; set x := cost_of_members _ _ _ _.
-have need_le : Z.le need (Z.of_nat (blinded_in C B)) by rewrite /need; lia.
+have need_le : Z.le need (Z.of_nat (blinded_size C B)) by rewrite /need; lia.
 have x_le : Z.le x real_cost.
   have -> : x = Z.sub (Z.add (Z.mul (link_price d) (Z.of_nat (links_left C))) (Z.mul (blind_price d) need)) (\sum_(i in C) price_of d i).
     rewrite /x /cost_of_members; congr (Z.sub _ _).
@@ -273,12 +268,12 @@ Qed.
 (** The group costs more than the limit, or is listed. *)
 Lemma group_found limit note found (P : listed_group -> Prop) : (forall c o, stands start add C B c -> note c = Some o ->
     Z.lt limit real_cost \/ exists2 g, o = Some g & P g) ->
-  check_cases add worth average_worth true Z0 (no_budget w near tied) (is_dear w near t limit) note (groups t) root_case [::] =
+  check_cases add worth average_worth (@beyond_budgets w near tied S) (is_dear w near t limit) note (groups t) root_case [::] =
     Some found ->
   Z.lt limit real_cost \/ exists2 g, g \in found & P g.
 Proof.
-move=> noteP h; have least : Z.le 0 (Z.of_nat (sensing_size C B)) by lia.
-have [le|//] := check_casesP worthP averageP (fintype.subxx _) least no_budgetP (fun k c st => @is_dearP limit k c st) noteP h root_stands.
+move=> noteP h.
+have [le|//] := check_casesP worthP averageP (fintype.subxx _) no_budgetP (fun k c st => @is_dearP limit k c st) noteP h root_stands.
 by have := poor r; rewrite sees_part le.
 Qed.
 End OneGroup.
@@ -295,7 +290,7 @@ Proof. exact: fingraph.roots_root (sym a) r. Qed.
 
 Theorem no_duals : ~~ check_duals w start add worth average_worth size_k near tied t.
 Proof.
-apply/negP => /and3P[_ /Z.ltb_lt neg]; case h: (check_cases _ _ _ _ _ _ _ _ _ _ _) => [found|//] _.
+apply/negP => /and3P[_ /Z.ltb_lt neg]; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] _.
 have each r : roots e r -> Z.le 0 (cost d (part a r) B).
   move=> rr; have nothing_listed c (o : option listed_group) : stands start add (part a r) B c -> None = Some o ->
     Z.lt (Zneg xH) (cost d (part a r) B) \/ exists2 g, o = Some g & False by [].
@@ -335,7 +330,7 @@ have nat_sum (f : robot -> nat) : \sum_(r | roots e r) Z.of_nat (f r) = Z.of_nat
 split.
 - apply: Z.le_trans (all_costs ok oka prices_good); apply: le_all => r rr.
   by have [h _ _] := chosen_valid rr; have [_ []] := chosenP rr.
-- apply: Z.le_trans (_ : Z.le (\sum_(r | roots e r) Z.of_nat (blinded_in (part a r) B)) _).
+- apply: Z.le_trans (_ : Z.le (\sum_(r | roots e r) Z.of_nat (blinded_size (part a r) B)) _).
     by apply: le_all => r rr; have [_ h _] := chosen_valid rr; have [_ []] := chosenP rr.
   by rewrite nat_sum; have := all_blinded oka; lia.
 apply: Z.le_trans (_ : Z.le (\sum_(r | roots e r) Z.of_nat (links_left (part a r))) _).
@@ -376,7 +371,7 @@ End Cover.
 
 Theorem no_cover nodes : ~~ check_cover w start add worth average_worth size_k near tied t nodes.
 Proof.
-apply/negP => /and3P[_ /Z.leb_le pos]; case h: (check_cases _ _ _ _ _ _ _ _ _ _ _) => [found|//] /andP[valid none].
+apply/negP => /and3P[_ /Z.leb_le pos]; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] /andP[valid none].
 set gs := distinct (rev found) in valid none.
 have each r : roots e r -> Z.lt (slack w d) (cost d (part a r) B) \/ exists2 g, g \in gs & fits r g.
   move=> rr; have [lt|[g gf [sg mg cg ng lg]]] := group_found rr (list_groupP rr) h; first by left.
@@ -429,20 +424,20 @@ Proof. by move=> low i; apply: contra low => h; apply: le_trans h (le_team_value
 Theorem forced_setP i : (set_size l <= #|sees (team_of w) a i|)%N -> lower <= team_value (team_of w) phi p a.
 Proof.
 move=> many; apply: (@le_trans _ _ (phi (contributed p (sees (team_of w) a i)))); last exact: le_team_value.
-exact: (check_setsP ok worthP averageP sets many).
+exact: (check_setsP worthP averageP sets many).
 Qed.
 
 Theorem dualsP t : check_duals w start add worth average_worth (set_size l) near tied t ->
   lower <= team_value (team_of w) phi p a.
 Proof.
 move=> h; apply: contraLR (h) => /poor_groups poor; have good : tree_ok w near tied t by case/andP: h.
-exact: (no_duals ok worthP averageP (fun V => check_setsP ok worthP averageP (V := V) sets) oka poor good).
+exact: (no_duals ok worthP averageP (fun V => check_setsP worthP averageP (V := V) sets) oka poor good).
 Qed.
 
 Theorem coverP t nodes : check_cover w start add worth average_worth (set_size l) near tied t nodes ->
   lower <= team_value (team_of w) phi p a.
 Proof.
 move=> h; apply: contraLR (h) => /poor_groups poor; have good : tree_ok w near tied t by case/andP: h.
-exact: (no_cover ok worthP averageP (fun V => check_setsP ok worthP averageP (V := V) sets) oka poor good nodes).
+exact: (no_cover ok worthP averageP (fun V => check_setsP worthP averageP (V := V) sets) oka poor good nodes).
 Qed.
 End Conclusions.

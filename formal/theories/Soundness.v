@@ -812,7 +812,7 @@ rewrite /check_lower_part; case: (lower_part pr) => [k t|t|l|l t|l t nodes|//].
   apply: (size_treeP worth_sound average_sound ki h).
 - by move=> h a oka; exact: (attack_treeP net_good erefl worth_sound oka h).
 - move=> /and3P[full forced h] a oka; have [i ki] := forcedP net_good full oka forced.
-  exact: (forced_setP net_good worth_sound average_sound h ki).
+  exact: (forced_setP worth_sound average_sound h ki).
 - by move=> /andP[sets h] a oka; exact: (dualsP net_good worth_sound average_sound oka sets h).
 by move=> /andP[sets h] a oka; exact: (coverP net_good worth_sound average_sound oka sets h).
 Qed.
