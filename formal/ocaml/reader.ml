@@ -136,27 +136,33 @@ let consume name nodes build =
 
 let deepest = 2500
 
+(* What a version calls the nodes of upper trees: branches on elements and on the best part of an attack, and leaves. *)
+type names = { element : string; part : string; fenchel : string }
+
+let first_names = { element = "robot"; part = "attack"; fenchel = "cuts" }
+let second_names = { element = "element"; part = "part"; fenchel = "fenchel" }
+
 (* [named]: the parts that the last branch on a robot names; a branch that names none has the same. *)
-let rec upper_node groups named next depth =
+let rec upper_node names groups named next depth =
   if depth > deepest then format "upper tree" "is too deep";
-  let again () = upper_node groups named next (depth + 1) in
+  let again () = upper_node names groups named next (depth + 1) in
   let rec children k = if k = 0 then [] else let first = again () in first :: children (k - 1) in
   match next () with
   | Record pairs as node when List.mem_assoc "weights" pairs -> (
-      match fields "leaf" [ "cuts"; "weights" ] node with
+      match fields "leaf" [ names.fenchel; "weights" ] node with
       | [ cuts; weights ] ->
           let cuts = List.map (nat "leaf cut") (array "leaf cuts" cuts) and weights = exacts "leaf weights" weights in
           if List.length cuts <> List.length weights then format "leaf weights" "must be one for each cut";
           Leaf (List.combine cuts weights)
       | _ -> assert false)
   | Record pairs when List.mem_assoc "marginals" pairs -> format "upper proof" "by marginal gains is decided by ratt-opt verify alone"
-  | Record pairs as node when List.mem_assoc "attack" pairs ->
-      let a = match fields "winner branch" [ "attack" ] node with [ a ] -> index "winner branch" a | _ -> assert false in
-      if a >= Array.length groups then format "winner branch" "names no attack";
+  | Record pairs as node when List.mem_assoc names.part pairs ->
+      let a = match fields "part branch" [ names.part ] node with [ a ] -> index "part branch" a | _ -> assert false in
+      if a >= Array.length groups then format "part branch" "names no attack";
       OnWinner (nat_of_int a, children groups.(a))
   | node ->
-      let names = match node with Record pairs when not (List.mem_assoc "parts" pairs) -> [ "robot" ] | _ -> [ "robot"; "parts" ] in
-      let given = fields "element branch" names node in
+      let given = match node with Record pairs when not (List.mem_assoc "parts" pairs) -> [ names.element ] | _ -> [ names.element; "parts" ] in
+      let given = fields "element branch" given node in
       let robot = index "element branch robot" (List.hd given) in
       List.iter (fun parts -> Hashtbl.replace named robot (List.map (nats "element branch") (array "parts" parts))) (List.tl given);
       let blocks =
@@ -191,7 +197,7 @@ let rec attack_node next parts depth =
         else let first = attack_node next (if p = parts then parts + 1 else parts) (depth + 1) in first :: children (p + 1) in
       Group (nat_of_int (i / 2), children 0)
 
-let lower_proof value =
+let first_lower value =
   let kind = match value with Record pairs -> List.assoc_opt "kind" pairs | _ -> None in
   match kind with
   | Some (String "forced_size") -> (
@@ -209,6 +215,92 @@ let lower_proof value =
       if fields "lower proof" [ "kind" ] value <> [ String "enumerated" ] then
         raise (Fault "lower proof: the kind must be attack_tree, forced_size, group_prices, group_covers, all_groups, group_sizes or enumerated");
       NoLower
+
+(* Trees of version 2: names for leaves without a number, records of one field for the other nodes. *)
+let rec case_node next depth =
+  if depth > deepest then format "lower tree" "is too deep";
+  let halves build = let first = case_node next (depth + 1) in build (first, case_node next (depth + 1)) in
+  match next () with
+  | String "worth" -> IsWorth
+  | String "copies" -> CopiesWorth
+  | String "budget" -> NoBudget
+  | String "listed" -> IsListed
+  | Record [ (name, value) ] -> (
+      let k = nat ("lower tree " ^ name) value in
+      match name with
+      | "sense" -> halves (fun (a, b) -> Sense (k, a, b))
+      | "inside" -> halves (fun (a, b) -> Inside (k, a, b))
+      | "sensing" -> halves (fun (a, b) -> Sensing (k, a, b))
+      | "blinded" -> halves (fun (a, b) -> Blinding (k, a, b))
+      | "flow" -> Dear k
+      | _ -> raise (Fault ("lower proof: a node is none of this proof: " ^ name)))
+  | _ -> raise (Fault "lower proof: a node must be a name, or a record of one")
+
+let case_tree value = consume "lower" (array "lower tree" value) (fun next -> case_node next 0)
+
+(* Integers below 2^53 in size. *)
+let signed where value =
+  let k = integer where value in
+  if abs k >= 1 lsl 53 then format where "is too large";
+  Big.of_int k
+
+let unsigned where value =
+  let k = signed where value in
+  if Big.sign k < 0 then format where "must not be negative";
+  k
+
+let sets value =
+  match fields "sets" [ "size"; "tree" ] value with
+  | [ size; tree ] -> { set_size = nat "sets size" size; set_tree = case_tree tree }
+  | _ -> assert false
+
+let prices value =
+  match fields "duals" [ "link"; "robots"; "blinded" ] value with
+  | [ link; robots; blinded ] ->
+      { link_price = unsigned "duals link" link; robot_prices = List.map (signed "duals robots") (array "duals robots" robots);
+        blind_price = unsigned "duals blinded" blinded }
+  | _ -> assert false
+
+let rec int_of_nat = function O -> 0 | S k -> 1 + int_of_nat k
+
+(* Flows, given for each link in ascending order, as rows of what each robot sends to each. *)
+let flow_bound net value =
+  match fields "bound" [ "blinding"; "cut"; "flow" ] value with
+  | [ blinding; cut; flow ] ->
+      let pairs = List.sort compare (List.map (fun (i, j) -> (int_of_nat i, int_of_nat j)) net.link_list) in
+      let amounts = List.map (signed "bound flow") (array "bound flow" flow) in
+      if List.length amounts <> List.length pairs then format "bound flow" "must have an entry for each link";
+      let n = int_of_nat net.top_robot + 1 in
+      let rows = Array.make_matrix n n Big.zero in
+      let carry (i, j) amount =
+        if j >= n then format "links" "name a robot that owns nothing";
+        rows.(i).(j) <- amount;
+        rows.(j).(i) <- Big.neg amount in
+      List.iter2 carry pairs amounts;
+      { more_blind = unsigned "bound blinding" blinding; more_cut = unsigned "bound cut" cut;
+        carried = Array.to_list (Array.map Array.to_list rows) }
+  | _ -> assert false
+
+let group_tree net duals bounds tree =
+  { dual = prices duals; bounds = List.map (flow_bound net) (array "bounds" bounds); groups = case_tree tree }
+
+let second_lower net value =
+  let conclusion = match value with Record pairs -> List.assoc_opt "conclusion" pairs | _ -> None in
+  let given names = fields "lower proof" ("conclusion" :: names) value in
+  match conclusion with
+  | Some (String "enumerated") -> ignore (given []); NoLower
+  | Some (String "forced") -> (match given [ "sets" ] with [ _; l ] -> ForcedSets (sets l) | _ -> assert false)
+  | Some (String "duals") -> (
+      match given [ "sets"; "duals"; "bounds"; "tree" ] with
+      | [ _; l; duals; bounds; tree ] -> Duals (sets l, group_tree net duals bounds tree)
+      | _ -> assert false)
+  | Some (String "cover") -> (
+      match given [ "sets"; "duals"; "bounds"; "tree"; "partition" ] with
+      | [ _; l; duals; bounds; tree; partition ] ->
+          Cover (sets l, group_tree net duals bounds tree, List.map (nat "partition") (array "partition" partition))
+      | _ -> assert false)
+  | Some (String "sizes") -> format "lower proof" "by sizes of groups is decided by ratt-opt verify alone"
+  | _ -> raise (Fault "lower proof: the conclusion must be forced, duals, cover, sizes or enumerated")
 
 let attack value =
   match fields "attack" [ "robots"; "links" ] value with
@@ -232,9 +324,7 @@ let cut value =
   | [ a; g; k ] -> ((nat "cut attack" a, nat "cut group" g), nat "cut point" k)
   | _ -> format "cut" "must be a list of 3 entries"
 
-let rec int_of_nat = function O -> 0 | S k -> 1 + int_of_nat k
-
-let proofs pb prior_range upper lower =
+let proofs pb names prior_range upper lower =
   (match upper with
   | Record pairs when List.mem_assoc "covers" pairs -> format "upper proof" "by covers is decided by ratt-opt verify alone"
   | _ -> ());
@@ -251,8 +341,8 @@ let proofs pb prior_range upper lower =
         | _ -> format "prior_eigenvalue" "must be a list of two entries, of none but for maxeig" in
       { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
-        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups named next 0);
-        lower_part = lower_proof lower }
+        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node names groups named next 0);
+        lower_part = lower }
   | _ -> assert false
 
 (* What the problem is said to be made from: no statement depends on it. *)
@@ -268,7 +358,9 @@ let certificate document =
   match
     fields "certificate" [ "format"; "version"; "problem"; "plan"; "claim"; "prior_eigenvalue"; "upper"; "lower" ] (without_origin document)
   with
-  | [ String "ratt-opt certificate"; Number "1"; stated; plan; claimed; prior_range; upper; lower ] ->
+  | [ String "ratt-opt certificate"; Number ("1" | "2" as version); stated; plan; claimed; prior_range; upper; lower ] ->
       let pb, _ = problem stated in
-      (pb, claim plan claimed, proofs pb prior_range upper lower)
-  | _ -> format "certificate" "must be version 1 of a ratt-opt certificate"
+      let names = if version = "1" then first_names else second_names in
+      let lower = if version = "1" then first_lower lower else second_lower pb.net lower in
+      (pb, claim plan claimed, proofs pb names prior_range upper lower)
+  | _ -> format "certificate" "must be version 1 or 2 of a ratt-opt certificate"

@@ -1,6 +1,6 @@
 (** The theorem about [ratt-check], in the words of the definitions. *)
 From mathcomp Require Import all_ssreflect all_algebra.
-From Ratt Require Import Extrema Teams Quadratic Criteria Logdet Dyadic DyadicMatrix Graph UpperTree LowerTree Forced Checker Soundness.
+From Ratt Require Import Extrema Teams Quadratic Criteria Logdet Dyadic DyadicMatrix Graph UpperTree LowerTree CaseTree Costs GroupProofs Forced Checker Soundness.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.

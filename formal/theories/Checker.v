@@ -1,7 +1,7 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -22,7 +22,14 @@ Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
 
 (** Where a linear bound touches: one symmetric matrix per target (trace, log-det), or a target, a length and a direction. *)
 Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
-Inductive lower_proof := ForcedSize of nat & size_tree | AttackTree of attack_tree | NoLower.
+(** Version 1: a size tree, an attack tree. Version 2: the sets alone, dual prices, a cover. *)
+Inductive lower_proof :=
+| ForcedSize of nat & size_tree
+| AttackTree of attack_tree
+| ForcedSets of sets_lemma
+| Duals of sets_lemma & group_tree
+| Cover of sets_lemma & group_tree & seq nat
+| NoLower.
 Record proofs := Proofs {
   prior_low : dyadic;
   prior_high : dyadic;
@@ -250,13 +257,19 @@ Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : boo
   let add := add_robot d m rows in
   let groups := weight_groups ws in
   let good := worth (objective pb) d m ws groups lows (lower cl) room in
+  let average := average_worth (objective pb) d m ws groups lows rows (lower cl) room in
   match lower_part pr with
-  | ForcedSize k t =>
-      [&& complete w, is_forced w k
-        & check_sizes w add good (average_worth (objective pb) d m ws groups lows rows (lower cl) room) k t start [::] 0]
+  | ForcedSize k t => [&& complete w, is_forced w k & check_sizes w add good average k t start [::] 0]
   | AttackTree t =>
       let near := [seq neighbours (link_list w) i | i <- iota 0 (robots w)] in
       check_attacks w near start add good t [::] [::] [::]
+  | ForcedSets l => [&& complete w, is_forced w (set_size l) & check_sets w start add good average l]
+  | Duals l t =>
+      let near := rows_of w (link_list w) in let tied := rows_of w (kept_links w) in
+      check_sets w start add good average l && check_duals w start add good average (set_size l) near tied t
+  | Cover l t nodes =>
+      let near := rows_of w (link_list w) in let tied := rows_of w (kept_links w) in
+      check_sets w start add good average l && check_cover w start add good average (set_size l) near tied t nodes
   | NoLower => false
   end.
 
