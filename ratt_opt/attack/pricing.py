@@ -90,12 +90,15 @@ class Plan:
         shape = robots + 1, robots, robots
         return np.zeros(shape), np.zeros(shape, np.int32), np.zeros(robots + 1, np.uint8)
 
-    def most_below(self, threshold: float) -> int:
-        """A size that no set of robots worth less than the threshold exceeds."""
+    def most_below(self, threshold: float, group: BoolArray | None = None, effort: int | None = None) -> int:
+        """A size that no set of robots, or of those of a group (N,), worth less than the threshold exceeds.
+
+        ``effort`` : robots valued at most for each size
+        """
         call = function("most_below", c_int64, c_void_p, c_void_p)
-        everyone = np.ones(self.robots, dtype=np.bool_)
-        with self._asked(threshold) as search:
-            return int(call(search.handle, address(everyone)))
+        inside = np.ones(self.robots, dtype=np.bool_) if group is None else np.ascontiguousarray(group)
+        with self._asked(threshold, effort) as search:
+            return int(call(search.handle, address(inside)))
 
     def some_may_be_below(self, group: BoolArray, size: int, threshold: float) -> bool:
         """Whether ``size`` robots of a group (N,) may be worth less than the threshold; true if that is not decided."""
@@ -103,9 +106,10 @@ class Plan:
         with self._asked(threshold) as search:
             return bool(call(search.handle, address(np.ascontiguousarray(group)), size))
 
-    def _asked(self, threshold: float) -> GroupSearch:
+    def _asked(self, threshold: float, effort: int | None = None) -> GroupSearch:
         nothing = np.zeros(self.robots, dtype=np.int64)
-        return GroupSearch(self, Question(threshold, self.robots, nothing, 0, 0), Order.MEMBERS, nothing)
+        question = Question(threshold, self.robots, nothing, 0, 0, effort=effort)
+        return GroupSearch(self, question, Order.MEMBERS, nothing)
 
     def annealed(self, question: Question, moves: int, warm: tuple[float, float], random: c_uint64) -> Iterator[Column]:
         """A group around each robot, annealed between two temperatures [links that leave a group]."""
@@ -153,7 +157,7 @@ class Plan:
             question.unit,
             question.limit,
             order is Order.SENSES,
-            min(EFFORT, EFFORT_WORK // self.team.work + 1),
+            question.effort or min(EFFORT, EFFORT_WORK // self.team.work + 1),
             *([None] * 3 if tables is None else map(address, tables)),
         )
 
@@ -163,7 +167,7 @@ class Question:
     """Groups below a threshold of less reduced cost than ``limit``, in units of 1 / ``unit`` links that leave them.
 
     ``most`` : sensing robots of a set below the threshold; ``duals`` : (N,) of each robot; ``blinding`` >= 0 : of a
-    blinded robot
+    blinded robot; ``effort`` : robots valued at most to decide what a group needs
     """
 
     threshold: float
@@ -172,6 +176,7 @@ class Question:
     blinding: int
     limit: int
     unit: int = UNIT
+    effort: int | None = None
 
     def claim(self, n_blinded: int) -> int:
         """What groups that cover the team cost at least, links from both sides, if no group costs less than nothing."""

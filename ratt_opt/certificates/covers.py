@@ -1,8 +1,9 @@
 """Proofs by dual prices that every attack leaves a group worth a threshold.
 
-The attacker's search (``attackers/by_prices``) finds duals at which no group below the threshold costs less than
-nothing. Here they become integers, a tree closes or lists the groups (``group_tree.py``), and if some are listed, a
-search shows that they do not partition the team.
+All groups that an attack may leave (``listed_columns.py``), or the attacker's search (``attackers/by_prices``) if there
+are too many, give duals at which no group below the threshold costs less than nothing. Here they become integers, a
+tree closes or lists the groups (``group_tree.py``), and if some are listed, a search shows that they do not partition
+the team.
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ from ratt_opt.attack.pricing import Question
 from ratt_opt.attackers.by_prices.answer import Threshold
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import group_tree, sets_proof
+from ratt_opt.certificates.listed_columns import duals_of_all_groups
 from ratt_opt.certificates.plain_trees import LARGEST_TEAM, PlainTrees
 from ratt_opt.certificates.plan_sets import NotClosedError
 from ratt_opt.certificates.verifier.work import seconds_left, tick
 
 if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
     from ratt_opt.attack.pricing import Plan
-    from ratt_opt.attackers.by_prices.prices import PriceVector
     from ratt_opt.certificates.plan_sets import PlanSets
     from ratt_opt.graph.threat import Threat
 
@@ -89,23 +91,25 @@ def _plain_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 
 def _question(plan: Plan, sets: PlanSets) -> Question:
     """Duals that refute the threshold, in units, and the largest size of a set below it."""
+    most = plan.most_below(sets.threshold)
+    duals = duals_of_all_groups(plan, sets.threshold) or _searched_duals(plan, sets)
+    robots, blinded = (np.floor(duals[0] * UNIT).astype(np.int64), int(np.ceil(duals[1] * UNIT)))
+    return Question(sets.threshold, most, robots, blinded, 0, UNIT)
+
+
+def _searched_duals(plan: Plan, sets: PlanSets) -> tuple[FloatArray, float]:
+    """Those with which the attacker's search refutes the threshold [links that leave a group]."""
     from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 
     seconds = seconds_left()
     budget = Budget(None if seconds == np.inf else seconds)
     try:
         answer = ThresholdDecision(plan).decide(sets.threshold, budget, SEARCHED)
-        most = plan.most_below(sets.threshold)
     except OutOfBudget:
         raise NotClosedError from None
     if answer.verdict is not Threshold.REFUTED or answer.prices is None:
         raise NotClosedError
-    return Question(sets.threshold, most, *_rounded(answer.prices), 0, UNIT)
-
-
-def _rounded(prices: PriceVector) -> tuple[Any, int]:
-    """Duals of robots and of a blinded one; prices are about half links."""
-    return np.floor(prices.robot * (2 * UNIT)).astype(np.int64), int(np.ceil(prices.blinded * (2 * UNIT)))
+    return 2 * answer.prices.robot, 2 * answer.prices.blinded  # prices are about half links
 
 
 def _listed(threat: Threat, question: Question, robots: int, need: int) -> _Listed:

@@ -23,12 +23,13 @@ __all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
 
 CASES = 2_000
 """Between two looks at the clock."""
-MOST_CRITERIA = 20_000_000
-"""Criteria of single targets looked at for a tree over sets, without a look at the clock: half a second."""
+FIRST_CRITERIA, MOST_CRITERIA, MORE = 4_000_000, 256_000_000, 4
+"""Criteria of single targets looked at for a tree over sets: before the first look at the clock, a tenth of a second;
+at most; and how many times more each attempt may look at."""
 MOST_FLOWS, MOST_LISTED = 5_000, 20_000
 BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded"), ("worth", "copies", "budget", "flow", "listed")
 """Nodes by the numbers that the loops have for them."""
-FINISHED, PAUSED = 0, 1
+FINISHED, PAUSED, FULL = range(3)
 
 
 class TreeRecord(Structure):
@@ -99,10 +100,14 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
     trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages)
     nobody = np.zeros(plan.robots, dtype=np.int64)
     call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_int64] * 2)
-    tick()
-    tell(COVERING, 0)
+    looked, code = FIRST_CRITERIA, FULL
     with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), Order.MEMBERS, nobody) as search:
-        code = call(search.handle, byref(trees.record), size, MOST_CRITERIA // sets.objective.n_targets)
+        while code == FULL and looked <= MOST_CRITERIA:
+            tick()
+            trees.record.count = 0
+            code = call(search.handle, byref(trees.record), size, looked // sets.objective.n_targets)
+            tell(COVERING, trees.record.count)
+            looked *= MORE
     if code != FINISHED:
         raise NotClosedError
     return {"size": size, "tree": trees.named()}

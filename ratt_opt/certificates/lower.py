@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ENUMERATED", "lower_proof", "weaker_lower_proof"]
 
-LARGEST_TREE = 200_000
+LARGEST_TREE = 300_000
 """Most nodes of a tree."""
 SHARE_OF_OTHERS = 0.4
 """Of the seconds left that each way but the last may take."""

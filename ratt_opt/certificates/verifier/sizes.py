@@ -93,7 +93,7 @@ class LinkCosts:
         degrees = [others.bit_count() for others in near]
         self.price = [link * degree - dual for degree, dual in zip(degrees, duals, strict=True)]
         """What a robot costs if all its links leave the group; each link inside saves twice ``link``."""
-        self.step = gcd(2 * link, *self.price)
+        self.step = gcd(2 * link, *self.price) or 1
         self.slack = 2 * link * alpha_c - sum(duals)
         self.most: float = inf if any(duals) else link * alpha_c
         cheap, links = sorted(self.price), sum(degrees) // 2

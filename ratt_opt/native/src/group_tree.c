@@ -188,8 +188,8 @@ static int copies_are_enough(Proof *p, const Node *node, int size) {
     return sum >= size * p->s->q.threshold;
 }
 
-/* Write that any `size` of `count` robots, in row `depth` of the search's order, bring what senses to the threshold: 1, or 0 if
-   that is not shown within the effort. */
+/* Write that any `size` of `count` robots, in row `depth` of the search's order, bring what senses to the threshold: 1; 0 if some do
+   not, and -1 if the effort or the room ends first. */
 static int write_some(Proof *p, int depth, int count, int size, int64_t *effort) {
     Search *s = p->s;
     int n = p->robots, *order = s->order + depth * n;
@@ -217,11 +217,12 @@ static int write_some(Proof *p, int depth, int count, int size, int64_t *effort)
             write_node(p, COPIES, 0);
             return 1;
         }
-        if (*effort <= 0 || p->out->count + 2 * n > p->out->capacity) return 0;
+        if (*effort <= 0 || p->out->count + 2 * n > p->out->capacity) return -1;
         write_node(p, SENSE, order[first]);
         add_information(s->q.team, sums, 1.0, order[first], sums + s->width + n);
         memcpy(order + n, order + first + 1, (size_t)(count - first - 1) * sizeof(int));
-        if (!write_some(p, depth + 1, count - first - 1, size - 1, effort)) return 0;
+        int answer = write_some(p, depth + 1, count - first - 1, size - 1, effort);
+        if (answer <= 0) return answer;
     }
 }
 
@@ -234,7 +235,7 @@ static int write_inside(Proof *p, const Node *node, int size) {
     memcpy(s->sums, node->sums, (size_t)s->width * sizeof(double));
     for (int i = 0; i < p->robots; i++)
         if (IS_INSIDE(node->state[i]) && MAY_SENSE(node->state[i])) s->order[count++] = i;
-    if (write_some(p, 0, count, size, &effort)) return 1;
+    if (write_some(p, 0, count, size, &effort) > 0) return 1;
     p->out->count = before;
     return 0;
 }
@@ -382,13 +383,14 @@ static int expand(Proof *p) {
     return PAUSED;
 }
 
-/* Write a tree that any `size` robots are worth the threshold: 0 it is finished, 2 too large, or some set is worth less; as far as
-   `effort`, robots valued, goes. */
+/* Write a tree that any `size` robots are worth the threshold: 0 it is finished, 2 it is not as far as `effort`, robots valued, and the
+   arrays go, 3 some set is worth less. */
 EXPORTED int grow_sets_tree(Search *s, GroupTree *out, int64_t size, int64_t effort) {
     Proof p = {.s = s, .robots = s->robots, .out = out};
     memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
     for (int i = 0; i < s->robots; i++) s->order[i] = i;
-    return write_some(&p, 0, s->robots, (int)size, &effort) ? FINISHED : FULL;
+    int answer = write_some(&p, 0, s->robots, (int)size, &effort);
+    return answer > 0 ? FINISHED : answer ? FULL : OPEN;
 }
 
 /* Grow a tree for so many cases: 0 it is finished, 1 paused, 2 too large for the arrays, 3 some group is not closed. */
