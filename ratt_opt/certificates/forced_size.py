@@ -21,7 +21,7 @@ from ratt_opt.running.compiling import numba
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
 
 __all__ = ["forced_size_tree"]
 

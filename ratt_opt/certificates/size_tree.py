@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell
 

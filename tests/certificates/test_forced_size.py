@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import ProofError, random_scenario, ratt, worst_case_attack
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.certificates import forced_size, size_tree
 from ratt_opt.certificates.forced_size import forced_size_tree
 from ratt_opt.certificates.plan_sets import PlanSets

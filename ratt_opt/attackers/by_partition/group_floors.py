@@ -11,13 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.by_targets.decomposition import decomposed
-from ratt_opt.attackers.weakest_set.minorant import Minorant, affine_minorant
+from ratt_opt.attack.least_sets.underestimator import Minorant, affine_minorant
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.weakest_set.by_targets.decomposition import Decomposition
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam, SetFamily
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam, SetFamily
     from ratt_opt.budget import Budget
     from ratt_opt.graph.separable_groups import SeparableGroups
 
@@ -25,9 +23,8 @@ __all__ = ["MinorantsOfSizes", "least_in_groups"]
 
 ROUGH, SHARP = 2, 4
 """Heavy robots of the first minorants, of all sizes, and of those for one threshold."""
-SHARPER_AFTER = (20_000, 100_000)
-"""Nodes of the search of sets of one size, under one threshold, before a minorant over polytopes is sharpened to it,
-and before every target chooses a set of its own."""
+SHARPER_AFTER = 20_000
+"""Nodes of the search of sets of one size, under one threshold, before its minorant is sharpened to it."""
 MINORANT_NODES = 10_000
 """Nodes that take as long as a sharper minorant."""
 
@@ -41,22 +38,20 @@ class MinorantsOfSizes:
 
     def __init__(self, team: PackedTeam) -> None:
         self._team = team
-        self._best: dict[int, Minorant | Decomposition] = {}
+        self._best: dict[int, Minorant] = {}
 
-    def of(self, size: int) -> Minorant | Decomposition | None:
+    def of(self, size: int) -> Minorant | None:
         """The best one known."""
         return self._best.get(size)
 
     def rough(self, size: int) -> Minorant:
         """One that is made in a moment, from that of the next size."""
-        parent = self._best.get(size + 1)
-        start = parent if isinstance(parent, Minorant) else None
-        minorant = affine_minorant(self._family(size), ROUGH, -np.inf, start)
+        minorant = affine_minorant(self._family(size), ROUGH, -np.inf, self._best.get(size + 1))
         self._best[size] = minorant
         return minorant
 
-    def sharper(self, size: int, threshold: float, step: int, budget: Budget) -> Minorant | Decomposition | None:
-        """One for a threshold, by the first or the second step; ``None`` where there is none to be had.
+    def sharper(self, size: int, threshold: float, budget: Budget) -> Minorant | None:
+        """One for a threshold; ``None`` where there is none to be had.
 
         Raises
         ------
@@ -66,11 +61,7 @@ class MinorantsOfSizes:
             return None
         budget.spend(budget.nodes_left(MINORANT_NODES))
         known = self._best.get(size)
-        if step == 0:
-            start = known if isinstance(known, Minorant) else None
-            found: Minorant | Decomposition = affine_minorant(self._family(size), SHARP, threshold, start, budget)
-        else:
-            found = decomposed(self._family(size), threshold, budget, None if isinstance(known, Minorant) else known)
+        found = affine_minorant(self._family(size), SHARP, threshold, known, budget)
         if known is None or found.bound(size) > known.bound(size):
             self._best[size] = found
         return found
@@ -79,9 +70,7 @@ class MinorantsOfSizes:
         return self._team.family(np.arange(len(self._team.single)), size)
 
 
-def least_in_groups(
-    minorant: Minorant | Decomposition, groups: SeparableGroups, rows: IntArray, size: int
-) -> FloatArray:
+def least_in_groups(minorant: Minorant, groups: SeparableGroups, rows: IntArray, size: int) -> FloatArray:
     """(len(rows),) no ``size`` robots of a group are worth less; ``minorant`` : of all sets of that size."""
     scores = minorant.scores[groups.robots]
     total, taken = np.full(len(rows), minorant.constant), np.zeros(len(rows), dtype=np.int64)

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.least_sets.exchanges import exchanged
+from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.least_sets.sets_of_size import BoundedSets
 from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, MinorantsOfSizes, least_in_groups
-from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.attackers.weakest_set.enumeration import AffineBound, Enumeration
-from ratt_opt.attackers.weakest_set.exchanges import exchanged
 from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.separable_groups import SeparableGroups
 
@@ -70,21 +70,20 @@ class GroupSurvivors:
             return None  # only one subset, looked at already
         free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
         left, minorant = size - len(fixed), self.minorants.of(size)
-        if minorant is None:
-            sets = Enumeration(self.team, free, fixed, left)
-        else:  # the team's minorant of this size holds for the subsets of every group
+        scores = None
+        if minorant is not None:  # the team's underestimator of this size holds for the subsets of every group
             constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
-            affine = AffineBound(constant, minorant.scores[free])
-            sets = Enumeration.surest_first(self.team, free, fixed, left, affine)
+            scores = constant, minorant.scores[free]
+        sets = BoundedSets(self.team.native(), free, fixed, left, threshold, scores, in_order=True)
         most = AXIS_NODES if self.team.is_by_axis else PLAIN_NODES
-        while not sets.finished and sets.nodes < most:
-            found = sets.next_within(threshold, most - sets.nodes, budget)
+        while sets.nodes < most:
+            found = sets.next(threshold, most, budget)
+            if found is False:
+                return None
             if found is not None:
                 return found
-        if sets.finished:
-            return None
         outside = frozenset(range(len(self.team.single))) - group
-        search = WeakestSetSearch(self.team, size, threshold, inside=fixed, outside=outside)
+        search = LeastSetSearch(self.team, size, threshold, inside=fixed, outside=outside)
         return next((found for found in search.run(budget) if found is not None), None)
 
 
@@ -105,8 +104,9 @@ class SettledPartitions:
         self._search = PartitionSearch(groups, need)
         self._sizes = np.bitwise_count(groups.masks).astype(np.int64)
         self._spent: dict[int, int] = {}
-        self._steps: dict[int, int] = {}
-        """By size of the sets: nodes of searches, and steps that were taken to sharper minorants."""
+        """Nodes of searches by size of the sets."""
+        self._sharpened: set[int] = set()
+        """Sizes whose minorant was sharpened."""
         self._chosen: list[int] | None = None
         self._weak: dict[int, frozenset[int]] = {}
         """A weak set of a group, the largest one known."""
@@ -165,11 +165,10 @@ class SettledPartitions:
 
     def _is_sharpened(self, size: int, budget: Budget) -> bool:
         """Where searches have taken long, raise the needs of all groups by a sharper minorant of the sets of a size."""
-        step = self._steps.get(size, 0)
-        if step == len(SHARPER_AFTER) or self._spent.get(size, 0) < SHARPER_AFTER[step]:
+        if size in self._sharpened or self._spent.get(size, 0) < SHARPER_AFTER:
             return False
-        minorant = self._survivors.minorants.sharper(size, self._threshold, step, budget)
-        self._steps[size] = step + 1
+        minorant = self._survivors.minorants.sharper(size, self._threshold, budget)
+        self._sharpened.add(size)
         if minorant is None:
             return False
         blinded = self._sizes - size

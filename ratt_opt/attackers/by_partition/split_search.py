@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.least_sets.search import least_value_bound
 from ratt_opt.attackers.by_partition.group_floors import least_in_groups
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
-from ratt_opt.attackers.weakest_set.branch_and_bound import bound_family
 from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.separable_groups import SeparableGroups
 
 __all__ = ["SplitSearch"]
@@ -84,8 +84,7 @@ class SplitSearch:
         """No ``size`` robots of the groups ``rows`` are worth less."""
         if self.team.has_minorants:
             return least_in_groups(self.survivors.minorants.rough(size), self.groups, rows, size)
-        family = self.team.family(np.arange(self.n_robots), size)
-        return np.full(len(rows), bound_family(family, np.inf, None, self.task.budget).bound)
+        return np.full(len(rows), least_value_bound(self.team, size))
 
     def _reach(self, threshold: float) -> bool:
         """Find an attack below the threshold, or prove that there is none."""

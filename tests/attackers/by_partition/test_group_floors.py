@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, MinorantsOfSizes, least_in_groups
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
+from ratt_opt.attackers.by_partition.group_floors import MinorantsOfSizes, least_in_groups
 from ratt_opt.budget import Budget
 from ratt_opt.graph.separable_groups import separable_groups
 from tests.attackers.by_partition.test_split_search import team_problem
@@ -24,8 +24,7 @@ def test_minorants_of_sizes_hold_in_every_group(seed):
         rows = np.array([row for row, robots in enumerate(members) if len(robots) >= size], dtype=np.int64)
         least = np.array([min(team.value(robots) for robots in combinations(members[row], size)) for row in rows])
         threshold = float(np.median(least)) if len(least) else 1.0
-        sharper = (minorants.sharper(size, threshold, step, Budget()) for step in range(len(SHARPER_AFTER)))
-        for minorant in (minorants.rough(size), *sharper):
+        for minorant in (minorants.rough(size), minorants.sharper(size, threshold, Budget())):
             if minorant is not None:
                 assert np.all(least_in_groups(minorant, groups, rows, size) <= least + 1e-9 * abs(least))
         assert minorants.of(size) is not None
