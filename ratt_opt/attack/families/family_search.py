@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.budget import Budget
 
-__all__ = ["SetLists", "VectorSearch"]
+__all__ = ["FamilySearch", "SetLists"]
 
 FEW_SETS = 1_000_000
 """Sizes of at most that many sets are listed without asking first what a set may cost: the list serves every vector."""
@@ -93,7 +93,7 @@ class _Node:
     """Largest value of a chosen set."""
 
 
-class VectorSearch:
+class FamilySearch:
     """Searches the families of ``sizes`` among the robots of ``lists``, ``n_blinded`` of them blinded.
 
     ``threshold`` : only families below it count; may be lowered while :meth:`run` goes on

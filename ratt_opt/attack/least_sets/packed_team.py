@@ -67,7 +67,7 @@ class PackedTeam:
         return self.is_planar and self.objective.states("planar_levels")
 
     @property
-    def has_minorants(self) -> bool:
+    def has_underestimators(self) -> bool:
         """Whether sets of a size have sharp affine underestimators: in the plane, unless an axis decides."""
         return self.is_planar and not self.is_by_axis
 

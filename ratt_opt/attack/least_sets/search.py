@@ -16,7 +16,7 @@ import numpy as np
 
 from ratt_opt.attack.least_sets.exchanges import exchanged
 from ratt_opt.attack.least_sets.sets_of_size import BoundedSets
-from ratt_opt.attack.least_sets.underestimator import affine_minorant
+from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
 from ratt_opt.attack.team import TeamRecord
 from ratt_opt.native.library import address, function
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.least_sets.packed_team import PackedTeam
-    from ratt_opt.attack.least_sets.underestimator import Minorant
+    from ratt_opt.attack.least_sets.underestimator import Underestimator
     from ratt_opt.budget import Budget
 
     Found = Generator[frozenset[int] | None, None, None]
@@ -48,7 +48,7 @@ above. Each doubles the polytopes and sharpens the bound: with two instead of fo
 class SetNode:
     """Sets of robots that contain ``inside`` and avoid ``outside``; none is worth less than ``bound``.
 
-    ``minorant`` : over the undecided robots, strongest first, of these sets or of more
+    ``underestimator`` : over the undecided robots, strongest first, of these sets or of more
     ``is_bounded`` : whether a bound of its own was computed
     """
 
@@ -56,7 +56,7 @@ class SetNode:
     serial: int
     inside: frozenset[int] = field(compare=False)
     outside: frozenset[int] = field(compare=False)
-    minorant: Minorant | None = field(compare=False, default=None)
+    underestimator: Underestimator | None = field(compare=False, default=None)
     is_bounded: bool = field(compare=False, default=False)
 
     def undecided(self, team: PackedTeam) -> IntArray:
@@ -71,20 +71,20 @@ class SetNode:
 
         Returns the node with those decided, and the robots left.
         """
-        if self.minorant is None:
+        if self.underestimator is None:
             return self, robots
-        scores = self.minorant.scores
+        scores = self.underestimator.scores
         chosen = np.zeros(len(scores), dtype=np.bool_)
         chosen[np.argsort(scores, kind="stable")[:size]] = True
         last, first = scores[chosen].max(), scores[~chosen].min()
-        room = threshold - self.minorant.bound(size)
+        room = threshold - self.underestimator.bound(size)
         surely_in = chosen & (first - scores >= room)
         surely_out = ~chosen & (scores - last >= room)
         free = ~(surely_in | surely_out)
         inside = self.inside | frozenset(robots[surely_in].tolist())
         outside = self.outside | frozenset(robots[surely_out].tolist())
-        minorant = self.minorant.restricted(free, surely_in)
-        return replace(self, inside=inside, outside=outside, minorant=minorant), robots[free]
+        underestimator = self.underestimator.restricted(free, surely_in)
+        return replace(self, inside=inside, outside=outside, underestimator=underestimator), robots[free]
 
     def split(self, robots: IntArray, bound: float, serial: int) -> tuple[SetNode, SetNode]:
         """Two nodes, by the robot with the most hidden concavity (the strongest if there is no underestimator).
@@ -93,12 +93,12 @@ class SetNode:
         neither side took ten times as long at 60 robots.
         """
         pick, with_it, without = 0, None, None
-        if self.minorant is not None:
-            x = self.minorant.fraction
-            pick = int(np.argmax(self.minorant.tension * (1 - 3 * x * (1 - x))))
+        if self.underestimator is not None:
+            x = self.underestimator.fraction
+            pick = int(np.argmax(self.underestimator.tension * (1 - 3 * x * (1 - x))))
             it = np.arange(len(robots)) == pick
-            with_it = self.minorant.restricted(~it, it)
-            without = self.minorant.restricted(~it, np.zeros_like(it))
+            with_it = self.underestimator.restricted(~it, it)
+            without = self.underestimator.restricted(~it, np.zeros_like(it))
         robot = frozenset([int(robots[pick])])
         return (
             SetNode(bound, serial, self.inside | robot, self.outside, with_it),
@@ -208,16 +208,18 @@ class LeastSetSearch:
             axis = weakest_axis(family)
             return replace(node, bound=max(node.bound, axis.bound), is_bounded=True), axis.chosen
         if not self.team.is_planar or size == len(robots):
-            return replace(node, minorant=None, is_bounded=True), first
+            return replace(node, underestimator=None, is_bounded=True), first
         heavy = next(heavy for most, heavy in HEAVY_ROBOTS if len(robots) <= most)
-        minorant = affine_minorant(family, heavy, self.threshold, node.minorant, budget)
-        weakest = np.lexsort((minorant.scores, -minorant.fraction))[:size]
-        return replace(node, bound=max(node.bound, minorant.bound(size)), minorant=minorant, is_bounded=True), weakest
+        underestimator = affine_underestimator(family, heavy, self.threshold, node.underestimator, budget)
+        weakest = np.lexsort((underestimator.scores, -underestimator.fraction))[:size]
+        return replace(
+            node, bound=max(node.bound, underestimator.bound(size)), underestimator=underestimator, is_bounded=True
+        ), weakest
 
     def _sets(self, node: SetNode, robots: IntArray) -> BoundedSets:
         """The sets of a node, among the undecided ``robots``."""
-        size, minorant = self.size - len(node.inside), node.minorant
-        scores = None if minorant is None else (minorant.constant, minorant.scores)
+        size, underestimator = self.size - len(node.inside), node.underestimator
+        scores = None if underestimator is None else (underestimator.constant, underestimator.scores)
         return BoundedSets(self._native, robots, node.inside, size, self.threshold, scores)
 
     def _try(self, candidate: frozenset[int], budget: Budget) -> Found:

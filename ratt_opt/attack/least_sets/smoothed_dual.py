@@ -1,4 +1,4 @@
-"""Raise the bound of an affine minorant over its multipliers, by smoothing.
+"""Raise the bound of an affine underestimator over its multipliers, by smoothing.
 
 The bound is concave and piecewise linear: per target the least of ``value - multipliers . vertex`` over an outer
 polytope's vertices, plus the sum of the smallest scores over the robots. Each least value is replaced by a soft

@@ -1,11 +1,11 @@
-"""An affine minorant of the value of sets of robots of one size, from outer polytopes.
+"""An affine underestimator of the value of sets of robots of one size, from outer polytopes.
 
 Target ``j``'s criterion is concave in its information matrix, and ``Lambda_j(R)`` lies in an outer polytope
 (``outer_polytopes.py``). An affine function of ``Lambda`` that is below the value ``phi_j`` at its vertices is below
 it for every ``R``. The concavity of ``phi_j`` comes mostly from the few robots next to the target: these "heavy"
 ones are enumerated and get scores of their own.
 
-Slopes and scores are raised by a smoothed ascent (``smoothed_dual.py``). The minorant's constant is recomputed
+Slopes and scores are raised by a smoothed ascent (``smoothed_dual.py``). The underestimator's constant is recomputed
 here from all vertices, so nothing depends on the ascent, nor on its end.
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.least_sets.packed_team import SetFamily
     from ratt_opt.budget import Budget
 
-__all__ = ["Minorant", "affine_minorant"]
+__all__ = ["Underestimator", "affine_underestimator"]
 
 KEPT, NEW = 24, 4
 """Half-spaces per target that a node hands to its children: those that bind there, and new ones. More make a child's
@@ -37,7 +37,7 @@ children; at 40 robots a tenth of it changes no node."""
 
 
 @dataclass(frozen=True, slots=True)
-class Minorant:
+class Underestimator:
     """``value(R) >= constant + sum of scores over R`` for every set of the family.
 
     ``scores`` : (F,); ``slopes`` : (M, 3) in the information; ``own`` : (M, h) scores of the ``heavy`` robots (M, h)
@@ -59,8 +59,8 @@ class Minorant:
         """No set of ``size`` robots is worth less."""
         return self.constant + float(np.partition(self.scores, size - 1)[:size].sum())
 
-    def restricted(self, free: BoolArray, chosen: BoolArray) -> Minorant:
-        """The minorant of the sets that hold the ``chosen`` robots and else only ``free`` ones (masks (F,))."""
+    def restricted(self, free: BoolArray, chosen: BoolArray) -> Underestimator:
+        """The underestimator of the sets that hold the ``chosen`` robots and else only ``free`` ones (masks (F,))."""
         place = np.where(free, np.cumsum(free) - 1, -1)
         return replace(
             self,
@@ -72,13 +72,13 @@ class Minorant:
         )
 
 
-def affine_minorant(
-    family: SetFamily, n_heavy: int, goal: float, parent: Minorant | None = None, budget: Budget | None = None
-) -> Minorant:
-    """Best found affine minorant; valid whatever the solver answers.
+def affine_underestimator(
+    family: SetFamily, n_heavy: int, goal: float, parent: Underestimator | None = None, budget: Budget | None = None
+) -> Underestimator:
+    """Best found affine underestimator; valid whatever the solver answers.
 
-    ``family`` : 0 < size < F; ``goal`` : no better bound is needed; ``parent`` : a minorant of a larger family, whose
-    slopes and half-spaces are a good start; ``budget`` : what is found when it is over is taken
+    ``family`` : 0 < size < F; ``goal`` : no better bound is needed; ``parent`` : an underestimator of a larger family,
+    whose slopes and half-spaces are a good start; ``budget`` : what is found when it is over is taken
     """
     points = outer_polytopes(family, n_heavy, None if parent is None else parent.normals)
     program = _program(family, points)
@@ -95,7 +95,9 @@ def _mean(family: SetFamily, fraction: FloatArray) -> FloatArray:
     return np.asarray(family.start + np.einsum("f,fmt->mt", fraction, family.information))
 
 
-def _start(family: SetFamily, points: OuterPolytopes, fraction: FloatArray, parent: Minorant | None) -> Multipliers:
+def _start(
+    family: SetFamily, points: OuterPolytopes, fraction: FloatArray, parent: Underestimator | None
+) -> Multipliers:
     """The parent's multipliers, or the gradient if every robot has the same share."""
     n_targets = len(family.team.weights)
     slopes = _gradient(family, np.arange(n_targets), _mean(family, fraction)) if parent is None else parent.slopes
@@ -144,7 +146,7 @@ def _normals(
 
 
 def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
-    """At vertices that bind, the direction in which value minus minorant grows: it cuts off what is not a set."""
+    """At vertices that bind, the direction in which value minus underestimator grows: it cuts off what is not a set."""
     target = np.repeat(np.arange(len(points.heavy)), np.diff(points.first))
     close = np.flatnonzero(closeness > 0)
     order = close[np.lexsort((-closeness[close], target[close]))]
@@ -160,8 +162,8 @@ def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, 
 
 def _recompute(
     family: SetFamily, points: OuterPolytopes, program: DualProgram, multipliers: Multipliers, fraction: FloatArray
-) -> Minorant:
-    """The minorant with these multipliers: its constant from the vertices; targets without any get none."""
+) -> Underestimator:
+    """The underestimator with these multipliers: its constant from the vertices; targets without any get none."""
     slopes, own = multipliers.slopes * points.sound[:, None], multipliers.own * points.sound[:, None]
     shares = np.einsum("fmt,mt->mf", program.information, slopes)
     np.put_along_axis(shares, points.heavy, own, axis=1)
@@ -172,7 +174,7 @@ def _recompute(
     hidden = np.maximum(target_values(family, mean) - constants - shares @ fraction, 0.0)
     trace = family.information[..., 0] + family.information[..., 2]
     share = np.minimum(trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300), 1.0)  # of a target's information
-    return Minorant(
+    return Underestimator(
         constant=float(constants.sum()),
         scores=shares.sum(axis=0),
         slopes=slopes,

@@ -15,7 +15,7 @@ import numpy as np
 from ratt_opt.attack.least_sets.exchanges import exchanged
 from ratt_opt.attack.least_sets.search import LeastSetSearch
 from ratt_opt.attack.least_sets.sets_of_size import BoundedSets
-from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, MinorantsOfSizes, least_in_groups
+from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, UnderestimatorsOfSizes, least_in_groups
 from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
 
 if TYPE_CHECKING:
@@ -43,10 +43,10 @@ class GroupSurvivors:
 
     team: PackedTeam
     must: frozenset[int]
-    minorants: MinorantsOfSizes = field(init=False)
+    underestimators: UnderestimatorsOfSizes = field(init=False)
 
     def __post_init__(self) -> None:
-        self.minorants = MinorantsOfSizes(self.team)
+        self.underestimators = UnderestimatorsOfSizes(self.team)
 
     def by_exchanges(self, group: frozenset[int], size: int) -> frozenset[int] | None:
         """A weak subset: no claim; ``None`` where the size leaves no room for protected robots."""
@@ -69,11 +69,11 @@ class GroupSurvivors:
         if size in {len(fixed), len(group)}:
             return None  # only one subset, looked at already
         free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
-        left, minorant = size - len(fixed), self.minorants.of(size)
+        left, underestimator = size - len(fixed), self.underestimators.of(size)
         scores = None
-        if minorant is not None:  # the team's underestimator of this size holds for the subsets of every group
-            constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
-            scores = constant, minorant.scores[free]
+        if underestimator is not None:  # the team's underestimator of this size holds for the subsets of every group
+            constant = underestimator.constant + float(underestimator.scores[sorted(fixed)].sum())
+            scores = constant, underestimator.scores[free]
         sets = BoundedSets(self.team.native(), free, fixed, left, threshold, scores, in_order=True)
         most = AXIS_NODES if self.team.is_by_axis else PLAIN_NODES
         while sets.nodes < most:
@@ -106,7 +106,7 @@ class SettledPartitions:
         self._spent: dict[int, int] = {}
         """Nodes of searches by size of the sets."""
         self._sharpened: set[int] = set()
-        """Sizes whose minorant was sharpened."""
+        """Sizes whose underestimator was sharpened."""
         self._chosen: list[int] | None = None
         self._weak: dict[int, frozenset[int]] = {}
         """A weak set of a group, the largest one known."""
@@ -164,16 +164,16 @@ class SettledPartitions:
         return False
 
     def _is_sharpened(self, size: int, budget: Budget) -> bool:
-        """Where searches have taken long, raise the needs of all groups by a sharper minorant of the sets of a size."""
+        """If searches have taken long, raise the needs of all groups by a sharper underestimator of sets of a size."""
         if size in self._sharpened or self._spent.get(size, 0) < SHARPER_AFTER:
             return False
-        minorant = self._survivors.minorants.sharper(size, self._threshold, budget)
+        underestimator = self._survivors.underestimators.sharper(size, self._threshold, budget)
         self._sharpened.add(size)
-        if minorant is None:
+        if underestimator is None:
             return False
         blinded = self._sizes - size
         rows = np.flatnonzero((blinded >= 0) & (blinded <= self._n_blinded))
-        rows = rows[least_in_groups(minorant, self._groups, rows, size) >= self._threshold]
+        rows = rows[least_in_groups(underestimator, self._groups, rows, size) >= self._threshold]
         more = np.where(blinded[rows] < self._n_blinded, blinded[rows] + 1, IMPOSSIBLE)
         self.need[rows] = np.maximum(self.need[rows], more)
         return True

@@ -58,7 +58,7 @@ class SplitSearch:
         return Stop.CLOSED
 
     def _first_floors(self) -> FloatArray:
-        """Values of whole groups, and minorants over the team for those with blinded robots."""
+        """Values of whole groups, and underestimators over the team for those with blinded robots."""
         floors = np.full((len(self._sizes), self.n_blinded + 1), -np.inf)
         floors[:, 0] = self._whole()
         for size in range(self.n_robots - 1, 0, -1):
@@ -82,8 +82,8 @@ class SplitSearch:
 
     def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
         """No ``size`` robots of the groups ``rows`` are worth less."""
-        if self.team.has_minorants:
-            return least_in_groups(self.survivors.minorants.rough(size), self.groups, rows, size)
+        if self.team.has_underestimators:
+            return least_in_groups(self.survivors.underestimators.rough(size), self.groups, rows, size)
         return np.full(len(rows), least_value_bound(self.team, size))
 
     def _reach(self, threshold: float) -> bool:

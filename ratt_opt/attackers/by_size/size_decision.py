@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.annealing import Partition
-from ratt_opt.attack.families.family_search import SetLists, VectorSearch
+from ratt_opt.attack.families.family_search import FamilySearch, SetLists
 from ratt_opt.attack.families.packing import Packer
 from ratt_opt.attack.families.set_lists import MOST_ROBOTS
 from ratt_opt.attack.least_sets.search import LeastSetSearch
@@ -142,7 +142,7 @@ class SizeDecision:
         if len(self._order) > MOST_ROBOTS:
             return None, False
         must = sum(1 << k for k, robot in enumerate(self._order.tolist()) if robot in self._must)
-        search = VectorSearch(lists, vector, n_blinded=self._threat.n_blinded, must=must, threshold=threshold)
+        search = FamilySearch(lists, vector, n_blinded=self._threat.n_blinded, must=must, threshold=threshold)
         found = next(search.run(budget), None)
         return found, not search.is_open
 

@@ -14,7 +14,7 @@ from ratt_opt.attack.least_sets.exchanges import exchanged, weak_sets_of_size
 from ratt_opt.attack.least_sets.linear_descent import descended
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.least_sets.search import LeastSetSearch, least_value_bound
-from ratt_opt.attack.least_sets.underestimator import affine_minorant
+from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attackers.engine import NO_LISTS
@@ -52,7 +52,7 @@ def test_bounds_lists_and_exchanges_of_sets_of_one_size(name, dimension):
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(12))
-def test_minorants_lie_below_every_set(name, seed):
+def test_underestimators_lie_below_every_set(name, seed):
     """Also where robots repeat, see nothing, or see along one line only."""
     rng = np.random.default_rng(seed)
     n_robots, size = 9, int(rng.integers(1, 9))
@@ -60,15 +60,15 @@ def test_minorants_lie_below_every_set(name, seed):
     data[1][3] = data[1][2]
     data[1][4] = 0.0
     team = PackedTeam.planar(OBJECTIVES[name](*data), np.arange(n_robots))
-    minorant = affine_minorant(team.family(np.arange(n_robots), size), 2, np.inf)
+    underestimator = affine_underestimator(team.family(np.arange(n_robots), size), 2, np.inf)
     slack = [
-        team.value(chosen) - minorant.constant - minorant.scores[list(chosen)].sum()
+        team.value(chosen) - underestimator.constant - underestimator.scores[list(chosen)].sum()
         for chosen in combinations(range(n_robots), size)
     ]
     assert min(slack) >= -1e-9
     # Not vacuous on sensor data (rank-one information can defeat the outer polytopes; the bound is then weak).
     best = min(team.value(chosen) for chosen in combinations(range(n_robots), size))
-    bound = minorant.constant + np.sort(minorant.scores)[:size].sum()
+    bound = underestimator.constant + np.sort(underestimator.scores)[:size].sum()
     assert bound <= best + 1e-9
     assert seed % 2 == 0 or bound >= 0.3 * best - 1e-9
 

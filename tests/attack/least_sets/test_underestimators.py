@@ -1,4 +1,4 @@
-"""The minorant's parts: outer polytopes hold every set, and the ascent reaches the linear program's optimum."""
+"""The underestimator's parts: outer polytopes hold every set, and the ascent reaches the linear program's optimum."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scipy.optimize import approx_fprime, linprog
 from ratt_opt.attack.least_sets.outer_polytopes import outer_polytopes
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.least_sets.smoothed_dual import Multipliers, ProgramRecord
-from ratt_opt.attack.least_sets.underestimator import _program, affine_minorant
+from ratt_opt.attack.least_sets.underestimator import _program, affine_underestimator
 from ratt_opt.budget import Budget
 from ratt_opt.native.library import function
 from tests.strategies import OBJECTIVES, range_bearing
@@ -153,18 +153,18 @@ def test_an_ascent_ends_with_its_budget_and_keeps_what_it_has(seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_a_restricted_minorant_and_its_child_hold_below_every_set_left(name, seed):
     team, family = sensor_family(name, seed, size=4)
-    parent = affine_minorant(family, 2, np.inf)
+    parent = affine_underestimator(family, 2, np.inf)
     robot = int(np.argmax(parent.tension))
     it = np.arange(9) == robot
     others = np.flatnonzero(~it)
     for inside in (True, False):
         smaller = team.family(others, 4 - inside, [robot] if inside else [])
         restricted = parent.restricted(~it, it if inside else np.zeros_like(it))
-        child = affine_minorant(smaller, 3, np.inf, restricted)
+        child = affine_underestimator(smaller, 3, np.inf, restricted)
         for chosen in combinations(range(8), 4 - inside):
             value = team.value([*others[list(chosen)], robot][: 4 if inside else -1])
-            for minorant in (restricted, child):
-                assert minorant.constant + minorant.scores[list(chosen)].sum() <= value + 1e-9
+            for underestimator in (restricted, child):
+                assert underestimator.constant + underestimator.scores[list(chosen)].sum() <= value + 1e-9
 
 
 def test_the_record_has_the_layout_that_c_expects():
