@@ -45,7 +45,7 @@ BOUNDS: dict[str, Patches] = {
     "dual repair": ((FallingPrices, "fall", _gives(False)),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
     "outer polytopes of several robots": ((search, "HEAVY_ROBOTS", ((10**9, 1),)),),
-    "search of sets in depth": ((search, "WHOLE", 0), (search, "FEWEST", 1), (search, "MOST", 1)),
+    "search of sets in depth": ((search, "WHOLE", ((10**9, 0),)), (search, "FEWEST", 1), (search, "MOST", 1)),
     "packing": ((size_decision, "PACKED", -1),),
 }
 """What is put in the place of what, of attacks."""

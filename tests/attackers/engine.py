@@ -156,7 +156,7 @@ def searched(name: str, problem: Problem, plan: object, first: Attack | None = N
 
 NO_LISTS = {
     (size_vector_search, "MAYBE_SHORT"): -1,
-    (set_search, "WHOLE"): 0,
+    (set_search, "WHOLE"): ((10**9, 0),),
     (set_search, "FEWEST"): 1,
     (set_search, "MOST"): 1,
 }

@@ -33,9 +33,10 @@ if TYPE_CHECKING:
 
 __all__ = ["LeastSetSearch", "SetNode", "least_value_bound"]
 
-WHOLE = 40_000
-"""Partial sets of the search in depth before branch and bound begins: a tenth of a second or two. It decides 16 of 30
-robots in 5,000, 18 of 60 in 40,000, and 22 of 40 in 800,000, which branch and bound takes a third of the time for."""
+WHOLE, BY_AXIS = ((32, 200_000), (10**9, 40_000)), 10_000
+"""(Robots of a team up to, partial sets of the search in depth before branch and bound begins), and at most that many
+if one axis decides, as bounds are quick then. It decides 16 of 30 robots in 5,000, 21 in 100,000, 18 of 60 in 40,000,
+and 22 of 40 in 800,000, which branch and bound takes a third of the time for."""
 FEWEST, MOST = 1_000, 4_000
 """The same at a node before it is divided: more after successes, fewer after failures. With ten times as many, 22 of 40
 and 32 of 60 robots took twice the time."""
@@ -162,8 +163,10 @@ class LeastSetSearch:
 
     def _search_whole(self, sets: BoundedSets, budget: Budget) -> Found:
         """Search in depth without bounds; to the end if there are none."""
-        while sets.nodes < WHOLE or not self.team.is_planar:
-            found = sets.next(self.threshold, sets.nodes + WHOLE, budget)
+        most = next(nodes for robots, nodes in WHOLE if len(self.team.single) <= robots)
+        most = min(most, BY_AXIS) if self.team.is_by_axis else most
+        while sets.nodes < most or not self.team.is_planar:
+            found = sets.next(self.threshold, sets.nodes + most + 1, budget)
             if found is False:
                 self._whole = None
                 self._open.clear()

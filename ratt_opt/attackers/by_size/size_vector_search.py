@@ -51,7 +51,7 @@ If there are more, some make attacks, and the bound is that of the forced size."
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-FORCED_SHARE, FIRST_SHARE, ANNEALED_SHARE, PRICES_SHARE = 0.5, 0.15, 0.3, 0.5
+FORCED_SHARE, FIRST_SHARE, ANNEALED_SHARE, PRICES_SHARE = 0.5, 0.2, 0.3, 0.5
 """Of the time left: for the weakest set of the forced size; to test the attack in hand; for annealed attacks; for dual
 prices of robots and links."""
 

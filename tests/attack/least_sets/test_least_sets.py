@@ -115,7 +115,7 @@ def test_a_search_of_weak_sets_goes_on_where_it_ended(name, monkeypatch):
 @pytest.mark.parametrize("name", OBJECTIVES)
 def test_a_small_team_is_searched_whole_only_before_it_is_divided(name, whole, monkeypatch):
     """Searched again after that, from one of its parts, sets of the others would be lost."""
-    for limit, value in {"WHOLE": whole, "FEWEST": 1, "MOST": 1}.items():
+    for limit, value in {"WHOLE": ((10**9, whole),), "FEWEST": 1, "MOST": 1}.items():
         monkeypatch.setattr(module, limit, value)
     search, _ = searched_in_pieces(name, 12, 1.2, 1.2)
     assert not list(search.run(Budget()))
