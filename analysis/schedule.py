@@ -6,7 +6,6 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.attackers.by_size import size_vector_search
-from ratt_opt.attackers.by_size.family_prices import family_search
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 
 if TYPE_CHECKING:
@@ -16,7 +15,6 @@ TABLES: dict[str, Sequence[Any]] = {
     "criterion": CRITERION,
     "function": USER_FUNCTION,
     "sizes": size_vector_search.STAGES,
-    "families": (*family_search.FORCED, *family_search.FIRST_TURN, *family_search.LATER_TURNS),
 }
 
 

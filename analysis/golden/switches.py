@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
+from ratt_opt.attack.least_sets import search
 from ratt_opt.attack.pricing import Order
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
 from ratt_opt.attackers.by_prices.column_search import ColumnSearch
 from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
-from ratt_opt.attackers.by_size import packing
+from ratt_opt.attackers.by_size import size_decision
 from ratt_opt.attackers.staging import without_stages
-from ratt_opt.attackers.weakest_set import branch_and_bound
 from ratt_opt.solvers.maxmin.backjumps import Backjumps
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
@@ -36,7 +36,7 @@ def _gives(value: Any) -> Any:
 
 
 STAGE_NAMES = dict.fromkeys(
-    stage.name for kind in ("criterion", "sizes", "families") for stage in TABLES[kind] if stage.name not in NEEDED
+    stage.name for kind in ("criterion", "sizes") for stage in TABLES[kind] if stage.name not in NEEDED
 )
 BOUNDS: dict[str, Patches] = {
     "pricing: who is inside first": ((ColumnSearch, "orders", (Order.SENSES,)),),
@@ -44,13 +44,9 @@ BOUNDS: dict[str, Patches] = {
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
     "dual repair": ((FallingPrices, "fall", _gives(False)),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
-    "outer polytopes of several robots": ((branch_and_bound, "HEAVY_ROBOTS", ((10**9, 1),)),),
-    "enumeration of sets": (
-        (branch_and_bound, "AT_ONCE", 0),
-        (branch_and_bound, "SHORTEST_ENUMERATION", 1),
-        (branch_and_bound, "LONGEST_ENUMERATION", 1),
-    ),
-    "packing": ((packing, "LONGEST_PACKING", -1),),
+    "outer polytopes of several robots": ((search, "HEAVY_ROBOTS", ((10**9, 1),)),),
+    "search of sets in depth": ((search, "WHOLE", ((10**9, 0),)), (search, "FEWEST", 1), (search, "MOST", 1)),
+    "packing": ((size_decision, "PACKED", -1),),
 }
 """What is put in the place of what, of attacks."""
 PLAN_SWITCHES: dict[str, Patches] = {

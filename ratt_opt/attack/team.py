@@ -96,9 +96,13 @@ class Team:
         """Of all robots together."""
         return self.value(np.ones(self.robots, dtype=np.bool_))
 
+    def sums(self, chosen: BoolArray) -> FloatArray:
+        """(M, T) posterior information of the robots that are chosen (N,)."""
+        return np.ascontiguousarray(self._arrays[1] + self._arrays[2][chosen].sum(axis=0))
+
     def value(self, chosen: BoolArray) -> float:
         """Of the robots that are chosen (N,)."""
-        sums = np.ascontiguousarray(self._arrays[1] + self._arrays[2][chosen].sum(axis=0))
+        sums = self.sums(chosen)
         return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
 
     def all_values(self) -> FloatArray:

@@ -6,14 +6,15 @@ from functools import cached_property
 from math import isinf
 from typing import TYPE_CHECKING
 
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups, unprotected_bound
+from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
 from ratt_opt.attackers.forced_group import forced_group_bound
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.attackers.tree_bound import bound_by_trees
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
@@ -176,8 +177,6 @@ class CriterionAttack(TeamAttack):
 
     def size_vectors(self) -> Stop:
         """Families of groups by their sizes."""
-        from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
-
         assert self._team is not None
         return SizeVectorSearch(self.task, self._team).run()
 

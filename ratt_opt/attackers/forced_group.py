@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.least_sets.search import LeastSetSearch
 from ratt_opt.budget import Stop
 from ratt_opt.graph.largest_group.counting import counting_bound
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
@@ -14,8 +15,8 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["forced_group_bound", "forced_survivors"]
@@ -41,7 +42,7 @@ def forced_group_bound(task: AttackTask, team: PackedTeam | None, least: int = 0
 
     Relies on a non-decreasing objective. A group of k robots is worth at least its strongest robot, so
     at least the k-th smallest individual value; for two-dimensional targets the weakest set of k robots
-    is searched for (``weakest_set/branch_and_bound.py``).
+    is searched for (``attack/least_sets``).
     """
     task.budget.check()
     single = task.values.singletons()
@@ -50,9 +51,7 @@ def forced_group_bound(task: AttackTask, team: PackedTeam | None, least: int = 0
     if size:
         task.bracket.raise_lower(float(np.sort(single)[size - 1]))
     if team is not None and size:
-        from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch  # compiles
-
-        search = WeakestSetSearch(team, size, task.bracket.upper, task.bracket.lower)
+        search = LeastSetSearch(team, size, task.bracket.upper, task.bracket.lower)
         for found in search.run(task.budget):
             if found is not None:
                 search.threshold = min(search.threshold, team.value(found))

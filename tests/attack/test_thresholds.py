@@ -14,13 +14,14 @@ from ratt_opt.attack import exact_cover, groups, sets_below
 from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, Duals
 from ratt_opt.attack.exact_cover import ExactCover
+from ratt_opt.attack.families.disjoint_sets import ChoiceRecord, DisjointRecord
 from ratt_opt.attack.groups import BRANCH, GroupList
+from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.pricing import QuestionRecord
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
-from ratt_opt.attackers.by_size.low_lists import LowSetsRecord
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import TreeRecord
 from ratt_opt.graph.threat import Threat
@@ -28,6 +29,8 @@ from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from tests.strategies import random_problem
+
+RECORDS = AnnealRecord, QuestionRecord, SetQuestionRecord, ChoiceRecord, DisjointRecord
 
 
 def members(mask):
@@ -254,9 +257,9 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(7, np.int64)
+    sizes = np.zeros(9, np.int64)
     layout(sizes.ctypes.data)
-    records = [ctypes.sizeof(record) for record in (LowSetsRecord, AnnealRecord, QuestionRecord, TreeRecord)]
+    records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord)]
     assert sizes.tolist() == [ctypes.sizeof(TeamRecord), BRANCH.itemsize, exact_cover.LEVEL.itemsize, *records]
 
 

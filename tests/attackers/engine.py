@@ -13,6 +13,9 @@ import numpy as np
 
 import ratt_opt as ro
 from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.families.group_exchanges import GroupExchanges
+from ratt_opt.attack.least_sets import search as set_search
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.links import Links
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.team import Team
@@ -32,15 +35,12 @@ from ratt_opt.attackers.by_covers.cover_search import CoverSearch
 from ratt_opt.attackers.by_partition import settled_partitions
 from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_size import largest_first, packing, size_vector_search
-from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+from ratt_opt.attackers.by_size import size_decision, size_vector_search
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.few_attacks import try_every_attack
 from ratt_opt.attackers.link_choice import best_links
 from ratt_opt.attackers.staging import without_stages
 from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set import branch_and_bound
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
 from ratt_opt.setfunctions.metered import Metered
@@ -55,10 +55,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COMMAND",
+    "FAMILIES",
     "LARGE",
     "NO_LISTS",
     "NO_TABLES",
-    "PACK_AGAIN",
+    "PACKED",
     "WAYS",
     "AttackMemory",
     "Search",
@@ -155,19 +156,15 @@ def searched(name: str, problem: Problem, plan: object, first: Attack | None = N
 
 NO_LISTS = {
     (size_vector_search, "MAYBE_SHORT"): -1,
-    (size_vector_search, "LISTED_WHOLE"): 0,
-    (size_vector_search, "LONGEST_LIST"): -1,
-    (branch_and_bound, "AT_ONCE"): 0,
-    (branch_and_bound, "SHORTEST_ENUMERATION"): 1,
-    (branch_and_bound, "LONGEST_ENUMERATION"): 1,
+    (set_search, "WHOLE"): ((10**9, 0),),
+    (set_search, "FEWEST"): 1,
+    (set_search, "MOST"): 1,
 }
-"""No lists of sets and hardly any enumeration, so that bounds and branches decide."""
-PACK_AGAIN = {
-    (packing, "LONGEST_PACKING"): -1,
-    (largest_first, "FIRST_EFFORT"): 3,
-    (largest_first, "MORE_EFFORT"): 4,
-}
-"""No list for the other groups either: what is packed around a largest one is given up at first."""
+"""Hardly any search in depth of sets of one size, so that bounds and branches decide."""
+FAMILIES = {(size_decision, "PACKED"): -1}
+"""All families of a vector of sizes are searched at once."""
+PACKED = {(size_decision, "PACKED"): 100, (size_decision, "NODES_OF_SET"): 1, (size_decision, "NODES_OF_PACKING"): 1}
+"""The other groups are packed around each largest one."""
 SOON_OVER = tuple(
     replace(stage, max_nodes=20) if stage.name == "partitions" and stage.max_nodes else stage
     for stage in schedule.CRITERION
@@ -176,7 +173,7 @@ SOON_OVER = tuple(
 SHARP_SOON = {
     (settled_partitions, "PLAIN_NODES"): 3,
     (settled_partitions, "AXIS_NODES"): 3,
-    (settled_partitions, "SHARPER_AFTER"): (0, 5),
+    (settled_partitions, "SHARPER_AFTER"): 0,
 }
 NO_TABLES = {
     (all_sets, "LARGEST_VALUED"): 0,
@@ -201,7 +198,9 @@ WAYS = {
     "dual prices": {(criterion_attack, "MANY_GROUPS"): 0},
     "dense": {(criterion_attack, "DENSE"): 0.0},
     "dense, dual prices": {(criterion_attack, "DENSE"): 0.0, (criterion_attack, "MANY_GROUPS"): 0},
-    "no lists": NO_LISTS | PACK_AGAIN | {(size_vector_search, "ALIKE"): 0.0},
+    "no lists": NO_LISTS | {(size_vector_search, "ALIKE"): 0.0},
+    "families": FAMILIES,
+    "packed": PACKED,
 }
 """Which stages decide, where it is not what the team is like that says so."""
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import BoolArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 
 __all__ = ["CoverSearch"]
 

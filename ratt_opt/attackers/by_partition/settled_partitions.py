@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, MinorantsOfSizes, least_in_groups
-from ratt_opt.attackers.weakest_set.branch_and_bound import WeakestSetSearch
-from ratt_opt.attackers.weakest_set.enumeration import AffineBound, Enumeration
-from ratt_opt.attackers.weakest_set.exchanges import exchanged
+from ratt_opt.attack.least_sets.exchanges import exchanged
+from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.least_sets.sets_of_size import BoundedSets
+from ratt_opt.attackers.by_partition.group_floors import SHARPER_AFTER, UnderestimatorsOfSizes, least_in_groups
 from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.separable_groups import SeparableGroups
 
@@ -43,10 +43,10 @@ class GroupSurvivors:
 
     team: PackedTeam
     must: frozenset[int]
-    minorants: MinorantsOfSizes = field(init=False)
+    underestimators: UnderestimatorsOfSizes = field(init=False)
 
     def __post_init__(self) -> None:
-        self.minorants = MinorantsOfSizes(self.team)
+        self.underestimators = UnderestimatorsOfSizes(self.team)
 
     def by_exchanges(self, group: frozenset[int], size: int) -> frozenset[int] | None:
         """A weak subset: no claim; ``None`` where the size leaves no room for protected robots."""
@@ -69,22 +69,21 @@ class GroupSurvivors:
         if size in {len(fixed), len(group)}:
             return None  # only one subset, looked at already
         free = np.array(sorted(group - fixed, key=lambda i: (-self.team.single[i], i)), dtype=np.int64)
-        left, minorant = size - len(fixed), self.minorants.of(size)
-        if minorant is None:
-            sets = Enumeration(self.team, free, fixed, left)
-        else:  # the team's minorant of this size holds for the subsets of every group
-            constant = minorant.constant + float(minorant.scores[sorted(fixed)].sum())
-            affine = AffineBound(constant, minorant.scores[free])
-            sets = Enumeration.surest_first(self.team, free, fixed, left, affine)
+        left, underestimator = size - len(fixed), self.underestimators.of(size)
+        scores = None
+        if underestimator is not None:  # the team's underestimator of this size holds for the subsets of every group
+            constant = underestimator.constant + float(underestimator.scores[sorted(fixed)].sum())
+            scores = constant, underestimator.scores[free]
+        sets = BoundedSets(self.team.native(), free, fixed, left, threshold, scores, in_order=True)
         most = AXIS_NODES if self.team.is_by_axis else PLAIN_NODES
-        while not sets.finished and sets.nodes < most:
-            found = sets.next_within(threshold, most - sets.nodes, budget)
+        while sets.nodes < most:
+            found = sets.next(threshold, most, budget)
+            if found is False:
+                return None
             if found is not None:
                 return found
-        if sets.finished:
-            return None
         outside = frozenset(range(len(self.team.single))) - group
-        search = WeakestSetSearch(self.team, size, threshold, inside=fixed, outside=outside)
+        search = LeastSetSearch(self.team, size, threshold, inside=fixed, outside=outside)
         return next((found for found in search.run(budget) if found is not None), None)
 
 
@@ -105,8 +104,9 @@ class SettledPartitions:
         self._search = PartitionSearch(groups, need)
         self._sizes = np.bitwise_count(groups.masks).astype(np.int64)
         self._spent: dict[int, int] = {}
-        self._steps: dict[int, int] = {}
-        """By size of the sets: nodes of searches, and steps that were taken to sharper minorants."""
+        """Nodes of searches by size of the sets."""
+        self._sharpened: set[int] = set()
+        """Sizes whose underestimator was sharpened."""
         self._chosen: list[int] | None = None
         self._weak: dict[int, frozenset[int]] = {}
         """A weak set of a group, the largest one known."""
@@ -164,17 +164,16 @@ class SettledPartitions:
         return False
 
     def _is_sharpened(self, size: int, budget: Budget) -> bool:
-        """Where searches have taken long, raise the needs of all groups by a sharper minorant of the sets of a size."""
-        step = self._steps.get(size, 0)
-        if step == len(SHARPER_AFTER) or self._spent.get(size, 0) < SHARPER_AFTER[step]:
+        """If searches have taken long, raise the needs of all groups by a sharper underestimator of sets of a size."""
+        if size in self._sharpened or self._spent.get(size, 0) < SHARPER_AFTER:
             return False
-        minorant = self._survivors.minorants.sharper(size, self._threshold, step, budget)
-        self._steps[size] = step + 1
-        if minorant is None:
+        underestimator = self._survivors.underestimators.sharper(size, self._threshold, budget)
+        self._sharpened.add(size)
+        if underestimator is None:
             return False
         blinded = self._sizes - size
         rows = np.flatnonzero((blinded >= 0) & (blinded <= self._n_blinded))
-        rows = rows[least_in_groups(minorant, self._groups, rows, size) >= self._threshold]
+        rows = rows[least_in_groups(underestimator, self._groups, rows, size) >= self._threshold]
         more = np.where(blinded[rows] < self._n_blinded, blinded[rows] + 1, IMPOSSIBLE)
         self.need[rows] = np.maximum(self.need[rows], more)
         return True

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.least_sets.search import least_value_bound
 from ratt_opt.attackers.by_partition.group_floors import least_in_groups
 from ratt_opt.attackers.by_partition.settled_partitions import GroupSurvivors, SettledPartitions
-from ratt_opt.attackers.weakest_set.branch_and_bound import bound_family
 from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.separable_groups import SeparableGroups
 
 __all__ = ["SplitSearch"]
@@ -58,7 +58,7 @@ class SplitSearch:
         return Stop.CLOSED
 
     def _first_floors(self) -> FloatArray:
-        """Values of whole groups, and minorants over the team for those with blinded robots."""
+        """Values of whole groups, and underestimators over the team for those with blinded robots."""
         floors = np.full((len(self._sizes), self.n_blinded + 1), -np.inf)
         floors[:, 0] = self._whole()
         for size in range(self.n_robots - 1, 0, -1):
@@ -82,10 +82,9 @@ class SplitSearch:
 
     def _size_floor(self, rows: IntArray, size: int) -> FloatArray:
         """No ``size`` robots of the groups ``rows`` are worth less."""
-        if self.team.has_minorants:
-            return least_in_groups(self.survivors.minorants.rough(size), self.groups, rows, size)
-        family = self.team.family(np.arange(self.n_robots), size)
-        return np.full(len(rows), bound_family(family, np.inf, None, self.task.budget).bound)
+        if self.team.has_underestimators:
+            return least_in_groups(self.survivors.underestimators.rough(size), self.groups, rows, size)
+        return np.full(len(rows), least_value_bound(self.team, size))
 
     def _reach(self, threshold: float) -> bool:
         """Find an attack below the threshold, or prove that there is none."""

@@ -85,6 +85,11 @@ class ThresholdDecision:
             if not self._links.seeing[i]:
                 self.prices.add([KnownGroup(robots=alone, need=1, value=0.0)])
 
+    @property
+    def least(self) -> float:
+        """Nothing is known beside thresholds."""
+        return -np.inf
+
     def learn(self, partition: Partition) -> None:
         """Add the groups of an attack to the program."""
         for label in np.unique(partition.group):

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from functools import partial
-from math import isinf
-from typing import TYPE_CHECKING
+from math import inf, isinf
+from typing import TYPE_CHECKING, Protocol
 
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attackers.by_prices.answer import Answer, Threshold
@@ -56,17 +56,45 @@ RESOLUTION = 0.05
 """Share of the bracket below an open threshold that is not worth another bisection: more effort is."""
 
 
+class Decision(Protocol):
+    """Decides thresholds for one plan."""
+
+    @property
+    def least(self) -> float:
+        """No attack leaves less, whatever became of thresholds."""
+        ...
+
+    def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
+        """Decide one threshold; ``OPEN`` after so many nodes."""
+        ...
+
+    def learn(self, partition: Partition) -> None:
+        """Take note of the groups of an attack."""
+        ...
+
+
 class PriceSearch:
     """Closes the task's bracket for criteria with compiled code; relies on a non-decreasing objective.
 
     A node is a node of an enumeration.
+
+    ``decision`` : of thresholds, by default by dual prices; ``efforts`` : nodes of a threshold at first, and the most,
+    after which the search ends; ``anneals`` : whether attacks are annealed between thresholds
     """
 
-    def __init__(self, task: AttackTask, plan: Plan) -> None:
+    def __init__(
+        self,
+        task: AttackTask,
+        plan: Plan,
+        decision: Decision | None = None,
+        efforts: tuple[int, float] = (FIRST_EFFORT, inf),
+        *,
+        anneals: bool = True,
+    ) -> None:
         self.task = task
         self._starts = Starts(plan.team, plan.links, plan.threat)
-        self._decision = ThresholdDecision(plan)
-        self._effort, self._share = FIRST_EFFORT, 0.5
+        self._decision: Decision = decision or ThresholdDecision(plan)
+        (self._effort, self._last_effort), self._share, self._anneals = efforts, 0.5, anneals
         self._took = 0.0
         """Seconds of the last refutation."""
         self._unknown: float | None = None
@@ -84,6 +112,8 @@ class PriceSearch:
         while not bracket.is_closed:
             threshold = self._threshold(self._unknown)
             if threshold is None:
+                if self._effort > self._last_effort:
+                    return Stop.HEURISTIC
                 self._effort, self._unknown = HARDER * self._effort, None
                 self._anneal(FURTHER_STARTS, _annealing_part(budget))
                 continue
@@ -92,6 +122,7 @@ class PriceSearch:
                 answer = self._decision.decide(threshold, part, part.nodes_left(self._effort))
                 if answer.verdict is Threshold.REFUTED:
                     bracket.raise_lower(threshold)
+            bracket.raise_lower(self._decision.least)
             spent = budget.nodes - before
             if answer.verdict is Threshold.REFUTED:
                 self._took = budget.elapsed - began
@@ -127,7 +158,7 @@ class PriceSearch:
     def _anneal(self, starts: int, part: Budget) -> None:
         """So many starts, and on until ``PATIENCE`` times as many as the best attack took."""
         bracket, done = self.task.bracket, 0
-        while done < starts and not part.is_over:
+        while self._anneals and done < starts and not part.is_over:
             before = bracket.upper
             self._take(self._starts.next, part)
             done += 1

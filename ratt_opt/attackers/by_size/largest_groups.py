@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
-from ratt_opt.attackers.by_size.vector_search import LowLists
+from ratt_opt.attack.families.family_search import SetLists
+from ratt_opt.attack.families.set_lists import MOST_ROBOTS
 from ratt_opt.graph.link_scores import scoring_group
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.possible_sizes import PossibleSizes
 
 __all__ = ["WeakSets", "largest_groups_bound", "weak_sets"]
@@ -78,7 +78,7 @@ def weak_sets(task: AttackTask, team: PackedTeam, possible: PossibleSizes) -> We
     """
     if task.problem.n_robots > MOST_ROBOTS:
         return None
-    lists = LowLists(team, np.argsort(-team.single, kind="stable"))
+    lists = SetLists(team, np.argsort(-team.single, kind="stable"))
     sets: WeakSets = []
     for size in range(possible.forced, possible.n_seeing + 1):
         low = lists.of(size, task.bracket.goal, task.budget)

@@ -9,15 +9,17 @@ from dataclasses import replace
 from math import comb
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.by_size.largest_groups import largest_groups_bound, weak_sets
+from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.task import AttackBracket
 from ratt_opt.graph.link_scores import link_scores
 from ratt_opt.graph.possible_sizes import PossibleSizes
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.by_size.largest_groups import WeakSets
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
@@ -84,16 +86,12 @@ class PossibleGroups:
         if self._team is not None:
             _sizes_bound(task, self._team, vectors)
             if lists_sets:
-                from ratt_opt.attackers.by_size.largest_groups import weak_sets  # compiles
-
                 self._possible, self._sets = possible, weak_sets(task, self._team, possible)
 
     def ask(self, task: AttackTask) -> None:
         """Raise the lower end by asking of each weak set whether an attack can leave it."""
         assert self._possible is not None
         assert self._sets is not None
-        from ratt_opt.attackers.by_size.largest_groups import largest_groups_bound  # compiles
-
         largest_groups_bound(task, self._possible, self._sets)
 
 
@@ -110,8 +108,6 @@ def _search(
     task: AttackTask, team: PackedTeam, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
 ) -> None:
     """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
-    from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch  # compiles
-
     try:
         SizeVectorSearch(replace(task, problem=relaxed, bracket=start, records=[]), team, vectors).run()
     finally:

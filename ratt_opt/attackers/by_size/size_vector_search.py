@@ -1,28 +1,27 @@
-"""The exact attacker of large teams on a complete graph, two-dimensional targets.
+"""The exact attacker of large teams on a complete graph.
 
-Outcomes are told apart by their group sizes (``graph/survivor_sizes.py``). Exchanges find a weak family of groups of
-each vector of sizes; then vector by vector, most promising first, all families are decided (``vector_search.py``)
-where the sets of a size can be listed.
-
-Elsewhere the sets of each size of the largest group are searched (``largest_first.py``). Where several groups are about
-alike, or there are too many vectors, ``family_prices`` bounds all families at once.
+Outcomes are told apart by their group sizes (``graph/survivor_sizes.py``). Exchanges find weak families of groups of
+the vectors of sizes. Then thresholds are decided by all vectors (``size_decision.py``): first whether any attack leaves
+less than the one in hand, then lower ones. If there are too many vectors, the weakest set of the forced size is a
+bound, and attacks are annealed.
 """
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from itertools import islice
 from math import comb
-from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.family_prices.family_search import FamilySearch
-from ratt_opt.attackers.by_size.family_prices.threshold_bound import LARGEST
-from ratt_opt.attackers.by_size.largest_first import LargestFirst
-from ratt_opt.attackers.by_size.low_lists import MOST_ROBOTS
-from ratt_opt.attackers.by_size.vector_search import LowLists, VectorSearch
+from ratt_opt.attack.families.family_search import SetLists
+from ratt_opt.attack.families.set_lists import MOST_ROBOTS
+from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.links import Links
+from ratt_opt.attack.pricing import Plan
+from ratt_opt.attackers.by_prices.answer import Threshold
+from ratt_opt.attackers.by_prices.price_search import PriceSearch
+from ratt_opt.attackers.by_size.size_decision import SizeDecision
 from ratt_opt.attackers.by_size.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attackers.staging import Stage, run_stages
 from ratt_opt.budget import Stop
@@ -31,40 +30,40 @@ from ratt_opt.graph.survivor_sizes import (
     FIRST,
     first_non_dominated_sizes,
     forced_group_size,
-    iterate_non_dominated_sizes,
     sizes_of_largest,
 )
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
-    from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
+    from ratt_opt.attack.families.group_exchanges import GroupExchanges
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = FIRST - 1
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
-Where there are more, some make attacks, and the bound is that of the forced size and of prices."""
-
-PRICED_SIZES, PRICED_SHARE = 10_000_000, 0.1
-"""Vectors that prices know at most, times robots, and of the time left, for listing them: a hundred thousand take a
-second and some tens of MiB. Beyond, links are counted. At 100 robots (28, 4066) has 8,413, (0, 4066) 97,873, (0, 4702)
-more than 240,000."""
+If there are more, some make attacks, and the bound is that of the forced size."""
 
 OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks where there are too many."""
 
-LISTED_SHARE, LARGEST_SHARE, NEARLY, ALIKE = 0.4, (0.05, 0.1), 0.02, 0.8
-"""Of the time left, for families whose sets can be listed, where these are not all, and for a first search by the
-largest group, before prices of families; and the value of the second best group of an attack, over the best, from which
-prices are asked: below, it is the largest group that decides."""
+FORCED_SHARE, FIRST_SHARE, ANNEALED_SHARE, PRICES_SHARE = 0.5, 0.2, 0.3, 0.5
+"""Of the time left: for the weakest set of the forced size; to test the attack in hand; for annealed attacks; for dual
+prices of robots and links."""
 
-LATER_SHAKES = 400
-"""Shakes of vectors that the bounds leave open: rather than going through families of an incumbent too strong."""
+FIRST_EFFORT, EFFORTS = 200_000, (100_000, 10**8)
+"""Nodes to test the attack in hand; of other thresholds, at first and at last. All attacks on 30 robots of the corpus
+close with the first, in 0.3 s."""
+
+STARTS, ALIKE, SMALL = 6, 0.8, 8
+"""Annealed attacks if several groups are about alike, which is if the second best is worth that share of the best. And
+groups of at most one robot in that many are small. Then dual prices come before vectors of sizes, if
+nobody is blinded: at 40 robots (0, 741), max-eigenvalue, they leave 2 % after 5 s instead of 33 %. With 14 of 60 robots
+blinded they prove nothing in that time."""
 
 MAYBE_SHORT = 2 * 10**8
 """Sets of the smallest largest group of which those below an attack may be listed in no time: all sizes of 30 robots.
@@ -93,12 +92,13 @@ class SizeVectorSearch:
         self.vectors = list(allowed[: MOST_VECTORS + 1])
         self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
         self.weak = WeakFamilies(task, team)
-        self.lists = LowLists(team, np.argsort(-team.single, kind="stable"))
-        self.bounds: dict[Sizes, float] = dict.fromkeys(self.vectors, -np.inf)
-        """What the families of each vector that is open are worth at least."""
+        self.lists = SetLists(team, np.argsort(-team.single, kind="stable"))
         self.families: list[GroupExchanges] = []
         self._is_about_families = False
-        self._by_largest = LargestFirst(task, team, self._accept)
+        plan = Plan(team.native(), Links.of(self.threat), self.threat)
+        self._decision = SizeDecision(team, self.threat, self.vectors)
+        self._sizes = PriceSearch(task, plan, self._decision, EFFORTS, anneals=vectors is None)
+        self._prices = PriceSearch(task, plan)
 
     def run(self) -> Stop:
         """Search every vector; the bracket is valid whenever this stops."""
@@ -118,21 +118,22 @@ class SizeVectorSearch:
         """Too many vectors of sizes."""
         return not self.has_all_vectors
 
-    def lists_in_share(self) -> bool:
-        """Several groups about alike, more than 34 robots."""
-        return self.is_about_families() and len(self.team.single) > LISTED_WHOLE
+    def is_limited(self) -> bool:
+        """Limit of time."""
+        return bool(np.isfinite(self.task.budget.seconds_left))
 
-    def lists_at_once(self) -> bool:
-        """Vectors can be searched one by one; one group decides, or at most 34 robots."""
-        return self.has_all_vectors and not self.lists_in_share()
+    def is_unlimited(self) -> bool:
+        """No limit of time."""
+        return not self.is_limited()
 
     def is_about_families(self) -> bool:
         """Several groups about alike, limit of time."""
         return self._is_about_families and self.has_all_vectors
 
-    def is_nearly_closed(self) -> bool:
-        """Several groups about alike, at most 2 % left."""
-        return self.is_about_families() and self.bracket.upper - self.bracket.lower <= NEARLY * abs(self.bracket.upper)
+    def has_small_groups(self) -> bool:
+        """Several groups about alike, none need have more than an eighth of the team, nobody blinded, limit of time."""
+        smallest = min(sizes[0] for sizes in self.vectors)
+        return self.is_about_families() and SMALL * smallest <= len(self.team.single) and not self.threat.n_blinded
 
     # -- the stages ----------------------------------------------------------------------------------------------
 
@@ -148,13 +149,50 @@ class SizeVectorSearch:
         self._accept(weakest_of(self.families))
         self._is_about_families = self._are_alike(self.families)
 
-    def families_without_vectors(self) -> Stop:
-        """Annealed attacks, dives and dual prices of families, without vectors."""
-        return FamilySearch(self.task, self.team, self.families, self._priced_vectors()).run()
+    def weakest_of_forced_size(self) -> None:
+        """Some group has the forced size at least, so the weakest set of that size is a bound."""
+        size = forced_group_size(len(self.team.single), self.threat.n_blinded, self.threat.alpha_c)
+        search = LeastSetSearch(self.team, size, self.bracket.goal, self.bracket.lower)
+        for found in search.run(self.task.budget):
+            if found is not None:
+                search.threshold = min(search.threshold, self.team.value(found))
+            self.bracket.raise_lower(min(search.lower, search.threshold))
+        self.bracket.raise_lower(search.threshold)
 
-    def narrow_families(self) -> None:
-        """Annealed attacks, dives and dual prices of the vectors that are open, as long as they prove something."""
-        FamilySearch(self.task, self.team, self.families, list(self.bounds)).narrow()
+    def test_attack(self) -> None:
+        """Whether any attack leaves less than the one in hand, by vectors of sizes."""
+        while not self.bracket.is_closed:
+            try:
+                answer = self._decision.decide(self.bracket.goal, self.task.budget, FIRST_EFFORT)
+            finally:
+                self.bracket.raise_lower(self._decision.least)
+            if answer.verdict is Threshold.REFUTED:
+                self.bracket.raise_lower(self.bracket.goal)
+            elif answer.partition is None or not self.task.offer(answer.partition.attack(self.threat)):
+                return
+
+    def thresholds(self) -> Stop:
+        """Thresholds by vectors of sizes, and annealed attacks."""
+        self._sizes.task = self.task
+        return self._sizes.run()
+
+    def dual_prices(self) -> None:
+        """Dual prices of robots and links, by thresholds."""
+        self._prices.task = self.task
+        self._prices.run()
+
+    def anneal(self) -> None:
+        """Annealed attacks, which change sizes and robots together."""
+        self._sizes.task = self.task
+        self._sizes.anneal(STARTS)
+
+    def anneal_on(self) -> None:
+        """Annealed attacks as long as there is time."""
+        self._sizes.task = self.task
+        while True:
+            self._sizes.anneal(STARTS)
+            if not np.isfinite(self.task.budget.seconds_left):
+                return
 
     def _are_alike(self, families: list[GroupExchanges]) -> bool:
         """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
@@ -163,16 +201,6 @@ class SizeVectorSearch:
             return False
         second, best = sorted([0.0, *map(self.team.value, weakest_of(families))])[-2:]
         return second >= ALIKE * best
-
-    def _priced_vectors(self) -> list[Sizes] | None:
-        """All vectors, or ``None`` where they are too many for prices to know them."""
-        n_robots, part, vectors = len(self.team.single), self.task.budget.part(PRICED_SHARE), list(self.vectors)
-        every = self._given or iterate_non_dominated_sizes(n_robots, self.threat.n_blinded, self.threat.alpha_c)
-        for sizes in islice(every, len(vectors), None) if n_robots <= LARGEST else ():
-            if len(vectors) >= PRICED_SIZES // n_robots or part.is_over:
-                return None
-            vectors.append(sizes)
-        return vectors if n_robots <= LARGEST else None
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""
@@ -204,90 +232,21 @@ class SizeVectorSearch:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
         return self.task.offer(Attack(*realise(self.threat, outcome)))
 
-    # -- vectors whose sets can be listed ----------------------------------------------------------------------
-
-    def decide_listed(self) -> None:
-        """Decide the families of every vector, as far as its sets can be listed."""
-        if len(self.team.single) > MOST_ROBOTS:
-            return
-        families, lists = self.families, self.lists
-        must = sum(1 << k for k, robot in enumerate(lists.order.tolist()) if robot in self.threat.protected_robots)
-        searches = {
-            sizes: VectorSearch(lists, sizes, n_blinded=self.threat.n_blinded, must=must, threshold=self.bracket.goal)
-            for sizes in dict.fromkeys([*(family.sizes for family in families), *self.vectors])
-            if self._is_listed(sizes[0])
-        }
-        self._bound_all(lists, min(sizes[0] for sizes in self.vectors))
-        for sizes, search in searches.items():
-            if sizes not in self.bounds:
-                break
-            with self._noting(sizes, search):
-                search.bound(self.task.budget)
-        for family in families:
-            if family.sizes in searches and family.sizes in self.bounds:
-                self.task.budget.spend()
-                family.shake(LATER_SHAKES, self.task.budget)
-                if family.value < self.bracket.goal:
-                    self._accept(family.groups())
-        order = [family.sizes for family in sorted(families, key=attrgetter("value"))]
-        for sizes in dict.fromkeys([*order, *searches]):
-            if sizes not in searches or sizes not in self.bounds:
-                continue
-            with self._noting(sizes, searches[sizes]) as search:
-                search.threshold = self.bracket.goal
-                for groups in search.run(self.task.budget):
-                    self._accept(groups)
-                    search.threshold = min(search.threshold, self.bracket.goal)
-
-    def _bound_all(self, lists: LowLists, smallest: int) -> None:
-        """Every family has a group that holds a set of the smallest size that a largest group may have."""
-        low = lists.of(smallest, self.bracket.goal, self.task.budget) if self._is_listed(smallest) else None
-        if low is not None:
-            weakest = float(low.values.min(initial=self.bracket.goal))
-            self.bounds = {sizes: max(bound, weakest) for sizes, bound in self.bounds.items()}
-            self._raise_lower()
-            if weakest >= self.bracket.goal:
-                self.bounds.clear()
-
-    @contextmanager
-    def _noting(self, sizes: Sizes, search: VectorSearch) -> Iterator[VectorSearch]:
-        """Whatever happens, what the search has proved counts."""
-        try:
-            yield search
-        finally:
-            self.bounds[sizes] = max(self.bounds[sizes], search.lower)
-            self._raise_lower()
-            if self.bounds[sizes] >= self.bracket.goal:
-                del self.bounds[sizes]
-
     def _may_be_short(self, size: int) -> bool:
         n_robots = len(self.team.single)
         return n_robots <= MOST_ROBOTS and comb(n_robots, size) <= MAYBE_SHORT
-
-    def _is_listed(self, largest: int) -> bool:
-        n_robots = len(self.team.single)
-        return n_robots <= LISTED_WHOLE or comb(n_robots, largest) <= LONGEST_LIST
-
-    def _raise_lower(self) -> None:
-        self.bracket.raise_lower(min([self.bracket.goal, *self.bounds.values()]))
-
-    def decide_by_largest(self) -> Stop:
-        """The vectors that are open, by their largest group."""
-        self.vectors = list(self.bounds)
-        return self._by_largest.run(self.vectors, self.task.budget)
 
 
 STAGES: tuple[Stage[SizeVectorSearch], ...] = (
     Stage("nobody left", SizeVectorSearch.blind_everyone, SizeVectorSearch.blinds_everyone),
     Stage("least sets", SizeVectorSearch.list_least, SizeVectorSearch.has_few_vectors),
     Stage("exchanges of families", SizeVectorSearch.exchange),
-    Stage("families", SizeVectorSearch.families_without_vectors, SizeVectorSearch.has_many_vectors),
-    Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_in_share, LISTED_SHARE),
-    Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_at_once),
-    Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.is_about_families, LARGEST_SHARE[0]),
-    Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.is_nearly_closed, LARGEST_SHARE[1]),
-    Stage("families", SizeVectorSearch.narrow_families, SizeVectorSearch.is_about_families),
-    Stage("listed sets", SizeVectorSearch.decide_listed, SizeVectorSearch.lists_in_share),
-    Stage("largest group", SizeVectorSearch.decide_by_largest, SizeVectorSearch.has_few_vectors),
+    Stage("forced size", SizeVectorSearch.weakest_of_forced_size, SizeVectorSearch.has_many_vectors, FORCED_SHARE),
+    Stage("annealed attacks", SizeVectorSearch.anneal_on, SizeVectorSearch.has_many_vectors),
+    Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_limited, FIRST_SHARE),
+    Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_unlimited),
+    Stage("annealed attacks", SizeVectorSearch.anneal, SizeVectorSearch.is_about_families, ANNEALED_SHARE),
+    Stage("dual prices", SizeVectorSearch.dual_prices, SizeVectorSearch.has_small_groups, PRICES_SHARE),
+    Stage("thresholds", SizeVectorSearch.thresholds),
 )
 """Of an attack on a complete graph, by vectors of sizes."""

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges
-from ratt_opt.attackers.weakest_set.exchanges import AT_ONCE, weak_sets_of_size
-from ratt_opt.attackers.weakest_set.linear_descent import descended
+from ratt_opt.attack.families.group_exchanges import GroupExchanges
+from ratt_opt.attack.least_sets.exchanges import AT_ONCE, weak_sets_of_size
+from ratt_opt.attack.least_sets.linear_descent import descended
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attackers.task import AttackTask
-    from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 

@@ -11,10 +11,12 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[0] = sizeof(Team);
     sizes[1] = sizeof(Branch);
     sizes[2] = sizeof(Level);
-    sizes[3] = sizeof(LowSets);
-    sizes[4] = sizeof(Anneal);
-    sizes[5] = sizeof(Pricing);
-    sizes[6] = sizeof(GroupTree);
+    sizes[3] = sizeof(Anneal);
+    sizes[4] = sizeof(Pricing);
+    sizes[5] = sizeof(SetQuestion);
+    sizes[6] = sizeof(Choice);
+    sizes[7] = sizeof(DisjointSets);
+    sizes[8] = sizeof(GroupTree);
 }
 
 /* Those of the searches for best plans. */

@@ -28,18 +28,6 @@ typedef struct {
     int64_t unit, blinding;
 } Duals;
 
-/* A list of the sets of `size` robots that are worth less than `threshold` and whose costs are less than `room`. */
-typedef struct {
-    double threshold, room;
-    int64_t size, capacity;            /* of `sets` and `values` */
-    const double *costs;               /* (robots) */
-    int64_t *position, *counters;      /* (size + 1) next robot at each depth; depth, sets found */
-    double *sums;                      /* (size + 1, targets, entries) */
-    double *worths, *smallest, *spent; /* (size + 1, robots + 1) twice; (size + 1) costs of the robots chosen */
-    uint64_t *sets;                    /* bit 0 is the last robot */
-    double *values;
-} LowSets;
-
 /* An annealed attack; arcs of robot i are start[i]..start[i + 1] - 1. */
 typedef struct {
     const double *table;               /* values of all sets, or NULL */
@@ -88,5 +76,44 @@ typedef struct {
 
 /* An open search. */
 typedef struct Search Search;
+
+/* Sets of `size` robots that are worth less than `threshold` with what `start` tells, and cost less than `limit`. */
+typedef struct {
+    const Team *team;
+    double threshold, level, limit; /* its level, rounding included */
+    int64_t size;
+    const double *start;            /* (targets, entries) the prior's information and that of robots chosen already */
+    int64_t candidates, in_order;   /* are candidates decided in the order given? */
+    const int64_t *order;           /* (candidates) robots that may be in a set, distinct */
+    const double *costs;            /* (robots), or NULL */
+} SetQuestion;
+
+/* A level of the search of disjoint sets. */
+typedef struct {
+    uint64_t decided, rest;
+    int64_t next, chosen;
+    double cost, value;      /* of the sets so far: costs, the largest value */
+    int32_t *counts;         /* (classes) sets to come */
+    int32_t option, places, kept, unused; /* class tried, -1 before the first; places in the rest, and those not blinded */
+} Choice;
+
+/* Disjoint sets from lists, by their first robots and cheapest first: those of class c and robot r are
+   starts[c * (robots + 1) + r].. up to the next start. */
+typedef struct {
+    int64_t robots, classes, rest, n_blinded; /* robots in no set; of these, blinded */
+    const uint64_t *masks;
+    const double *values, *costs;
+    const int64_t *starts;
+    const double *rest_costs, *single;        /* (robots) */
+    uint64_t must;                            /* robots that cannot be blinded */
+    double threshold, room;
+    int64_t remembered, depth, found;         /* remembered: a power of 2 */
+    uint64_t *memory;                         /* (remembered, 2) */
+    Choice *stack;                            /* (robots + 2) */
+    int64_t *best;
+} DisjointSets;
+
+/* An open search of sets. */
+typedef struct SetSearch SetSearch;
 
 #endif

@@ -64,10 +64,10 @@ def test_value_is_the_definition_s(seed, search):
     ],
 )
 def test_agrees_with_the_threshold_search(seed, plain, sharper, search, monkeypatch):
-    """Nine and ten robots: subsets found by plain enumeration, all by branch and bound, with sharp minorants soon."""
+    """Nine and ten robots: subsets found in depth, all by branch and bound, with sharp underestimators soon."""
     monkeypatch.setattr(settled_partitions, "PLAIN_NODES", plain)
     monkeypatch.setattr(settled_partitions, "AXIS_NODES", plain)
-    monkeypatch.setattr(settled_partitions, "SHARPER_AFTER", (sharper // 2, sharper))
+    monkeypatch.setattr(settled_partitions, "SHARPER_AFTER", sharper)
     if not plain:
         go(monkeypatch, NO_LISTS)
     problem, elements = team_problem(1000 + seed, 9 + seed % 2, density=(0.2, 0.35, 0.6)[seed // 3 % 3])

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_size import low_lists, size_vector_search, vector_search, weak_families
+from ratt_opt.attack.families import family_search, set_lists
+from ratt_opt.attackers.by_size import size_vector_search, weak_families
 from ratt_opt.budget import Budget
-from tests.attackers.engine import NO_LISTS, PACK_AGAIN, searched
+from tests.attackers.engine import FAMILIES, NO_LISTS, PACKED, searched
 from tests.brackets import attained, attains, worst_value
 from tests.interrupts import interrupted_at
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
@@ -33,20 +34,22 @@ def run_large(problem, elements, max_nodes=None):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("way", ["at once", "lists", "divided", "branches", "packed"])
+@pytest.mark.parametrize("way", ["at once", "families", "divided", "branches", "packed"])
 def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
     """By one list; by lists and a search for disjoint sets; by divided nodes and bounds alone; by branches with hardly
-    any list; by packing the largest of the other groups first."""
-    if way == "lists":
+    any search in depth; by packing the other groups around each largest one."""
+    if way != "at once":
         monkeypatch.setattr(size_vector_search, "MAYBE_SHORT", -1)
     if way == "branches":
         go(monkeypatch, NO_LISTS)
     if way == "packed":
-        go(monkeypatch, NO_LISTS, PACK_AGAIN)
+        go(monkeypatch, NO_LISTS, PACKED)
+    if way in {"families", "divided"}:
+        go(monkeypatch, FAMILIES)
     if way == "divided":
-        monkeypatch.setattr(vector_search, "LOOKS", 0)
-        monkeypatch.setattr(vector_search, "FEW_CHOICES", seed % 3)
-        monkeypatch.setattr(vector_search, "FEW_SETS", 10)
+        monkeypatch.setattr(family_search, "LOOKS", 0)
+        monkeypatch.setattr(family_search, "FEW_CHOICES", seed % 3)
+        monkeypatch.setattr(family_search, "FEW_SETS", 10)
         monkeypatch.setattr(weak_families, "SHAKEN", 0)
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
     expected = worst_value(problem, elements)
@@ -76,10 +79,10 @@ def test_many_equal_groups_close(name, blinded):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize("limits", [(), (NO_LISTS,), (NO_LISTS, PACK_AGAIN)])
+@pytest.mark.parametrize("limits", [(), (NO_LISTS,), (NO_LISTS, PACKED), (FAMILIES,)])
 def test_the_bracket_is_valid_at_every_node_count(name, seed, limits, monkeypatch):
     go(monkeypatch, *limits)
-    monkeypatch.setattr(low_lists, "NODES_OF_A_LOOK", 3)
+    monkeypatch.setattr(set_lists, "NODES_OF_A_LOOK", 3)
     problem, elements = team_problem(seed, 8, name)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)
     expected = worst_value(problem, elements)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_elements, random_problem

@@ -2,47 +2,16 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.by_size import group_exchanges, weak_families
+from ratt_opt.attack.families import group_exchanges
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
+from ratt_opt.attackers.by_size import weak_families
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
-from ratt_opt.budget import Budget, OutOfBudget
-from tests.attackers.by_size.test_large_team import team_problem
-from tests.attackers.engine import NO_LISTS, PACK_AGAIN
-from tests.brackets import attained, worst_value
-from tests.strategies import OBJECTIVES
-from tests.ways import go
-
-
-@pytest.mark.parametrize("name", OBJECTIVES)
-@pytest.mark.parametrize("seed", range(40))
-def test_shares_that_end_anywhere_lose_no_set(name, seed, monkeypatch):
-    """Where a share ended while the groups around sets were packed, the next one closed the bracket without them."""
-    go(monkeypatch, NO_LISTS, PACK_AGAIN)
-    problem, elements = team_problem(seed, 6 + seed % 4, name, protect=seed % 3 == 0)
-    expected, values = worst_value(problem, elements), PlanValues(problem, elements)
-    start = ro.bounded_rational_attack(problem, elements)
-    bracket, team = (
-        AttackBracket(start.attack, attained(problem, elements, start), 0.0),
-        PackedTeam.planar(problem.objective, values.plan),
-    )
-    search = SizeVectorSearch(AttackTask(problem, values, bracket, Budget()), team)
-    search.bounds = dict.fromkeys(search.vectors, -np.inf)
-    stop, nodes = None, 1
-    while stop is not ro.Stop.CLOSED and nodes < 1e5:
-        with suppress(OutOfBudget):
-            search.task = replace(search.task, budget=Budget(max_nodes=int(nodes)))
-            stop = search.decide_by_largest()
-        assert bracket.lower <= expected + 1e-12
-        nodes *= 1.3
-    assert bracket.upper == pytest.approx(expected, rel=2e-10, abs=1e-12)
+from ratt_opt.budget import Budget
 
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.families.group_exchanges import GroupExchanges
+from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
 from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
 from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.task import AttackBracket, AttackMemory
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
@@ -70,8 +72,6 @@ class LastingAttacks:
 
         ``None`` if the part of the budget ends before: of a thousand robots there may be hundreds.
         """
-        from ratt_opt.attackers.weakest_set.exchanges import weak_sets_of_size  # compiles
-
         team = self._team
         assert team is not None
         left = np.array([i for i in range(len(team.single)) if i not in largest])
@@ -180,8 +180,6 @@ class Adversary:
         team = PackedTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
         if team is None or len(plan) <= SEARCHED_BY_SIZE:
             return False
-        from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges  # compiles
-
         teams = self._known_values(self.problem, plan)
         best: GroupExchanges | None = None
         lowest, part = float(teams.min(initial=np.inf)), self.budget.part(QUICK_SHARE)

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.weakest_set.packed_team import PackedTeam
+from ratt_opt.attack.families.group_exchanges import GroupExchanges
+from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.graph.survivor_sizes import first_non_dominated_sizes
 from ratt_opt.setfunctions.information import triangles
 
@@ -82,8 +83,6 @@ class NodeAttacks:
 
     def _weakest(self, team: PackedTeam) -> tuple[tuple[frozenset[int], ...], float]:
         """The outcome found that leaves a team least, and what it leaves."""
-        from ratt_opt.attackers.by_size.group_exchanges import GroupExchanges  # compiles
-
         families = []
         for sizes in self._next_vectors():
             family = GroupExchanges(team, sizes, self._must)

@@ -1,0 +1,177 @@
+"""Sets of one size that are worth less than a threshold: found one after the other, listed, or ruled out.
+
+A depth-first search in C (``native/src/sets_of_size.c``), which pauses and goes on.
+"""
+
+from __future__ import annotations
+
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p, cast
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+
+from ratt_opt.attack.team import TeamRecord
+from ratt_opt.native.library import address, checked, function
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.team import Team
+    from ratt_opt.budget import Budget
+
+__all__ = ["MOST_MASKED", "BoundedSets", "SetSearch"]
+
+FINISHED, FOUND = 0, 2
+AT_ONCE = 10_000_000
+"""Values of single targets between two looks at the clock: some hundredths of a second."""
+MOST_MASKED = 63
+"""Robots of a team whose sets are listed: a set is one mask."""
+
+
+class SetQuestionRecord(Structure):
+    """``SetQuestion`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        ("team", c_void_p),
+        *((name, c_double) for name in ("threshold", "level", "limit")),
+        ("size", c_int64),
+        ("start", c_void_p),
+        *((name, c_int64) for name in ("candidates", "in_order")),
+        *((name, c_void_p) for name in ("order", "costs")),
+    ]
+
+
+class SetSearch:
+    """The sets of ``size`` robots that are worth less than ``threshold``, whose robots cost less than ``limit``.
+
+    ``among`` : (F,) robots that may be in a set; by default all. ``inside`` : (N,) others that are in each set; by
+    default none. ``costs`` : (N,) of robots; by default none. ``in_order`` : decide robots in the order of ``among``
+    ``nodes`` : partial sets looked at so far
+    """
+
+    def __init__(
+        self,
+        team: Team,
+        size: int,
+        threshold: float,
+        *,
+        among: IntArray | None = None,
+        inside: BoolArray | None = None,
+        costs: FloatArray | None = None,
+        limit: float = np.inf,
+        in_order: bool = False,
+    ) -> None:
+        self._team, self._inside = team, np.zeros(team.robots, dtype=np.bool_) if inside is None else inside
+        order = np.arange(team.robots) if among is None else np.ascontiguousarray(among, dtype=np.int64)
+        spent = None if costs is None else checked("costs", costs, np.float64, (team.robots,))
+        self._arrays = team.sums(self._inside), order, spent
+        start, candidates, paid = (None if array is None else address(array) for array in self._arrays)
+        reference = cast(byref(team.record), c_void_p)
+        self._record = SetQuestionRecord(
+            reference, threshold, 0.0, limit, size, start, len(order), in_order, candidates, paid
+        )
+        self._chosen = np.zeros(team.robots, dtype=np.bool_)
+        self.nodes = 0
+        self.lower(threshold)
+        self._handle = function("open_sets", c_void_p, POINTER(SetQuestionRecord))(byref(self._record))
+        if not self._handle:
+            raise MemoryError
+
+    def __del__(self) -> None:
+        """Free what the search holds."""
+        if getattr(self, "_handle", None):
+            function("close_sets", None, c_void_p)(self._handle)
+            self._handle = None
+
+    def lower(self, threshold: float, limit: float = np.inf) -> None:
+        """Make the threshold and the limit no larger than these."""
+        record = self._record
+        record.threshold, record.limit = min(record.threshold, threshold), min(record.limit, limit)
+        call = function("level_of_threshold", c_double, POINTER(TeamRecord), c_double)
+        record.level = call(self._team.record, record.threshold)
+
+    def next(self, nodes: int) -> BoolArray | Literal[False] | None:
+        """The next set (N,), those inside included; ``None`` after ``nodes`` nodes, ``False`` if there is none."""
+        value, progress = c_double(0.0), c_int64(0)
+        call = function("next_set_below", c_int, c_void_p, c_int64, *[c_void_p] * 3)
+        code = call(self._handle, nodes, address(self._chosen), byref(value), byref(progress))
+        self.nodes = progress.value
+        if code != FOUND:
+            return False if code == FINISHED else None
+        return np.asarray(self._chosen | self._inside)
+
+    def fill(self, nodes: int, masks: NDArray[np.uint64], values: FloatArray, count: int) -> tuple[int, bool]:
+        """List sets from row ``count`` on for ``nodes`` nodes; the rows filled, and whether there are no others.
+
+        ``masks`` : (C,) bit ``i`` is robot ``i``, at most 63 robots, without those inside; ``values`` : (C,)
+        """
+        rows, progress = c_int64(count), c_int64(0)
+        call = function("list_sets_below", c_int, c_void_p, *[c_int64] * 2, *[c_void_p] * 5)
+        places = address(self._chosen), address(masks), address(values), byref(rows), byref(progress)
+        code = call(self._handle, nodes, len(masks), *places)
+        self.nodes = progress.value
+        return rows.value, code == FINISHED
+
+    @property
+    def least_open(self) -> float:
+        """A value that no set still open is below, or the threshold, if that is less; infinite if none is open."""
+        return float(function("least_open", c_double, c_void_p)(self._handle))
+
+
+class BoundedSets:
+    """The sets of ``size`` of some ``robots`` (F,) beside those ``inside``, by a search in depth.
+
+    ``scores`` : constant and (F,) of an affine underestimator of the value; by default none
+    ``in_order`` : decide robots in the order given; with scores, those first of whose side these are surest
+    """
+
+    def __init__(  # noqa: PLR0917
+        self,
+        team: Team,
+        robots: IntArray,
+        inside: Iterable[int],
+        size: int,
+        threshold: float,
+        scores: tuple[float, FloatArray] | None = None,
+        *,
+        in_order: bool = False,
+    ) -> None:
+        fixed, self._scale = np.isin(np.arange(team.robots), list(inside)), max(abs(threshold), 1e-300)
+        self._constant, costs = -np.inf, None
+        if scores is not None:
+            self._constant, own = scores
+            costs = np.zeros(team.robots)
+            costs[robots] = own / self._scale
+            if 0 < size < len(robots):  # those first of whose side the underestimator is surest
+                middle = np.partition(own, size - 1)[size - 1]
+                robots = robots[np.argsort(-np.abs(own - middle), kind="stable")]
+        self._search = SetSearch(
+            team, size, threshold, among=robots, inside=fixed, costs=costs, in_order=in_order or costs is not None
+        )
+        self._pause = max(AT_ONCE // (team.record.targets * team.robots), 1)
+
+    @property
+    def nodes(self) -> int:
+        """Partial sets looked at."""
+        return self._search.nodes
+
+    @property
+    def least_open(self) -> float:
+        """A value that no set still open is below, or the threshold, if that is less; infinite if none is open."""
+        return self._search.least_open
+
+    def next(self, threshold: float, most: int, budget: Budget) -> frozenset[int] | Literal[False] | None:
+        """The next set below a threshold, which may only fall; ``False`` at the end, ``None`` before.
+
+        ``most`` : nodes in all
+        """
+        search, before = self._search, self._search.nodes
+        search.lower(threshold, (threshold - self._constant) / self._scale)
+        found = search.next(0)  # the last steps of a search may need no node
+        if found is None:
+            found = search.next(budget.nodes_left(min(self._pause, max(most - before, 1))))
+        budget.nodes += search.nodes - before
+        return found if found is None or found is False else frozenset(np.flatnonzero(found).tolist())
