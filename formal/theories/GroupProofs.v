@@ -28,7 +28,7 @@ Local Notation n := (robots w).
 Definition check_sets (l : sets_lemma) : bool :=
   let k := Z.of_nat (set_size l) in
   (set_size l <= n.+1)%N &&
-  if check_cases add worth average_worth (@impossible S) (fun _ _ => false) (fun _ => None : option (option unit))
+  if check_cases add worth average_worth (@too_few S) (fun _ _ => false) (fun _ => None : option (option unit))
        (set_tree l) (Case start 0 k k Z0 Z0 (nseq n (Options true false true))) [::] is Some _ then true else false.
 
 Variables (size_k : nat) (near tied : seq (seq bool)).
@@ -167,7 +167,7 @@ have st : stands start add C set0 first.
   split; rewrite ?size_nseq ?sC ?bC //; last by split; apply: Z.le_refl.
   - by exists [::]; split=> // i; rewrite first_options; case: ifP.
   by move=> i; rewrite /may_be first_options ltn_ord !inE; case: ifP.
-have budget (c : case S) : stands start add C set0 c -> ~~ impossible c by apply: not_impossible.
+have budget (c : case S) : stands start add C set0 c -> ~~ too_few c by apply: not_too_few.
 have no_dear (i : nat) (c : case S) : stands start add C set0 c -> false -> False by [].
 have no_list (c : case S) (g : option unit) : stands start add C set0 c -> None = Some g ->
   False \/ exists2 h, g = Some h & False by [].
