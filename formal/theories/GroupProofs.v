@@ -285,9 +285,6 @@ move=> h h0; rewrite big_mkcond [X in Z.le _ X]big_mkcond; apply: sum_le => r.
 case: ifP => [/h[-> //]|_]; by case: ifP => [/h0 //|_]; lia.
 Qed.
 
-Lemma roots_root r : roots e (fingraph.root e r).
-Proof. exact: fingraph.roots_root (sym a) r. Qed.
-
 Theorem no_duals : ~~ check_duals w start add worth average_worth size_k near tied t.
 Proof.
 apply/negP => /and3P[_ /Z.ltb_lt neg]; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] _.
@@ -347,7 +344,7 @@ have il : (i < robots w)%N by rewrite ltnNge -sz; apply: contra out => /(nth_def
 pose k := robot_of w i; pose r := fingraph.root e k; pose g := chosen r.
 have ki : (k : nat) = i by rewrite /k robot_ofK.
 have rR : r \notin R by rewrite -cov ki.
-have rr : roots e r := roots_root k; have [gin [sg mg _ _ _]] := chosenP rr.
+have rr : roots e r := roots_root a k; have [gin [sg mg _ _ _]] := chosenP rr.
 have R'r q : q \in r |: R -> roots e q by case/setU1P => [->|/Rr].
 have add_one (f : robot -> Z) : Z.add (\sum_(q in R) f q) (f r) = \sum_(q in r |: R) f q.
   by rewrite big_setU1 //= Z.add_comm.

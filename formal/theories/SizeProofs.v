@@ -156,25 +156,19 @@ exact: (ole_left ok pg bf (group_links r) (round_upP ok pg bf (group_links r) le
 Qed.
 
 (** *** The largest group *)
-Lemma sum_sees : (\sum_(r | roots e r) sees_in r = robots w - spare w)%N.
-Proof.
-have total : (\sum_(r | roots e r) sees_in r + \sum_(r | roots e r) blind_in r = robots w)%N.
-  rewrite -big_split /=; under eq_bigr do rewrite -group_size -sum1_card.
-  by rewrite (sum_parts a) sum1_card card_ord.
-have blinds : (\sum_(r | roots e r) blind_in r = spare w)%N.
-  rewrite -B_size -sum1_card [RHS]big_mkcond -(sum_parts a); apply: eq_bigr => r _.
-  by rewrite /blinded_size -sum1_card [LHS]big_mkcond [RHS]big_mkcond; apply: eq_bigr => i _; rewrite !inE; case: (_ == r).
-by rewrite -total blinds addnK.
-Qed.
-
 Lemma sum_blind : (\sum_(r | roots e r) blind_in r = spare w)%N.
 Proof.
 rewrite -B_size -sum1_card [RHS]big_mkcond -(sum_parts a); apply: eq_bigr => r _.
 by rewrite /blinded_size -sum1_card [LHS]big_mkcond [RHS]big_mkcond; apply: eq_bigr => i _; rewrite !inE; case: (_ == r).
 Qed.
 
-Lemma roots_root i : roots e (fingraph.root e i).
-Proof. exact: fingraph.roots_root (sym a) i. Qed.
+Lemma sum_sees : (\sum_(r | roots e r) sees_in r = robots w - spare w)%N.
+Proof.
+have total : (\sum_(r | roots e r) sees_in r + \sum_(r | roots e r) blind_in r = robots w)%N.
+  rewrite -big_split /=; under eq_bigr do rewrite -group_size -sum1_card.
+  by rewrite (sum_parts a) sum1_card card_ord.
+by rewrite -total sum_blind addnK.
+Qed.
 
 Section Largest.
 Variable r0 : robot.
