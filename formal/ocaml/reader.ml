@@ -216,10 +216,13 @@ let first_lower value =
         raise (Fault "lower proof: the kind must be attack_tree, forced_size, group_prices, group_covers, all_groups, group_sizes or enumerated");
       NoLower
 
-(* Trees of version 2: names for leaves without a number, records of one field for the other nodes. *)
-let rec case_node next depth =
+(* Trees of version 2: names for leaves without a number, records of one field for the other nodes. [dear]: what the
+   proof calls leaves of groups that cost too much; none in trees of sets, which branch on who senses alone. *)
+let sets_only = ""
+
+let rec case_node dear next depth =
   if depth > deepest then format "lower tree" "is too deep";
-  let halves build = let first = case_node next (depth + 1) in build (first, case_node next (depth + 1)) in
+  let halves build = let first = case_node dear next (depth + 1) in build (first, case_node dear next (depth + 1)) in
   match next () with
   | String "worth" -> IsWorth
   | String "copies" -> CopiesWorth
@@ -227,37 +230,39 @@ let rec case_node next depth =
   | String "listed" -> IsListed
   | Record [ (name, value) ] -> (
       let k = nat ("lower tree " ^ name) value in
+      let none () = raise (Fault ("lower proof: a node is none of this proof: " ^ name)) in
       match name with
       | "sense" -> halves (fun (a, b) -> Sense (k, a, b))
+      | _ when name = dear -> Dear k
+      | _ when dear = sets_only -> none ()
       | "inside" -> halves (fun (a, b) -> Inside (k, a, b))
       | "sensing" -> halves (fun (a, b) -> Sensing (k, a, b))
       | "blinded" -> halves (fun (a, b) -> Blinding (k, a, b))
-      | "flow" -> Dear k
-      | _ -> raise (Fault ("lower proof: a node is none of this proof: " ^ name)))
+      | _ -> none ())
   | _ -> raise (Fault "lower proof: a node must be a name, or a record of one")
 
-let case_tree value = consume "lower" (array "lower tree" value) (fun next -> case_node next 0)
+let case_tree dear value = consume "lower" (array "lower tree" value) (fun next -> case_node dear next 0)
 
-(* Integers below 2^53 in size. *)
-let signed where value =
+(* Integers below 2^53 in size, or another power. *)
+let signed ?(bits = 53) where value =
   let k = integer where value in
-  if abs k >= 1 lsl 53 then format where "is too large";
+  if abs k >= 1 lsl bits then format where "is too large";
   Big.of_int k
 
-let unsigned where value =
-  let k = signed where value in
+let unsigned ?(bits = 53) where value =
+  let k = signed ~bits where value in
   if Big.sign k < 0 then format where "must not be negative";
   k
 
 let sets value =
   match fields "sets" [ "size"; "tree" ] value with
-  | [ size; tree ] -> { set_size = nat "sets size" size; set_tree = case_tree tree }
+  | [ size; tree ] -> { set_size = nat "sets size" size; set_tree = case_tree sets_only tree }
   | _ -> assert false
 
 let prices value =
   match fields "duals" [ "link"; "robots"; "blinded" ] value with
   | [ link; robots; blinded ] ->
-      { link_price = unsigned "duals link" link; robot_prices = List.map (signed "duals robots") (array "duals robots" robots);
+      { link_price = unsigned "duals link" link; robot_prices = List.map (fun x -> signed "duals robots" x) (array "duals robots" robots);
         blind_price = unsigned "duals blinded" blinded }
   | _ -> assert false
 
@@ -268,7 +273,7 @@ let flow_bound net value =
   match fields "bound" [ "blinding"; "cut"; "flow" ] value with
   | [ blinding; cut; flow ] ->
       let pairs = List.sort compare (List.map (fun (i, j) -> (int_of_nat i, int_of_nat j)) net.link_list) in
-      let amounts = List.map (signed "bound flow") (array "bound flow" flow) in
+      let amounts = List.map (fun x -> signed "bound flow" x) (array "bound flow" flow) in
       if List.length amounts <> List.length pairs then format "bound flow" "must have an entry for each link";
       let n = int_of_nat net.top_robot + 1 in
       let rows = Array.make_matrix n n Big.zero in
@@ -282,7 +287,33 @@ let flow_bound net value =
   | _ -> assert false
 
 let group_tree net duals bounds tree =
-  { dual = prices duals; bounds = List.map (flow_bound net) (array "bounds" bounds); groups = case_tree tree }
+  { dual = prices duals; bounds = List.map (flow_bound net) (array "bounds" bounds); groups = case_tree "flow" tree }
+
+(* Integers below 2^31 in size, as many as there are robots. *)
+let small_integers where net value =
+  let found = List.map (fun x -> signed ~bits:31 where x) (array where value) in
+  if List.length found <> int_of_nat net.top_robot + 1 then format where "must have an entry for each robot";
+  found
+
+let size_proof net duals forms bounds trees =
+  if int_of_nat net.top_robot + 1 > 200 then format "lower proof" "by sizes is for at most 200 robots";
+  let vector value =
+    match fields "duals" [ "link"; "robots" ] value with
+    | [ link; robots ] ->
+        { link_price = unsigned ~bits:31 "duals link" link; robot_prices = small_integers "duals robots" net robots; blind_price = Big.zero }
+    | _ -> assert false in
+  let form value =
+    match fields "form" [ "duals"; "robots"; "least"; "diagonal" ] value with
+    | [ number; robots; least; diagonal ] ->
+        { form_prices = nat "form duals" number; form_robots = nat "form robots" robots;
+          form_least = signed ~bits:31 "form least" least; form_diagonal = small_integers "form diagonal" net diagonal }
+    | _ -> assert false in
+  let bound value =
+    match fields "bound" [ "duals"; "diagonal" ] value with
+    | [ number; diagonal ] -> (nat "bound duals" number, small_integers "bound diagonal" net diagonal)
+    | _ -> assert false in
+  { vectors = List.map vector (array "duals" duals); forms = List.map form (array "forms" forms);
+    diagonals = List.map bound (array "bounds" bounds); group_trees = List.map (case_tree "form") (array "trees" trees) }
 
 let second_lower net value =
   let conclusion = match value with Record pairs -> List.assoc_opt "conclusion" pairs | _ -> None in
@@ -299,7 +330,10 @@ let second_lower net value =
       | [ _; l; duals; bounds; tree; partition ] ->
           Cover (sets l, group_tree net duals bounds tree, List.map (nat "partition") (array "partition" partition))
       | _ -> assert false)
-  | Some (String "sizes") -> format "lower proof" "by sizes of groups is decided by ratt-opt verify alone"
+  | Some (String "sizes") -> (
+      match given [ "sets"; "duals"; "forms"; "bounds"; "trees" ] with
+      | [ _; l; duals; forms; bounds; trees ] -> GroupSizes (sets l, size_proof net duals forms bounds trees)
+      | _ -> assert false)
   | _ -> raise (Fault "lower proof: the conclusion must be forced, duals, cover, sizes or enumerated")
 
 let attack value =

@@ -1,6 +1,6 @@
 (** The headline theorems: what each of them assumes. *)
 From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Survivors Families Approached
-  Quadratic Criteria Logdet CaseTree Costs GroupProofs Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
+  Quadratic Criteria Logdet CaseTree Costs GroupProofs Positive SizeCosts SizeProofs Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -40,6 +40,9 @@ Print Assumptions check_casesP.
 Print Assumptions flow_valueP.
 Print Assumptions dualsP.
 Print Assumptions coverP.
+Print Assumptions zquad_gt0.
+Print Assumptions is_aboveP.
+Print Assumptions sizesP.
 Print Assumptions certificate_upper.
 Print Assumptions certificate_sound.
 Print Assumptions trace_certificate_sound.

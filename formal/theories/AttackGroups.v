@@ -21,6 +21,9 @@ Local Notation adjacent := (@adjacent w).
 Lemma sym : connect_sym e.
 Proof. exact: connect_linked_sym. Qed.
 
+Lemma roots_root i : roots e (root e i).
+Proof. exact: fingraph.roots_root sym i. Qed.
+
 (** Groups by their roots. *)
 Definition part (r : robot) : {set robot} := [set j | root e j == r].
 
@@ -80,7 +83,7 @@ Qed.
 Lemma sum_parts (T : Type) (idx : T) (op : Monoid.com_law idx) (f : robot -> T) :
   \big[op/idx]_(r | roots e r) \big[op/idx]_(i in part r) f i = \big[op/idx]_i f i.
 Proof.
-rewrite [RHS](partition_big (root e) (roots e)) /=; last by move=> i _; apply: (roots_root sym).
+rewrite [RHS](partition_big (root e) (roots e)) /=; last by move=> i _; apply: roots_root.
 by apply: eq_bigr => r _; apply: eq_bigl => i; rewrite inE.
 Qed.
 

@@ -106,10 +106,11 @@ Fixpoint check_cases (t : case_tree) (c : case S) (found : seq G) {struct t} : o
 Definition fewest_blinded (c : case S) : Z :=
   let more := Z.min (Z.sub (most c) (Z.of_nat (seen c))) (Z.of_nat (count open_inside (options c))) in
   Z.max (low c) (Z.sub (Z.of_nat (count_inside c)) (Z.add (Z.of_nat (seen c)) more)).
-(** More robots sense than may, or fewer than must; or the same of blinded ones; or too few robots can be in the group. *)
+(** Fewer robots may sense than must. *)
+Definition too_few (c : case S) : bool := Z.ltb (Z.of_nat (seen c + count open (options c))) (least c).
+(** That; or more sense than may; or the same of blinded ones; or too few robots can be in the group. *)
 Definition impossible (c : case S) : bool :=
-  let seen := Z.of_nat (seen c) in
-  [|| Z.ltb (most c) seen, Z.ltb (Z.add seen (Z.of_nat (count open (options c)))) (least c), Z.ltb (most c) (least c),
+  [|| too_few c, Z.ltb (most c) (Z.of_nat (seen c)), Z.ltb (most c) (least c),
       Z.ltb (high c) (fewest_blinded c)
     | Z.ltb (Z.of_nat (count (fun o => ~~ gone o) (options c))) (Z.add (least c) (low c))].
 End Checker.
@@ -238,8 +239,11 @@ Qed.
 Lemma not_impossible : ~~ impossible c.
 Proof.
 have := fewest_blindedP; have := open_sensing; have := sees_of_le open; have := not_gone_many.
-have := stands_sensing st; have := stands_blinded st; rewrite /impossible; lia.
+have := stands_sensing st; have := stands_blinded st; rewrite /impossible /too_few; lia.
 Qed.
+
+Lemma not_too_few : ~~ too_few c.
+Proof. by have := not_impossible; rewrite /impossible negb_or => /andP[]. Qed.
 End Counting.
 
 (** ** Children *)

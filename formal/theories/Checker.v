@@ -1,7 +1,7 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -22,13 +22,14 @@ Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
 
 (** Where a linear bound touches: one symmetric matrix per target (trace, log-det), or a target, a length and a direction. *)
 Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
-(** Version 1: a size tree, an attack tree. Version 2: the sets alone, dual prices, a cover. *)
+(** Version 1: a size tree, an attack tree. Version 2: the sets alone, dual prices, a cover, sizes of groups. *)
 Inductive lower_proof :=
 | ForcedSize of nat & size_tree
 | AttackTree of attack_tree
 | ForcedSets of sets_lemma
 | Duals of sets_lemma & group_tree
 | Cover of sets_lemma & group_tree & seq nat
+| GroupSizes of sets_lemma & size_proof
 | NoLower.
 Record proofs := Proofs {
   prior_low : dyadic;
@@ -270,6 +271,9 @@ Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : boo
   | Cover l t nodes =>
       let near := rows_of w (link_list w) in let tied := rows_of w (kept_links w) in
       check_sets w start add good average l && check_cover w start add good average (set_size l) near tied t nodes
+  | GroupSizes l t =>
+      let near := rows_of w (link_list w) in let tied := rows_of w (kept_links w) in
+      check_sets w start add good average l && check_group_sizes w start add good average near tied (set_size l) t
   | NoLower => false
   end.
 

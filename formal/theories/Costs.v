@@ -149,6 +149,12 @@ Proof. by elim/big_rec2: _ => // i x y _ <-; lia. Qed.
 Lemma sum_count (I : finType) (A : pred I) : \sum_(i | A i) Zpos xH = Z.of_nat #|A|.
 Proof. by rewrite sumr_const; elim: #|A| => // k IH; rewrite mulrS IH; lia. Qed.
 
+Lemma sum_set (I : finType) (A : {set I}) (m : Z) : \sum_(i : I) (if i \in A then m else Z0) = Z.mul m (Z.of_nat #|A|).
+Proof.
+rewrite (_ : \sum_(i : I) _ = \sum_(i in A) m); last by rewrite [RHS]big_mkcond.
+by rewrite -sum_count; elim/big_rec2: _ => [|i x y _ ->]; lia.
+Qed.
+
 Lemma zsum_cat (s t : seq Z) : zsum (s ++ t) = Z.add (zsum s) (zsum t).
 Proof. by elim: s => [|x s IH] //=; rewrite IH; lia. Qed.
 
@@ -391,12 +397,6 @@ have -> : Z.mul dearer (Z.of_nat (blinded_size C B)) = \sum_(i : robot) if i \in
   by rewrite /blinded_size -sum_count big_mkcond sum_scale; apply: eq_bigr => i _; case: ifP; lia.
 rewrite [X in Z.sub _ X]big_mkcond -[Z.sub _ _]/(Z.add _ (Z.opp _)) sum_opp !sum_add; apply: eq_bigr => i _.
 by rewrite /real_part inE; case: (i \in C); case: (i \in B) => /=; lia.
-Qed.
-
-Lemma sum_set (A : {set robot}) (m : Z) : \sum_(i : robot) (if i \in A then m else Z0) = Z.mul m (Z.of_nat #|A|).
-Proof.
-rewrite (_ : \sum_(i : robot) _ = \sum_(i in A) m); last by rewrite [RHS]big_mkcond.
-by rewrite -sum_count; elim/big_rec2: _ => [|i x y _ ->]; lia.
 Qed.
 
 Theorem flow_valueP : Z.le (flow_value w d near b c) cost.

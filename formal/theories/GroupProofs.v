@@ -28,7 +28,7 @@ Local Notation n := (robots w).
 Definition check_sets (l : sets_lemma) : bool :=
   let k := Z.of_nat (set_size l) in
   (set_size l <= n.+1)%N &&
-  if check_cases add worth average_worth (@impossible S) (fun _ _ => false) (fun _ => None : option (option unit))
+  if check_cases add worth average_worth (@too_few S) (fun _ _ => false) (fun _ => None : option (option unit))
        (set_tree l) (Case start 0 k k Z0 Z0 (nseq n (Options true false true))) [::] is Some _ then true else false.
 
 Variables (size_k : nat) (near tied : seq (seq bool)).
@@ -167,7 +167,7 @@ have st : stands start add C set0 first.
   split; rewrite ?size_nseq ?sC ?bC //; last by split; apply: Z.le_refl.
   - by exists [::]; split=> // i; rewrite first_options; case: ifP.
   by move=> i; rewrite /may_be first_options ltn_ord !inE; case: ifP.
-have budget (c : case S) : stands start add C set0 c -> ~~ impossible c by apply: not_impossible.
+have budget (c : case S) : stands start add C set0 c -> ~~ too_few c by apply: not_too_few.
 have no_dear (i : nat) (c : case S) : stands start add C set0 c -> false -> False by [].
 have no_list (c : case S) (g : option unit) : stands start add C set0 c -> None = Some g ->
   False \/ exists2 h, g = Some h & False by [].
@@ -285,9 +285,6 @@ move=> h h0; rewrite big_mkcond [X in Z.le _ X]big_mkcond; apply: sum_le => r.
 case: ifP => [/h[-> //]|_]; by case: ifP => [/h0 //|_]; lia.
 Qed.
 
-Lemma roots_root r : roots e (fingraph.root e r).
-Proof. exact: fingraph.roots_root (sym a) r. Qed.
-
 Theorem no_duals : ~~ check_duals w start add worth average_worth size_k near tied t.
 Proof.
 apply/negP => /and3P[_ /Z.ltb_lt neg]; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] _.
@@ -347,7 +344,7 @@ have il : (i < robots w)%N by rewrite ltnNge -sz; apply: contra out => /(nth_def
 pose k := robot_of w i; pose r := fingraph.root e k; pose g := chosen r.
 have ki : (k : nat) = i by rewrite /k robot_ofK.
 have rR : r \notin R by rewrite -cov ki.
-have rr : roots e r := roots_root k; have [gin [sg mg _ _ _]] := chosenP rr.
+have rr : roots e r := roots_root a k; have [gin [sg mg _ _ _]] := chosenP rr.
 have R'r q : q \in r |: R -> roots e q by case/setU1P => [->|/Rr].
 have add_one (f : robot -> Z) : Z.add (\sum_(q in R) f q) (f r) = \sum_(q in r |: R) f q.
   by rewrite big_setU1 //= Z.add_comm.

@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -807,14 +807,15 @@ Qed.
 Theorem lower_sound : check_lower_part pb cl pr lows defects ->
   forall a, allowed (team_of w) a -> val (lower cl) <= team_value (team_of w) value plan_of a.
 Proof.
-rewrite /check_lower_part; case: (lower_part pr) => [k t|t|l|l t|l t nodes|//].
+rewrite /check_lower_part; case: (lower_part pr) => [k t|t|l|l t|l t nodes|l t|//].
 - move=> /and3P[full forced h] a oka; have [i ki] := forcedP net_good full oka forced.
   apply: (size_treeP worth_sound average_sound ki h).
 - by move=> h a oka; exact: (attack_treeP net_good erefl worth_sound oka h).
 - move=> /and3P[full forced h] a oka; have [i ki] := forcedP net_good full oka forced.
   exact: (forced_setP worth_sound average_sound h ki).
 - by move=> /andP[sets h] a oka; exact: (dualsP net_good worth_sound average_sound oka sets h).
-by move=> /andP[sets h] a oka; exact: (coverP net_good worth_sound average_sound oka sets h).
+- by move=> /andP[sets h] a oka; exact: (coverP net_good worth_sound average_sound oka sets h).
+by move=> /andP[sets h] a oka; exact: (sizesP net_good worth_sound average_sound oka sets h).
 Qed.
 End Lower.
 End Sound.

@@ -74,6 +74,19 @@ def by_cover(partition, *, high=0, sets=PAIRS):
     return {**groups, "conclusion": "cover", "partition": partition}
 
 
+def by_sizes(trees=(), forms=(), *, sets=PAIRS):
+    """Each link that leaves a group costs one, and robots are worth nothing."""
+    duals = [{"link": 1, "robots": [0, 0, 0]}]
+    return {
+        "conclusion": "sizes",
+        "sets": sets,
+        "duals": duals,
+        "forms": list(forms),
+        "bounds": [],
+        "trees": list(trees),
+    }
+
+
 def decided(folder, *documents):
     paths = [folder / f"{k}.json" for k in range(len(documents))]
     for path, found in zip(paths, documents, strict=True):
@@ -98,6 +111,33 @@ def test_a_proof_of_a_false_claim_is_refused(tmp_path):
     assert decided(tmp_path, document(by_duals(), PATH, 1, 0, claim=0.7)) == [1]
     assert decided(tmp_path, document(by_cover([1]), PATH, 0, 2)) == [1]  # three groups of one robot each
     assert decided(tmp_path, document(by_cover([0, 1, 2]), PATH, 0, 2)) == [1]
+
+
+def test_sizes_of_groups(tmp_path):
+    """After one cut, no largest group has one robot: three groups of one lose more links than are cut."""
+    assert decided(tmp_path, document(by_sizes(), PATH, 0, 1)) == [0]
+    assert decided(tmp_path, document(by_sizes(), PATH, 1, 0)) == [0]
+    assert decided(tmp_path, document(by_sizes([["budget"]]), PATH, 0, 1)) == [1]
+    for trees in ([], [["budget"]], [["worth"]], [["copies"]], [[{"form": 0}]]):
+        assert decided(tmp_path, document(by_sizes(trees), PATH, 0, 2)) == [1]
+        assert decided(tmp_path, document(by_sizes(trees), PATH, 1, 1)) == [1]
+
+
+def test_forms_raise_what_groups_cost(tmp_path):
+    """Two robots of the path lose a link at least; by sizes alone they might lose none."""
+    form = {"duals": 0, "robots": 2, "least": 1, "diagonal": [-512, -1024, 1536]}
+    changes = (
+        {},
+        {"least": 2},
+        {"diagonal": [0, 0, 0]},
+        {"robots": 3},
+        {"robots": 4},
+        {"duals": 1},
+        {"diagonal": [0, 0]},
+    )
+    codes = [decided(tmp_path, document(by_sizes(forms=[form | change]), PATH, 0, 1))[0] for change in changes]
+    assert codes[0] == 0
+    assert all(code in (1, 2) for code in codes[1:])
 
 
 def test_partitions_are_used_up_exactly(tmp_path):
