@@ -246,7 +246,7 @@ let case_tree dear value = consume "lower" (array "lower tree" value) (fun next 
 (* Integers below 2^53 in size, or another power. *)
 let signed ?(bits = 53) where value =
   let k = integer where value in
-  if abs k >= 1 lsl bits then format where "is too large";
+  if k >= 1 lsl bits || k <= -(1 lsl bits) then format where "is too large";
   Big.of_int k
 
 let unsigned ?(bits = 53) where value =
