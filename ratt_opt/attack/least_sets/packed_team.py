@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from ctypes import POINTER, c_double, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.team import Team, has_loops
+from ratt_opt.attack.team import Team, TeamRecord, has_loops
+from ratt_opt.native.library import address, function
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
@@ -85,7 +87,9 @@ class PackedTeam:
     @property
     def baseline(self) -> float:
         """The criterion before any measurement."""
-        return float(_criterion(self.objective, self.prior))
+        if self.is_planar:
+            return float(_planar_criterion(self.objective, self.prior))
+        return float(self.objective.combine(self.objective.criterion(self.objective.prior_information)))
 
     def sums(self, robots: Iterable[int]) -> FloatArray:
         """(M, T) posterior information of a set of robots."""
@@ -93,7 +97,11 @@ class PackedTeam:
 
     def values(self, sums: FloatArray) -> FloatArray:
         """Values of posterior information: (..., M, T) -> (...)."""
-        return np.asarray(_criterion(self.objective, self.prior) - _criterion(self.objective, sums))
+        if self.is_planar:
+            return np.asarray(self.baseline - _planar_criterion(self.objective, sums))
+        native, call = self.native(), function("set_value", c_double, POINTER(TeamRecord), c_void_p)
+        flat = np.ascontiguousarray(sums).reshape(-1, *sums.shape[-2:])
+        return np.array([call(native.reference, address(row)) for row in flat]).reshape(sums.shape[:-2])
 
     def value(self, robots: Iterable[int]) -> float:
         """Value of one set of robots."""
@@ -117,14 +125,8 @@ class SetFamily:
     size: int
 
 
-def _criterion(objective: InformationObjective, sums: FloatArray) -> FloatArray:
-    if objective.dimension == PLANE:
-        return objective.combine(objective.planar_criterion(sums[..., 0], sums[..., 1], sums[..., 2]))
-    from ratt_opt.setfunctions.criteria.compiled import team_criteria  # compiles
-
-    flat = np.ascontiguousarray(sums).reshape(-1, *sums.shape[-2:])
-    criteria = team_criteria(_code(objective), np.array(objective.weights), flat)
-    return np.asarray(criteria).reshape(sums.shape[:-2])
+def _planar_criterion(objective: InformationObjective, sums: FloatArray) -> FloatArray:
+    return objective.combine(objective.planar_criterion(sums[..., 0], sums[..., 1], sums[..., 2]))
 
 
 def _code(objective: InformationObjective) -> int:
