@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
 
-CASES = 2_000
-"""Between two looks at the clock."""
+CASES = 100
+"""Between two looks at the clock: some hundredths of a second."""
 FIRST_CRITERIA, MOST_CRITERIA, MORE = 4_000_000, 256_000_000, 4
 """Criteria of single targets looked at for a tree over sets: before the first look at the clock, a tenth of a second;
 at most; and how many times more each attempt may look at."""
