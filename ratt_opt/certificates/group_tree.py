@@ -26,7 +26,8 @@ CASES = 100
 FIRST_CRITERIA, MOST_CRITERIA, MORE = 4_000_000, 256_000_000, 4
 """Criteria of single targets looked at for a tree over sets: before the first look at the clock, a tenth of a second;
 at most; and how many times more each attempt may look at."""
-MOST_FLOWS, MOST_LISTED = 5_000, 20_000
+MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 5_000, 20_000, 700_000
+"""Of a tree; and numbers in all of its flows, as the verifier reads files of two million."""
 BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded"), ("worth", "copies", "budget", "flow", "listed")
 """Nodes by the numbers that the loops have for them."""
 FINISHED, PAUSED, FULL = range(3)
@@ -122,8 +123,9 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
     """
     plan = sets.plan
     assert plan is not None, "the question is about one"
-    averages = sets.objective.verifier_averages
-    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=MOST_FLOWS, listed=MOST_LISTED)
+    averages, links = sets.objective.verifier_averages, len(plan.threat.graph.links)
+    flows = min(MOST_FLOWS, FLOW_NUMBERS // max(links, 1))
+    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=MOST_LISTED)
     first = np.argsort(-question.duals, kind="stable").astype(np.int64)
     call = function("grow_group_tree", c_int, c_void_p, POINTER(TreeRecord), c_int64)
     record, code = trees.record, PAUSED
