@@ -12,7 +12,8 @@ enum { FINISHED, PAUSED, FULL, OPEN };
 enum { SENSE, INSIDE, SENSING, BLINDED_ARE, WORTH, COPIES, BUDGET, FLOW, LISTED }; /* what is written of a node, with a number */
 enum { ROUNDS = 8 };             /* of multipliers at a case */
 enum { TRIED = 64 };             /* kept flows, those that closed a case last */
-enum { QUICK = 60, WRITTEN = 600 }; /* robots valued at a case, for each robot, to find how many are blinded, and to show it */
+/* Robots valued at a case, for each robot, to find how many are blinded, and to show it; the latter in one group, too. */
+enum { QUICK = 60, WRITTEN = 600, OF_ONE = 10000 };
 
 /* Of a node, `low` robots are blinded as far as is written, and `need` as far as is found; `found`: one more senses for sure. */
 typedef struct {
@@ -228,10 +229,10 @@ static int write_some(Proof *p, int depth, int count, int size, int64_t *effort)
 
 /* Write a tree over the robots inside of which any `size` besides those that sense are worth the threshold; 0 if that is not shown,
    and then nothing is written. */
-static int write_inside(Proof *p, const Node *node, int size) {
+static int write_inside(Proof *p, const Node *node, int size, int64_t effort) {
     Search *s = p->s;
     int count = 0;
-    int64_t effort = (int64_t)WRITTEN * p->robots, before = p->out->count;
+    int64_t before = p->out->count;
     memcpy(s->sums, node->sums, (size_t)s->width * sizeof(double));
     for (int i = 0; i < p->robots; i++)
         if (IS_INSIDE(node->state[i]) && MAY_SENSE(node->state[i])) s->order[count++] = i;
@@ -241,10 +242,10 @@ static int write_inside(Proof *p, const Node *node, int size) {
 }
 
 /* Write that at least `blinded` robots are blinded, if that is not written already; 0 if it is not shown. */
-static int write_blinded(Proof *p, Node *node, int blinded) {
+static int write_blinded(Proof *p, Node *node, int blinded, int64_t effort) {
     if (blinded <= least_blinded(p, node)) return 1;
     write_node(p, BLINDED_ARE, blinded);
-    if (write_inside(p, node, count_unsure(p, node) - blinded + 1)) {
+    if (write_inside(p, node, count_unsure(p, node) - blinded + 1, effort)) {
         node->low = blinded;
         return 1;
     }
@@ -254,21 +255,21 @@ static int write_blinded(Proof *p, Node *node, int blinded) {
 }
 
 /* Close the case by a kept flow, after as few blinded robots as it takes are shown; 0 if they are not. */
-static int write_flow(Proof *p, Node *node, int64_t number) {
+static int write_flow(Proof *p, Node *node, int64_t number, int64_t effort) {
     int blinded = least_blinded(p, node);
     while (blinded < node->need && cost_by(p, node, flow_at(p, number), blinded) <= p->out->limit) blinded++;
-    if (!write_blinded(p, node, blinded)) return 0;
+    if (!write_blinded(p, node, blinded, effort)) return 0;
     write_node(p, FLOW, number);
     return 1;
 }
 
 /* Find robots that must be blinded, without writing it yet. 1: more than may be, and all of it is written. */
-static int find_blinded(Proof *p, Node *node) {
+static int find_blinded(Proof *p, Node *node, int64_t effort, int64_t written_effort) {
     int unsure = count_unsure(p, node), most = (int)p->s->q.n_blinded, written = least_blinded(p, node);
     if (node->need < written) node->need = written;
-    while (node->need <= most && node->need < unsure && !may_be_below(p->s, node, node->need, (int64_t)QUICK * p->robots)) node->need++;
+    while (node->need <= most && node->need < unsure && !may_be_below(p->s, node, node->need, effort)) node->need++;
     if (node->need <= most) return 0;
-    if (write_inside(p, node, unsure - most)) return 1;
+    if (write_inside(p, node, unsure - most, written_effort)) return 1;
     node->need = written;
     return 0;
 }
@@ -333,6 +334,7 @@ static int next_member(Proof *p, const Node *node) {
 static int expand(Proof *p) {
     Search *s = p->s;
     Node *node = s->nodes + s->depth - 1, *other = node + 1;
+    int64_t quick = (int64_t)QUICK * p->robots, written = (int64_t)WRITTEN * p->robots, of_one = (int64_t)OF_ONE * p->robots;
     s->visited++, s->depth--;
     if (node->found && value_of(s->q.team, node->sums) >= s->q.threshold) {
         write_node(p, WORTH, 0);
@@ -347,9 +349,9 @@ static int expand(Proof *p) {
         write_node(p, FLOW, number);
         return PAUSED;
     }
-    if (find_blinded(p, node)) return PAUSED;
+    if (find_blinded(p, node, quick, written)) return PAUSED;
     number = closing_flow(p, node, node->need);
-    if (number >= 0 && write_flow(p, node, number)) return PAUSED;
+    if (number >= 0 && write_flow(p, node, number, written)) return PAUSED;
     narrow(p, node);
     if (is_beyond(p, node)) {
         write_node(p, BUDGET, 0);
@@ -358,10 +360,13 @@ static int expand(Proof *p) {
     number = closing_flow(p, node, node->need);
     if (number < 0) number = new_flow(p, node);
     if (number == -2) return FULL;
-    if (number >= 0 && write_flow(p, node, number)) return PAUSED;
+    if (number >= 0 && write_flow(p, node, number, written)) return PAUSED;
     int robot = next_member(p, node), kind = INSIDE;
-    if (robot < 0) {
-        if (p->out->limit >= 0 && write_blinded(p, node, node->need) && cost_of_group(p, node, node->need) >= 0) {
+    if (robot < 0) { /* one group */
+        if (find_blinded(p, node, of_one, of_one)) return PAUSED;
+        number = closing_flow(p, node, node->need);
+        if (number >= 0 && write_flow(p, node, number, of_one)) return PAUSED;
+        if (p->out->limit >= 0 && write_blinded(p, node, node->need, of_one) && cost_of_group(p, node, node->need) >= 0) {
             if (p->out->n_listed == p->out->most_listed) return FULL;
             for (int i = 0; i < p->robots; i++) p->out->listed[p->out->n_listed * p->robots + i] = (int8_t)IS_INSIDE(node->state[i]);
             p->out->needs[p->out->n_listed++] = least_blinded(p, node);
