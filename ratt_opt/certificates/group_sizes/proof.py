@@ -26,7 +26,7 @@ __all__ = ["group_size_proof"]
 LARGEST_TEAM = 60
 """Robots."""
 
-FEW = 30_000
+FEW = 20_000
 """Nodes of a tree over all sets of a size; where it has more, the largest groups of that size have one of their own."""
 
 LARGEST_PROOF = 1_500_000
