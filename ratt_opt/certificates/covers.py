@@ -8,7 +8,7 @@ the team.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +20,9 @@ from ratt_opt.certificates.group_tree import group_tree, sets_proof
 from ratt_opt.certificates.listed_columns import duals_of_all_groups
 from ratt_opt.certificates.plain_trees import LARGEST_TEAM, PlainTrees
 from ratt_opt.certificates.plan_sets import NotClosedError
+from ratt_opt.certificates.verifier.duals import Listed
 from ratt_opt.certificates.verifier.work import seconds_left, tick
+from ratt_opt.graph.communication import robots_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -37,14 +39,6 @@ SEARCHED = 2_000_000
 """Nodes of the search for duals: seconds, up to half a minute at 30 robots."""
 MOST_PARTITIONS = 200_000
 """Nodes of the search of partitions."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Listed:
-    robots: int
-    cost: int
-    need: int
-    links: int
 
 
 def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
@@ -112,15 +106,15 @@ def _searched_duals(plan: Plan, sets: PlanSets) -> tuple[FloatArray, float]:
     return 2 * answer.prices.robot, 2 * answer.prices.blinded  # prices are about half links
 
 
-def _listed(threat: Threat, question: Question, robots: int, need: int) -> _Listed:
+def _listed(threat: Threat, question: Question, robots: int, need: int) -> Listed:
     inside = [robots >> i & 1 for i in range(threat.graph.n_robots)]
     links = sum(inside[i] != inside[j] for i, j in threat.graph.links)
     need = max(need, 0)
     duals = sum(int(dual) for dual, is_in in zip(question.duals, inside, strict=True) if is_in)
-    return _Listed(robots, question.unit * links + question.blinding * need - duals, need, links)
+    return Listed(robots, question.unit * links + question.blinding * need - duals, need, links)
 
 
-def _partition(groups: list[_Listed], threat: Threat, slack: int) -> list[int]:
+def _partition(groups: list[Listed], threat: Threat, slack: int) -> list[int]:
     """The tree that shows that groups, as a verifier lists them, do not partition the team.
 
     Raises
@@ -128,40 +122,30 @@ def _partition(groups: list[_Listed], threat: Threat, slack: int) -> list[int]:
     NotClosedError : they do, or the tree is too large.
     """
     alpha_c, most, robots = threat.alpha_c, threat.n_blinded, threat.graph.n_robots
-    listed: dict[int, _Listed] = {}
+    listed: dict[int, Listed] = {}
     for group in groups:
-        fits = group.links <= alpha_c and group.need <= most and 0 <= group.cost <= slack
-        if fits and (group.robots not in listed or listed[group.robots].need > group.need):
+        known = listed.get(group.robots)
+        fits = group.cost >= 0 and _fits(group, slack, most, alpha_c)
+        if fits and (known is None or known.need > group.need):
             listed[group.robots] = group
     having = [[group for group in listed.values() if group.robots >> i & 1] for i in range(robots)]
     tree: list[int] = []
     waiting = [((1 << robots) - 1, slack, most, 2 * alpha_c)]
     while waiting:
         tick()
-        left, *budgets = waiting.pop()
+        left, cost, blinded, links = waiting.pop()
         if not left or len(tree) > MOST_PARTITIONS:
             raise NotClosedError
-        children: list[tuple[int, int, int, int]] = []
-        best = -1
-        for i in range(robots):
-            if left >> i & 1:
-                fitting = [group for group in having[i] if not group.robots & ~left and _fits(group, budgets)]
-                if best < 0 or len(fitting) < len(children):
-                    best = i
-                    children = [
-                        (left & ~group.robots, *(b - x for b, x in zip(budgets, _spent(group), strict=True)))  # type: ignore[misc]
-                        for group in fitting
-                    ]
-                if not children:
-                    break
-        tree.append(best)
-        waiting.extend(reversed(children))
+        fitting = {
+            i: [group for group in having[i] if not group.robots & ~left and _fits(group, cost, blinded, links)]
+            for i in robots_of(left)
+        }
+        robot = min(fitting, key=lambda i: len(fitting[i]))
+        tree.append(robot)
+        for group in reversed(fitting[robot]):
+            waiting.append((left & ~group.robots, cost - group.cost, blinded - group.need, links - group.links))
     return tree
 
 
-def _spent(group: _Listed) -> tuple[int, int, int]:
-    return group.cost, group.need, group.links
-
-
-def _fits(group: _Listed, budgets: list[int]) -> bool:
-    return all(x <= budget for x, budget in zip(_spent(group), budgets, strict=True))
+def _fits(group: Listed, cost: int, blinded: int, links: int) -> bool:
+    return group.cost <= cost and group.need <= blinded and group.links <= links

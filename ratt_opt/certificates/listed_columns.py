@@ -15,11 +15,9 @@ from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import MOST_ROBOTS
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.certificates.verifier.work import seconds_left, tick
+from ratt_opt.certificates.verifier.work import seconds_left
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ratt_opt._validation import FloatArray
     from ratt_opt.attack.pricing import Plan
 
@@ -63,14 +61,9 @@ def _columns(plan: Plan, threshold: float, budget: Budget) -> Columns | None:
         return Columns.of(groups, cuts, below, plan.threat.n_blinded)
     if len(groups) > MOST_ASKED:
         return None
-    return _asked(plan, threshold, groups, cuts)
-
-
-def _asked(plan: Plan, threshold: float, groups: NDArray[np.uint32], cuts: NDArray[np.uint8]) -> Columns:
-    """Groups of which blinding few enough robots may leave less than the threshold."""
     needs = np.empty(len(groups), np.int64)
     for k, mask in enumerate(groups.tolist()):
-        tick()
+        budget.check()
         inside = np.array([mask >> i & 1 for i in range(plan.robots)], dtype=np.bool_)
         needs[k] = mask.bit_count() - plan.most_below(threshold, inside, EFFORT)
     kept = needs <= plan.threat.n_blinded

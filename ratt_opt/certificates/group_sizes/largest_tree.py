@@ -106,8 +106,7 @@ class _Tree:
         blinded, size = case.inside & case.others, self.group.sensing + self.group.blinded
         if missing < 0 or blinded.bit_count() > self.group.blinded or case.inside.bit_count() > size:
             return True
-        too_few = (self.everyone & ~case.outside).bit_count() < size
-        return too_few or bool(blinded & self.safe) or may_see.bit_count() < missing
+        return (self.everyone & ~case.outside).bit_count() < size or may_see.bit_count() < missing
 
     def _ask_sight(self, case: _Case, i: int, stack: list[_Case]) -> None:
         self.tree.append({"sense": i})

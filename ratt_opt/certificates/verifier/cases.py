@@ -1,4 +1,4 @@
-"""Trees over the groups that an attack leaves: the grammar of the lower end's proofs (``docs/formats.md``).
+"""Trees over the groups that an attack leaves: the grammar of the lower end's proofs.
 
 A case says of each robot what it may be: sensing in the group, blinded in it, or out of it. Branches split a case in
 two; a leaf shows that no group of the case can be one of an attack that leaves less than the claim.
@@ -69,7 +69,7 @@ class Case:
 
 
 class Cases:
-    """Checks trees about one plan and claim; ``closing`` : what a conclusion's own leaves ask, by their names."""
+    """Checks trees about one plan and claim."""
 
     def __init__(self, about: Statement, worth: Worth) -> None:
         self.about, self.worth, self.everyone = about, worth, (1 << about.n) - 1
@@ -97,7 +97,10 @@ class Cases:
     def check(
         self, tree: object, root: Case, closing: Mapping[str, Close] | None = None, branches: tuple[str, ...] = BRANCHES
     ) -> int:
-        """Check that a tree closes a case; returns the number of its leaves."""
+        """Check that a tree closes a case; returns the number of its leaves.
+
+        ``closing`` : what a conclusion's own leaves ask, by their names; ``branches`` : that the tree may have
+        """
         known = {"worth": self._close_worth, "copies": self._close_copies, "budget": self._close_beyond}
         close: dict[str, Close] = {**known, **(closing or {})}
 

@@ -1,5 +1,5 @@
 /* Proofs that no group of an attack is below the threshold at a small cost: trees of cases, each closed by a rule that a checker
-   can follow (docs/formats.md, "Certificates"). Flows that close one case are kept, and tried on the next. */
+   can follow (ratt_opt/certificates/verifier). Flows that close one case are kept, and tried on the next. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,11 +41,6 @@ static int count_unsure(const Proof *p, const Node *node) {
 static void write_node(Proof *p, int kind, int64_t number) {
     int64_t *at = p->out->nodes + 2 * p->out->count++;
     at[0] = kind, at[1] = number;
-}
-
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
 }
 
 static int compare_gains(const void *a, const void *b) {
@@ -178,15 +173,13 @@ static int is_beyond(Proof *p, const Node *node) {
 
 /* Whether any `size` of the open robots bring the robots that sense to the threshold, as far as copies tell. */
 static int copies_are_enough(Proof *p, const Node *node, int size) {
-    double sum = 0.0, *sorted = p->s->sorted;
+    double *sorted = p->s->sorted;
     int count = 0;
     for (int i = 0; i < p->robots; i++)
         if (MAY_SENSE(node->state[i])) sorted[count++] = value_of_copies(p->s, node->sums, size, i, -1);
     if (count < size) return 0;
-    qsort(sorted, (size_t)count, sizeof(double), compare);
-    if (!p->out->averages) return sorted[0] >= p->s->q.threshold;
-    for (int k = 0; k < size; k++) sum += sorted[k];
-    return sum >= size * p->s->q.threshold;
+    double sum = sum_of_least(sorted, count, size);
+    return p->out->averages ? sum >= size * p->s->q.threshold : sorted[0] >= p->s->q.threshold;
 }
 
 /* Write that any `size` of `count` robots, in row `depth` of the search's order, bring what senses to the threshold: 1; 0 if some do

@@ -44,8 +44,7 @@ static int compare(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-/* The sum of the `count` least of `values` (length), which are sorted in place. */
-static double sum_of_least(double *values, int length, int count) {
+double sum_of_least(double *values, int length, int count) {
     double sum = 0.0;
     qsort(values, (size_t)length, sizeof(double), compare);
     for (int p = 0; p < count; p++) sum += values[p];

@@ -57,6 +57,8 @@ int next_to_group(const Search *s, const int8_t *state);
 void copy_node(const Search *s, const Node *from, Node *to);
 
 /* levels.c */
+/* The sum of the `count` least of `values` (length), which are sorted in place. */
+double sum_of_least(double *values, int length, int count);
 double error_before(const Team *team);
 double value_of_copies(const Search *s, const double *sums, double times, int i, int j);
 double level_of_copies(const Search *s, const double *sums, double times, int i, int j);

@@ -32,19 +32,13 @@ struct SetSearch {
     double *both, *sorted, *spare; /* (robots) twice, (width) */
 };
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* Drop the candidates with which no set has scores that add up to less than 0; 0 where too few are left. */
 static int drop(SetSearch *s, const double *score, int left) {
     Partial *at = s->partial + s->depth;
     int *candidates = s->candidates + (size_t)s->depth * s->robots, kept = 0;
-    double *level = s->level + (size_t)s->depth * s->robots, others = 0.0;
+    double *level = s->level + (size_t)s->depth * s->robots;
     memcpy(s->sorted, score, (size_t)at->count * sizeof(double));
-    qsort(s->sorted, (size_t)at->count, sizeof(double), compare);
-    for (int p = 0; p < left - 1; p++) others += s->sorted[p];
+    double others = sum_of_least(s->sorted, at->count, left - 1);
     if (others + s->sorted[left - 1] >= 0.0) return 0;
     for (int p = 0; p < at->count; p++) {
         if (score[p] + others >= 0.0) continue;
@@ -223,7 +217,7 @@ EXPORTED int list_sets_below(SetSearch *s, int64_t nodes, int64_t room, uint8_t 
    Source: for bounds of this kind, Gilmore, Journal of SIAM 10 (1962); Lawler, Management Science 9 (1963). */
 EXPORTED double least_by_pairs(const Team *team, int64_t size, double *pairs, double *spare) {
     int n = team->robots;
-    double before = error_before(team), *row = spare + team->targets * entries_of(team), total = 0.0;
+    double before = error_before(team), *row = spare + team->targets * entries_of(team);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < i; j++) {
             add_information(team, team->prior, (double)size / 2, i, spare);
@@ -232,17 +226,12 @@ EXPORTED double least_by_pairs(const Team *team, int64_t size, double *pairs, do
             pairs[i * n + j] = pairs[j * n + i] = team->criterion == LOG_DET ? value : 1.0 / (before - value);
         }
     for (int i = 0; i < n; i++) {
-        double sum = 0.0;
         for (int j = 0, k = 0; j < n; j++)
             if (j != i) row[k++] = pairs[i * n + j];
-        qsort(row, (size_t)n - 1, sizeof(double), compare);
-        for (int k = 0; k < size - 1; k++) sum += row[k];
-        pairs[i * n + i] = sum / (double)(size - 1);
+        pairs[i * n + i] = sum_of_least(row, n - 1, size - 1) / (double)(size - 1);
     }
     for (int i = 0; i < n; i++) row[i] = pairs[i * n + i];
-    qsort(row, (size_t)n, sizeof(double), compare);
-    for (int k = 0; k < size; k++) total += row[k];
-    double level = total / (double)size * (1 - ROUNDING);
+    double level = sum_of_least(row, n, size) / (double)size * (1 - ROUNDING);
     return team->criterion == LOG_DET ? level : before - 1.0 / level;
 }
 
