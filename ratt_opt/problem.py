@@ -217,6 +217,9 @@ class Problem:
         array = integer_array(elements)
         if array.shape != (self.n_robots,):
             raise InputError("elements", f"must hold one element per robot, shape ({self.n_robots},)", elements)
+        exists = array.dtype.kind in "iu" and array.min() >= 0 and array.max() < self.objective.n
+        if exists and np.array_equal(self.robot[array], np.arange(self.n_robots)):  # as nearly always
+            return readonly(array.astype(np.int64))
         for i, element in enumerate(array):
             e = check_integer(f"elements[{i}]", element, low=0, high=self.objective.n - 1)
             if self.robot[e] != i:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ratt_opt.problem import Attack
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, ProvedPlan
+from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -18,6 +19,8 @@ __all__ = ["break_ties"]
 
 SHARE, MOST_NODES = 0.1, 100_000
 """Of the time left, and nodes of each attack on a plan that is worth more."""
+NO_MORE = 1e-9
+"""Relative difference of values without attack that counts as none."""
 ROUNDS = 10
 """Plans that are attacked at most; each that falls teaches an attack."""
 
@@ -45,20 +48,30 @@ def break_ties(incumbent: Incumbent, budget: Budget) -> None:
 def _richer(incumbent: Incumbent, plan: IntArray, budget: Budget) -> IntArray:
     """A plan of no smaller value under the known outcomes that no exchange makes worth more without attack."""
     problem, pool = incumbent.problem, incumbent.pool
-    rounding = problem.objective.rounding
+    unattacked = OutcomePool(problem)
+    unattacked.add(Attack())
     least = min(incumbent.proved.lower, pool.plan_value(plan))
-    least -= PROVED * abs(least) + rounding
-    best, current = problem.team_value(plan, Attack()), plan.copy()
-    improved = True
-    while improved:
-        improved = False
-        for i, choice in enumerate(problem.choices):
-            for e in choice.tolist():
-                if budget.is_over:
-                    return current
-                other = current.copy()
-                other[i] = e
-                value = problem.team_value(other, Attack())
-                if value > best + 1e-9 * abs(best) + rounding and pool.plan_value(other) >= least:
-                    best, current, improved = value, other, True
+    least -= PROVED * abs(least) + problem.objective.rounding
+    current, robot, unchanged = plan.copy(), 0, 0
+    while unchanged < problem.n_robots and not budget.is_over:
+        unchanged += 1
+        for e in _richer_elements(unattacked, current, robot):
+            other = current.copy()
+            other[robot] = e
+            if pool.plan_value(other) >= least:
+                current, unchanged = other, 0
+                break
+        robot = (robot + 1) % problem.n_robots
     return current
+
+
+def _richer_elements(unattacked: OutcomePool, plan: IntArray, robot: int) -> list[int]:
+    """Elements of a robot with which a plan is worth more when nobody attacks, those of most worth first."""
+    objective, choice = unattacked.objective, unattacked.problem.choices[robot]
+    change = objective.information[choice] - objective.information[plan[robot]]
+    inside = unattacked.membership()[:, robot, None, None, None]
+    points = unattacked.group_points(objective.information[plan]) + inside * change[:, None]
+    worth = unattacked.outcome_values(objective.value(points))[:, 0]
+    now = float(worth[choice == plan[robot]][0])
+    better = np.flatnonzero(worth > now + NO_MORE * abs(now) + objective.rounding)
+    return [int(e) for e in choice[better[np.argsort(-worth[better], kind="stable")]]]
