@@ -15,11 +15,14 @@ from ratt_opt.attackers.by_prices.decision import ThresholdDecision
 from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
 from ratt_opt.attackers.by_size import size_decision
 from ratt_opt.attackers.staging import without_stages
+from ratt_opt.solvers.maxmin import descent
 from ratt_opt.solvers.maxmin.backjumps import Backjumps
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
+from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
-from ratt_opt.solvers.maxmin.plans.kicks import Kicks
+from ratt_opt.solvers.maxmin.plans.adversary import LastingAttacks
+from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,8 +56,12 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "covers": ((CoverSearch, "of", _gives(None)),),
     "marginal gains": ((MarginalSearch, "of", _gives(None)),),
     "backjumps": ((Backjumps, "follow", _gives(None)),),
-    "perturbation": ((Kicks, "are_due", _gives(False)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
+    "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
+    "attacks on whole nodes": ((NodeAttacks, "of", _gives(None)),),
+    "lasting attacks": ((LastingAttacks, "of", lambda _problem, attack: attack),),
+    "floors": ((descent, "MOST_FLOORS", 0),),
+    "further trees": ((descent.Descent, "_is_given_up", _gives(False)),),
 }
 """The same, of best plans."""
 ATTACK_SWITCHES = [*STAGE_NAMES, *BOUNDS]

@@ -71,7 +71,6 @@ def bound(
         typer.Option("--time-limit", help="Seconds for all searches and the certificate, which has a quarter of them."),
     ] = TIME_LIMIT,
     gap: Annotated[float, typer.Option("--gap", help="Relative gap at which that search stops.")] = GAP,
-    workers: Annotated[int, typer.Option("--workers", help="Processes that search for the best plan.")] = 1,
     guarantees: Annotated[
         Literal["none", "quick", "full"],
         typer.Option("--guarantees", help="What was sure before planning: left out, in two seconds, or in full."),
@@ -88,7 +87,7 @@ def bound(
 
     source = load_input(file)
     shown = {"as_json": as_json, "as_latex": as_latex}
-    _bound(source, out, objective, time_limit, gap, workers, guarantees, certificate=certificate, **shown)
+    _bound(source, out, objective, time_limit, gap, guarantees, certificate=certificate, **shown)
 
 
 def _bound(
@@ -97,7 +96,6 @@ def _bound(
     objective: str = "trace",
     time_limit: float = TIME_LIMIT,
     gap: float = GAP,
-    workers: int = 1,
     guarantees: str = "quick",
     *,
     certificate: bool,
@@ -116,9 +114,7 @@ def _bound(
     check_limits(gap, time_limit)
     began = monotonic()
     searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
-    report = main_job(
-        source, objective=objective, time_limit=searching, gap=gap, workers=workers, guarantees=guarantees
-    )
+    report = main_job(source, objective=objective, time_limit=searching, gap=gap, guarantees=guarantees)
     left = max(0.0, time_limit - (monotonic() - began))
     wanted = certificate and not report.interrupted
     with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report"):

@@ -31,12 +31,10 @@ from ratt_opt.problem import Plan, Problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
-from ratt_opt.solvers.maxmin.subtrees.crew import check_workers
 from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks, random_plan
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping
-    from concurrent.futures import Executor
     from pathlib import Path
 
     from ratt_opt._validation import FloatArray
@@ -120,7 +118,6 @@ def bound(
     time_limit: float | None = 60.0,
     certificate: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
-    workers: int | Executor | None = None,
     guarantees: str = "quick",
     planners: Mapping[str, Planner] | None = None,
 ) -> BoundReport:
@@ -141,7 +138,6 @@ def bound(
         function of the user's own the value of each element is computed whatever the limit: RATT's plan needs them
     certificate : file for the proof of the bracket, verified before it is named so; none if ``None``
     progress : called with one line of text whenever there is something to tell
-    workers : processes, or an executor, for the search for the optimum, as for :func:`solve_maxmin`
     guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
         most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
     planners : planners of your own by name, ``(problem) -> elements`` as in missions: their plans are attacked too, and
@@ -158,7 +154,6 @@ def bound(
     _check_planners(planners or {})
     began = datetime.now(UTC)
     problem, source = _problem_of(scenario_or_problem, objective, model)
-    check_workers(problem, workers)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
@@ -168,7 +163,7 @@ def bound(
         baselines = _kept(budget, lambda: tuple(_baselines(problem, single, budget)))
         baselines += tuple(_own_plans(problem, planners or {}, budget))
     with steps("the best possible plan"):
-        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, workers=workers)
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
         optimum, best = _best(problem, search, budget)
     with steps("other attacks on the recommended plan"):
         shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)

@@ -1,4 +1,4 @@
-"""Worker processes on this machine, as executors: one pool, or processes of which each may be lost alone."""
+"""Worker processes on this machine, as an executor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["SeparateProcesses", "local_processes", "may_start_processes"]
+__all__ = ["local_processes"]
 
 T = TypeVar("T")
 
@@ -43,11 +43,6 @@ def _stop_sending(calls: Any, future: Future[Any]) -> None:
             calls._reader.close()
 
 
-def may_start_processes() -> bool:
-    """Whether this process may start others; a worker of a ``multiprocessing.Pool`` may not (it is daemonic)."""
-    return not multiprocessing.current_process().daemon
-
-
 @contextmanager
 def local_processes(workers: int | None) -> Iterator[Executor]:
     """Start local processes by spawn (fork deadlocks with threads), with one BLAS thread each.
@@ -68,52 +63,6 @@ def local_processes(workers: int | None) -> Iterator[Executor]:
             raise
         finally:
             executor.shutdown()
-
-
-class SeparateProcesses(Executor):
-    """That many pools of one process each, started at first use: one that dies takes no other's work along.
-
-    Unlike a pool of several processes it goes on after that: the next call starts another one. Shutting down ends
-    them at once, whatever they are at.
-    """
-
-    def __init__(self, workers: int) -> None:
-        self._pools: list[_Pool | None] = [None] * workers
-        self._running: list[list[Future[Any]]] = [[] for _ in range(workers)]
-        self._processes: list[Any] = []
-
-    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
-        """Run a call on the process that has the fewest left."""
-        for futures in self._running:
-            futures[:] = [future for future in futures if not future.done()]
-        k = min(range(len(self._pools)), key=lambda i: len(self._running[i]))
-        try:
-            future = self._pool(k).submit(fn, *args, **kwargs)
-        except BrokenProcessPool:  # it died since
-            self._pools[k] = None
-            future = self._pool(k).submit(fn, *args, **kwargs)
-        self._running[k].append(future)
-        return future
-
-    def _pool(self, k: int) -> _Pool:
-        pool = self._pools[k]
-        if pool is None:
-            known = set(multiprocessing.active_children())
-            pool = _Pool(1, multiprocessing.get_context("spawn"), initializer=_follow_parent)
-            with _one_thread_each(), _uninterrupted():
-                pool.submit(os.getpid)  # starts it
-            self._pools[k] = pool
-            self._processes += set(multiprocessing.active_children()) - known
-        return pool
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002  (nothing waits)
-        """End all processes now."""
-        for process in self._processes:
-            with suppress(ValueError):  # closed already
-                process.terminate()
-        for pool in self._pools:
-            if pool is not None:
-                pool.shutdown()
 
 
 @contextmanager

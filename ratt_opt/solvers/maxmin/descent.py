@@ -20,13 +20,11 @@ import numpy as np
 
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.search import BranchAndBound
-from ratt_opt.solvers.maxmin.subtrees.shared_search import SharedSearch
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.search import Known, Progress
-    from ratt_opt.solvers.maxmin.subtrees.crew import Crew
     from ratt_opt.solvers.maxmin.turns import Turns
 
 __all__ = ["Descent"]
@@ -48,15 +46,11 @@ MOST_FLOORS = 20
 
 
 class Descent:
-    """The search of one problem by such trees; it may be interrupted at any point, as each of them may.
+    """The search of one problem by such trees; it may be interrupted at any point, as each of them may."""
 
-    ``crew`` : who helps with each of them; nobody if ``None``.
-    """
-
-    def __init__(self, known: Known, crew: Crew | None = None) -> None:
-        self._known, self._crew = known, crew
+    def __init__(self, known: Known) -> None:
+        self._known = known
         self.first = self._best = self._current = BranchAndBound(known)
-        self._searching = self._shared()
         self._tree_nodes, self._floors = float(TREE_NODES), MOST_FLOORS
         self._until = FIRST_NODES
 
@@ -72,7 +66,7 @@ class Descent:
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         while True:
-            stop = self._searching.run(TurnsUntil(turns, self._is_given_up), self._told(progress))
+            stop = self._current.run(TurnsUntil(turns, self._is_given_up), self._told(progress))
             has_ended = stop is Stop.GAP
             if has_ended and self._known.rule.floor <= self._known.incumbent.candidates.level:
                 return stop
@@ -86,10 +80,6 @@ class Descent:
     def _is_given_up(self) -> bool:
         """Whether the tree in work has taken too many nodes."""
         return self._known.incumbent.budget.nodes >= self._until
-
-    def _shared(self) -> BranchAndBound | SharedSearch:
-        """The search of the tree in work: by the crew, if there is one."""
-        return self._current if self._crew is None else SharedSearch(self._current, self._crew)
 
     def _lowest(self) -> BranchAndBound:
         return min(self._best, self._current, key=lambda tree: tree.upper)
@@ -108,9 +98,7 @@ class Descent:
         self._best = self._lowest()
         self._known.rule.floor = self._next_floor()
         self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
-        # A crew takes nodes from all over the tree; who goes in depth has few.
-        self._current = BranchAndBound(self._known, depth_first=self._crew is None)
-        self._searching = self._shared()
+        self._current = BranchAndBound(self._known, depth_first=True)
 
     def _is_within(self, width: float) -> bool:
         """Whether no larger share of the bound is left."""

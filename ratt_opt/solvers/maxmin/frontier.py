@@ -65,14 +65,8 @@ class Frontier:
 
     def __init__(self, rule: ClosingRule, *, depth_first: bool = False) -> None:
         self.rule, self.depth_first = rule, depth_first
-        self.empty()
-
-    def empty(self) -> None:
-        """Forget all nodes."""
         self.current: TreeNode | None = None
         """The node in work, which is part of the bound."""
-        self.lent: list[TreeNode] = []
-        """Open nodes that others search, which are part of the bound too."""
         self._queue: list[tuple[float, int, TreeNode]] = []
         self._pushed = 0
         self._closed: list[TreeNode] = []
@@ -89,7 +83,6 @@ class Frontier:
         still.extend(node.bound for node, _ in self._settled if not node.is_dropped)
         if self.current is not None:
             still.append(self.current.bound)
-        still.extend(node.bound for node in self.lent)
         return max([self._finished, *still])
 
     @property
@@ -118,29 +111,11 @@ class Frontier:
         heapq.heappop(self._queue)
         return node
 
-    def lend(self, most: int) -> list[TreeNode]:
-        """Take that many open nodes of largest bound that do not close out of the queue, for others to search."""
-        nodes: list[TreeNode] = []
-        while len(nodes) < most and not self.is_closed:
-            node = self._queue[0][2]
-            self.lent.append(node)  # before it leaves the queue: an interrupt must not lose it
-            heapq.heappop(self._queue)
-            nodes.append(node)
-        return nodes
-
-    def take_back(self, nodes: list[TreeNode]) -> None:
-        """End the lending of nodes that are accounted for: divided, closed or queued again."""
-        self.lent = [node for node in self.lent if not any(node is other for other in nodes)]
-
-    def __len__(self) -> int:
-        """How many nodes are queued."""
-        return len(self._queue)
-
     def nodes(self) -> Iterator[TreeNode]:
-        """All that are open, in work, lent, closed or settled."""
+        """All that are open, in work, closed or settled."""
         queued, settled = (node for _, _, node in self._queue), (node for node, _ in self._settled)
         current = [] if self.current is None else [self.current]
-        return chain(queued, current, self.lent, self._closed, settled)
+        return chain(queued, current, self._closed, settled)
 
     def finish(self, node: TreeNode) -> None:
         """Close a node if its bound closes it, else queue it."""

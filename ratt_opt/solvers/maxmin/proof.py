@@ -161,11 +161,6 @@ class TreeNode:
         winners = self.winners if winner is None else {**self.winners, winner[0]: winner[1]}
         return TreeNode(self.choices if choices is None else choices, winners, self.bound, self.leaf, parent=self)
 
-    @property
-    def is_single(self) -> bool:
-        """Whether it stands for one plan."""
-        return all(len(choice) == 1 for choice in self.choices)
-
     def open_again(self) -> None:
         """Note that it is open, and with it what is above."""
         node: TreeNode | None = self

@@ -21,7 +21,6 @@ from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
 from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
 from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups, SmallTables
 from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
-from ratt_opt.solvers.maxmin.plans.kicks import Kicks
 from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
 from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
@@ -57,37 +55,33 @@ class Known:
 
     task: Task
     incumbent: Incumbent
-    pairs: PairOutcomes | None
     rule: ClosingRule
     cuts: CutStore
     proofs: GroupProofs
     tables: SmallTables
     node_attacks: NodeAttacks | None
-    kicks: Kicks
 
     @classmethod
-    def of(cls, task: Task, incumbent: Incumbent, gap: float, pairs: PairOutcomes | None) -> Known:
+    def of(cls, task: Task, incumbent: Incumbent, gap: float) -> Known:
         """What is known before the first tree; ``gap`` : relative width that closes a node."""
         pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap)
         cuts = CutStore(task, pool)
         return cls(
             task=task,
             incumbent=incumbent,
-            pairs=pairs,
             rule=rule,
             cuts=cuts,
             proofs=GroupProofs(cuts, rule, incumbent.budget),
             tables=SmallTables(task, pool),
             node_attacks=NodeAttacks.of(task.problem, pool, incumbent.budget),
-            kicks=Kicks(incumbent),
         )
 
 
 class BranchAndBound:
     """The search of one tree; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
-    def __init__(self, known: Known, roots: list[TreeNode] | None = None, *, depth_first: bool = False) -> None:
-        self.task, self.pool, self.pairs = known.task, known.incumbent.pool, known.pairs
+    def __init__(self, known: Known, *, depth_first: bool = False) -> None:
+        self.task, self.pool = known.task, known.incumbent.pool
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
         self.frontier = Frontier(self.rule, depth_first=depth_first)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
@@ -95,13 +89,10 @@ class BranchAndBound:
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
-        self.node_attacks, self.kicks = known.node_attacks, known.kicks
+        self.node_attacks = known.node_attacks
         self.backjumps = Backjumps(self.frontier, self.cuts)
-        self._is_part = roots is not None
-        """Whether another search looks after winners decided for all plans: it queues what is open in the proofs."""
-        self.roots = [self._first_node()] if roots is None else roots
-        for root in self.roots:
-            self.frontier.push(root)
+        self.root = self._first_node()
+        self.frontier.push(self.root)
 
     @property
     def upper(self) -> float:
@@ -110,37 +101,34 @@ class BranchAndBound:
 
     def use(self, cuts: list[int]) -> None:
         """Let the first programs hold these cuts, those that are usable everywhere."""
-        winners = [self.winners.of(self.roots[0], int(outcome)) for outcome in self.cuts.outcomes[cuts]]
+        winners = [self.winners.of(self.root, int(outcome)) for outcome in self.cuts.outcomes[cuts]]
         for k, winner in zip(cuts, winners, strict=True):
             if winner == self.cuts.groups[k]:
                 self.rounds.use(k)
 
-    def proof(self, number: int = 0) -> UpperProof:
-        """The proof of the bound below one of the roots: winners decided for all plans, then the tree."""
-        return upper_proof(self.winners.above(self.roots[number]), self.pool.attack, self.cuts.record)
+    def proof(self) -> UpperProof:
+        """The proof of the bound: winners decided for all plans, then the tree."""
+        return upper_proof(self.winners.above(self.root), self.pool.attack, self.cuts.record)
 
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
-        while not self.is_finished():
+        while not self._is_finished():
             if (stop := turns.budget.stop() or turns.stop()) is not None:
                 return stop
-            if (stop := self.explore_next(turns)) is not None:
+            if (stop := self._explore_next(turns)) is not None:
                 return stop
             self.backjumps.follow()
-            if not self._is_part and self.kicks.are_due(turns.budget.nodes):
-                self.kicks.kick()
             if progress is not None:
                 progress(turns.budget.nodes, self.incumbent.proved.lower, self.upper)
         return Stop.GAP
 
-    def is_finished(self) -> bool:
+    def _is_finished(self) -> bool:
         """Whether every open node closes, and everything that was closed still does."""
-        lost = self.winners.reconsider()
-        for outcome in () if self._is_part else lost:
-            self.winners.reopen(outcome, self.roots[0], self.frontier)
+        for outcome in self.winners.reconsider():
+            self.winners.reopen(outcome, self.root, self.frontier)
         return self.frontier.is_closed and not self.frontier.reopen()
 
-    def explore_next(self, turns: Turns) -> Stop | None:
+    def _explore_next(self, turns: Turns) -> Stop | None:
         """Bound the open node of largest bound, then close it or divide it; why to stop if it is neither."""
         node = self.frontier.take()
         turns.budget.nodes += 1
@@ -192,11 +180,6 @@ class BranchAndBound:
         The whole node is attacked if some outcome's winner is open: elsewhere relaxed plans find what hurts.
         """
         better = self.rule.better
-        if self.pairs is not None:
-            left = self.pairs.narrow(node, better, self.by_winner)
-            if left is None:
-                return None
-            self.frontier.current = node = left
         left = self.small.narrow(node, better)
         if left is None or self.node_attacks is None or not (self.winners.at(left) < 0).any():
             return left

@@ -19,13 +19,11 @@ from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin.groups.pair_outcomes import PairOutcomes
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
 from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.plans.ties import break_ties
 from ratt_opt.solvers.maxmin.search import Known
-from ratt_opt.solvers.maxmin.subtrees.crew import check_workers, open_crew
 from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
@@ -34,8 +32,6 @@ from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
@@ -60,7 +56,6 @@ def solve_maxmin(
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     start: ArrayLike | Plan | MaxMinResult | None = None,
-    workers: int | Executor | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
@@ -81,28 +76,23 @@ def solve_maxmin(
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
         problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
-    workers : processes on this machine (started if a search takes longer than a second), or an executor that runs
-        anything, such as a Dask client's; ``None`` or 1 searches alone. A worker that dies costs what it was at, a
-        second of work. Which of equally good plans is found, and how many nodes that takes, may differ from run to
-        run. Set functions that are no information criterion are searched alone
 
     Raises
     ------
-    InputError : a limit is negative, ``start`` is a plan but not one element per robot, ``workers`` is neither a number
-        nor an executor or cannot receive the problem; or the objective is no information criterion, and one of its
-        values that the search computed falls.
+    InputError : a limit is negative, ``start`` is a plan but not one element per robot, or the objective is no
+        information criterion, and one of its values that the search computed falls.
 
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    check_workers(check_problem(problem), workers)
+    check_problem(problem)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap, alpha_cs)
     searched = with_unit_prior(measured_coordinates(problem))
     earlier = searched.lowered(start) if isinstance(start, MaxMinResult) else start
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.outward(lower, upper)))
-    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, earlier, workers).outward(searched)
+    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, earlier).outward(searched)
     return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
@@ -113,7 +103,6 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     progress: Progress = None,
     alpha_cs: int | None = None,
     start: ArrayLike | Plan | MaxMinResult | None = None,
-    workers: int | Executor | None = None,
     *,
     in_depth: bool = True,
 ) -> MaxMinResult:
@@ -131,13 +120,11 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
         pool.list_all()
         outcomes = warm.add_outcomes(pool)
         task = Task.of(problem)
-        pairs = PairOutcomes.of(task)
-        incumbent.start(_first_plans(problem, first, warm, pairs, budget))
-        with open_crew(workers) as crew:
-            # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-            search = UpperEnds(Known.of(task, incumbent, max(gap - PROVED, 0.0), pairs), crew, in_depth=in_depth)
-            search.concave.first.use(warm.add_cuts(search.concave.first.cuts, outcomes))
-            stop = _search_and_prove(search, Turns(budget, incumbent), progress)
+        incumbent.start(_first_plans(problem, first, warm, budget))
+        # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
+        search = UpperEnds(Known.of(task, incumbent, max(gap - PROVED, 0.0)), in_depth=in_depth)
+        search.concave.first.use(warm.add_cuts(search.concave.first.cuts, outcomes))
+        stop = _search_and_prove(search, Turns(budget, incumbent), progress)
         if incumbent.is_proved and not budget.is_over:
             break_ties(incumbent, budget)
     except OutOfBudget as out:
@@ -147,14 +134,11 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     return _result(problem, incumbent, search, stop, gap)
 
 
-def _first_plans(
-    problem: Problem, first: IntArray, warm: WarmStart, pairs: PairOutcomes | None, budget: Budget
-) -> list[IntArray]:
+def _first_plans(problem: Problem, first: IntArray, warm: WarmStart, budget: Budget) -> list[IntArray]:
     """RATT's plan, and one that was best a step before; the plans of other planners if there is none."""
     if warm.plan is not None:
         return [first, warm.plan]
-    plans = [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
-    return plans if pairs is None else [*plans, pairs.values.strongest_plan()]
+    return [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
 
 
 def _search_and_prove(search: UpperEnds, turns: Turns, progress: Progress) -> Stop:

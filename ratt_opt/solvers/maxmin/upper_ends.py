@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.levels.by_levels import SearchByLevels
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.search import Known, Progress
-    from ratt_opt.solvers.maxmin.subtrees.crew import Crew
     from ratt_opt.solvers.maxmin.turns import Turns
 
 __all__ = ["UpperEnds"]
@@ -38,8 +37,8 @@ NODES_IN_DEPTH = 10
 class UpperEnds:
     """The smallest of all bounds, with its proof; may be interrupted at any point, as all of them may."""
 
-    def __init__(self, known: Known, crew: Crew | None, *, in_depth: bool = True) -> None:
-        self.concave = Descent(known, crew)
+    def __init__(self, known: Known, *, in_depth: bool = True) -> None:
+        self.concave = Descent(known)
         self._known = known
         self._in_depth = _search_in_depth(known) if in_depth else None
         self._turn = float(TURN)

@@ -13,11 +13,10 @@ from ratt_opt.solvers import exhaustive, ratt
 from ratt_opt.solvers.by_values import plan_tree
 from ratt_opt.solvers.maxmin import descent, solve, upper_ends
 from ratt_opt.solvers.maxmin.covers import cover_search, dive
-from ratt_opt.solvers.maxmin.groups import pair_outcomes, small_groups
+from ratt_opt.solvers.maxmin.groups import small_groups
 from ratt_opt.solvers.maxmin.marginals import diving, marginal_search
 from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
-from ratt_opt.solvers.maxmin.subtrees import crew, shared_search
 
 if TYPE_CHECKING:
     import pytest
@@ -29,15 +28,12 @@ __all__ = [
     "BLIND",
     "COVERS_ALONE",
     "EXCHANGED",
-    "GRACE",
     "LAZY",
     "LISTED",
-    "LOSSES",
     "MARGINALS_ALONE",
     "NEVER_NEARLY",
     "NO_GROUPS",
     "NO_PLANS_LISTED",
-    "SHARED_AT_ONCE",
     "SMALL_TREES",
     "TREES_SOON",
     "UNLISTED",
@@ -61,21 +57,13 @@ EXCHANGED: Way = {(adversary, "SEARCHED_BY_SIZE"): 0}
 """Known outcomes are exchanged, as for large teams."""
 BLIND: Way = EXCHANGED | {(adversary.Adversary, "_quick_attack"): lambda *_: Attack()}
 """Quick attacks see nothing: only exact ones tell good plans from bad."""
-NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0, (pair_outcomes, "MOST_VALUES"): 0}
-"""Nothing is known of small groups and pairs beforehand."""
+NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0}
+"""Nothing is known of small groups beforehand."""
 TREES_SOON: Way = {(descent, "FIRST_NODES"): 1, (descent, "NARROW"): 0.0}
 """Trees with floors come soon, as where searches of large teams are long."""
 SMALL_TREES: Way = TREES_SOON | {(descent, "TREE_NODES"): 2}
 NEVER_NEARLY: Way = {(descent, "NEARLY"): 0.0}
 """No floor counts as nearly reached."""
-SHARED_AT_ONCE: Way = {
-    (shared_search, "ALONE_SECONDS"): 0.0,
-    (shared_search, "NODES_EACH"): 0,
-    (shared_search, "SLICE"): 0.06,
-}
-"""Every search is shared from its first nodes on, in small pieces."""
-LOSSES, GRACE = crew.LOSSES, shared_search.GRACE
-"""Pieces of work that are lost before a search goes on alone; seconds that it waits for workers at its end."""
 
 _HOWEVER_MUCH_ROBOTS_SEE: Way = {
     (upper_ends.UpperEnds, "_run_concave"): lambda *_: Stop.NODES,

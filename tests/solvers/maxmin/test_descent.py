@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from ratt_opt import certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
-from tests.solvers.maxmin.engine import BLIND, NEVER_NEARLY, SHARED_AT_ONCE, SMALL_TREES, UNLISTED, floors_used
+from tests.solvers.maxmin.engine import BLIND, NEVER_NEARLY, SMALL_TREES, UNLISTED, floors_used
 from tests.solvers.maxmin.proofs import proved_upper
-from tests.solvers.maxmin.subtrees.workers import Here
 from tests.strategies import OBJECTIVES, small_team
 from tests.ways import go
 
@@ -39,29 +38,6 @@ def test_agrees_with_exhaustive_search(seed: int, sees_late: bool, monkeypatch: 
     assert proved_upper(problem, found.proof) <= found.upper + slack
 
 
-@pytest.fixture
-def shared_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every tree is shared from its first nodes on, in small pieces."""
-    go(monkeypatch, SHARED_AT_ONCE)
-
-
-@pytest.mark.usefixtures("shared_at_once")
-@pytest.mark.parametrize("group", range(6))
-def test_shared_trees_agree_with_exhaustive_search(group: int, tmp_path) -> None:
-    """The crew goes from tree to tree: what a worker decided above one floor does not count above the next."""
-    crew = Here(lambda call: call % 5 == 4)
-    for seed in range(100 + group, 136, 6):
-        problem = small_team(seed)
-        found, best = solve_maxmin(problem, gap=0, workers=crew), exhaustive_optimum(problem)
-        slack = 1e-9 * best.upper + 16 * problem.objective.rounding
-        assert found.lower == pytest.approx(best.lower, abs=slack)
-        assert best.lower - slack <= found.upper <= best.upper + slack
-        assert proved_upper(problem, found.proof) <= found.upper + slack
-        if found.upper > 0:
-            assert certify(problem, found, tmp_path / "one.json").verified.upper >= best.lower - slack
-    assert len(crew.trees) > 3
-
-
 def test_an_optimum_of_nothing_ends() -> None:
     problem = random_scenario(5, 3, alpha_s=4, alpha_c=3, seed=2).problem()
     nothing = replace(
@@ -71,22 +47,13 @@ def test_an_optimum_of_nothing_ends() -> None:
     assert found.upper == pytest.approx(0, abs=1e-9)
 
 
-class Brief(Here):
-    """Explores two nodes of each piece of work: three would end the tree."""
-
-    def submit(self, fn, /, work, **kwargs):
-        return super().submit(fn, replace(work, max_nodes=work.nodes_before + 2), **kwargs)
-
-
-@pytest.mark.usefixtures("shared_at_once")
-@pytest.mark.parametrize("workers", [None, Brief()])
 def test_floors_lie_between_the_best_plan_and_the_bound_and_come_down(
-    floors: list[tuple[float, float, float]], workers: Here | None, monkeypatch: pytest.MonkeyPatch
+    floors: list[tuple[float, float, float]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     go(monkeypatch, NEVER_NEARLY)
     problem = random_scenario(8, 6, alpha_s=1, alpha_c=14, seed=1).problem()
     uppers = []
-    result = solve_maxmin(problem, gap=1e-7, workers=workers, progress=lambda *state: uppers.append(state[2]))
+    result = solve_maxmin(problem, gap=1e-7, progress=lambda *state: uppers.append(state[2]))
     finite = [one for one in floors if np.isfinite(one[1])]
     assert len(finite) > 2
     assert all(level < floor < upper for level, floor, upper in finite)

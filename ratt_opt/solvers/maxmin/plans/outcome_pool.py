@@ -61,14 +61,6 @@ class OutcomePool:
         """Add an outcome that some attack has; the attack is found when it is needed."""
         return self._add(outcome, outcome)
 
-    def origin(self, outcome: int) -> Attack | Outcome:
-        """What an outcome was added by; light to send elsewhere."""
-        return self._attacks[outcome]
-
-    def add_origin(self, origin: Attack | Outcome) -> int:
-        """Add what another pool of the same problem was told."""
-        return self.add(origin) if isinstance(origin, Attack) else self.add_outcome(origin)
-
     def list_all(self) -> None:
         """Add all non-dominated outcomes if there are few."""
         if self.problem.n_robots > LISTED_ROBOTS or not self.problem.threat.is_symmetric:

@@ -9,11 +9,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.solvers.maxmin.plans.candidates import climb
-from ratt_opt.solvers.maxmin.plans.kicks import kicked
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
 
@@ -50,7 +50,7 @@ class Walk:
         softness = SOFTNESS * abs(candidates.level)
         most = max(FEWEST, len(self._plan) // 3)
         robots = int(self._rng.integers(FEWEST, most + 1)) if len(self._plan) > 1 else 1
-        plan = kicked(self._plan, robots, incumbent.problem.choices, self._rng)
+        plan = self._kicked(robots)
         plan = climb(incumbent.problem, incumbent.pool, plan, budget, softness)
         plan = climb(incumbent.problem, incumbent.pool, plan, budget)
         self._in_vain += 1
@@ -61,3 +61,10 @@ class Walk:
             self._plan = plan
         if self._in_vain % RETURN == 0:
             self._plan = candidates.best
+
+    def _kicked(self, robots: int) -> IntArray:
+        """The plan that the walk is at, but that many robots choose at random."""
+        changed, choices = self._plan.copy(), self._incumbent.problem.choices
+        for i in self._rng.choice(len(changed), min(robots, len(changed)), replace=False).tolist():
+            changed[i] = self._rng.choice(choices[i])
+        return changed

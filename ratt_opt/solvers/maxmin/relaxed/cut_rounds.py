@@ -44,11 +44,6 @@ class CutRounds:
         """Bring cut ``k`` into the program."""
         self._program.use(k, float(self.cuts.constants[k]), self.cuts.scores(k))
 
-    def use_again(self, k: int) -> None:
-        """Bring cut ``k`` into the program unless it is there."""
-        if k not in self._program.in_use:
-            self.use(k)
-
     def begin(self, node: TreeNode) -> None:
         """Leave out what is not usable at a node; give it a cut on every decided outcome if it has none."""
         winners = self.winners.at(node)

@@ -34,7 +34,6 @@ class CutStore:
         self._origin = np.zeros((64, 2), dtype=np.int64)
         self._constants = np.zeros(64)
         self._scores = np.zeros((task.objective.n, 64))
-        self._copied: dict[tuple[int, int, int | None, bytes], int] = {}
 
     def __len__(self) -> int:
         return len(self._cuts)
@@ -66,13 +65,6 @@ class CutStore:
     def tangent(self, outcome: int, group: int, point: FloatArray, target: int | None = None) -> int:
         """Add the tangent of a group's value at the posterior information ``point``; return its index."""
         return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
-
-    def copied(self, outcome: int, group: int, point: FloatArray, target: int | None) -> int:
-        """The index of a tangent that another search had; added if it is met for the first time."""
-        key = outcome, group, target, point.tobytes()
-        if key not in self._copied:
-            self._copied[key] = self.tangent(outcome, group, point, target)
-        return self._copied[key]
 
     def add(self, outcome: int, group: int, cut: GroupCut) -> int:
         """Add a cut; return its index."""
