@@ -6,11 +6,29 @@
 
 #include "team.h"
 
-/* A node of the list of groups: robots inside, robots outside, links between them. */
+/* A node of the list of groups: robots inside, robots outside, those next to one inside; links between the first two. */
 typedef struct {
-    uint32_t inside, outside;
-    int32_t cut;
+    uint64_t inside, outside, near;
+    int64_t cut;
 } Branch;
+
+/* A level of the search of partitions. */
+typedef struct {
+    uint64_t left;                    /* robots in no group so far */
+    int64_t cut, blinded;             /* by the groups so far */
+    int64_t next, group;              /* the group tried next, and the one that is chosen */
+} PartitionLevel;
+
+/* Partitions of the team into listed groups, within both budgets. */
+typedef struct {
+    int64_t n_blinded, most_cut;
+    const uint64_t *groups;           /* sorted by lowest robot */
+    const int64_t *starts;            /* (robots + 1) the first group of each lowest robot */
+    const uint64_t *neighbours;       /* (robots) */
+    const int64_t *needs;             /* (groups) robots to blind, at least; may be raised between two calls */
+    PartitionLevel *levels;           /* (robots + 1) */
+    int64_t depth, nodes;             /* depth: -1 at the end; nodes: groups tried */
+} Partitions;
 
 /* A level of the search of covers. */
 typedef struct {
