@@ -19,6 +19,7 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[8] = sizeof(GroupTree);
     sizes[9] = sizeof(PartitionLevel);
     sizes[10] = sizeof(Partitions);
+    sizes[11] = sizeof(CutAnneal);
 }
 
 /* Those of the searches for best plans. */

@@ -61,6 +61,18 @@ typedef struct {
     uint64_t *random;                  /* not 0 */
 } Anneal;
 
+/* An annealed cut that leaves no group with more than `most` robots; arcs as in `Anneal`. */
+typedef struct {
+    int64_t robots, groups, most;
+    const int64_t *start, *robot;
+    const int64_t *price, *counts;     /* (arcs) of a cut; (robots) 1, or 0 for those that no size counts */
+    int64_t *group, *best;             /* (robots) labels of groups; the same where the fewest links were cut */
+    int64_t *sizes;                    /* (groups) robots that count */
+    double hot, cold, oversize;        /* temperatures at the first and after the last move; the price of a robot too many */
+    void *random;                      /* NumPy's source of random bits, and its function for doubles in [0, 1) */
+    double (*uniform)(void *random);
+} CutAnneal;
+
 /* A search for groups whose reduced cost, unit * links that leave it - duals of its robots + blinding * robots blinded, is less
    than `limit`, and of which blinding at most n_blinded leaves less than the threshold. Arcs as in `Anneal`. */
 typedef struct {
