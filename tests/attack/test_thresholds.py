@@ -29,6 +29,7 @@ from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.solvers.lazy_greedy import GreedyRecord
 from tests.strategies import random_problem
 
 RECORDS = AnnealRecord, QuestionRecord, SetQuestionRecord, ChoiceRecord, DisjointRecord
@@ -236,12 +237,12 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(12, np.int64)
+    sizes = np.zeros(13, np.int64)
     layout(sizes.ctypes.data)
     records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord)]
     first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
     of_graphs = LEVEL.itemsize, ctypes.sizeof(PartitionsRecord), ctypes.sizeof(CutAnnealRecord)
-    assert sizes.tolist() == [*first, *records, *of_graphs]
+    assert sizes.tolist() == [*first, *records, *of_graphs, ctypes.sizeof(GreedyRecord)]
 
 
 def test_the_example_of_the_page_of_the_engine():

@@ -20,6 +20,7 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[9] = sizeof(PartitionLevel);
     sizes[10] = sizeof(Partitions);
     sizes[11] = sizeof(CutAnneal);
+    sizes[12] = sizeof(Greedy);
 }
 
 /* Those of the searches for best plans. */

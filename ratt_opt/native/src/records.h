@@ -73,6 +73,19 @@ typedef struct {
     double (*uniform)(void *random);
 } CutAnneal;
 
+/* What the next choices of the greedy algorithm add; planar matrices [[a, b], [b, c]] as rows of a, of b and of c, so that
+   targets lie side by side. Rows have `width` places: behind the targets come ones that add nothing (trace, log-det). */
+typedef struct {
+    int64_t criterion, targets, width;
+    const double *weights;     /* (width) */
+    const double *information; /* (elements, 3, width) */
+    const double *sums;        /* (3, width) the posterior information so far */
+    const double *covariances; /* (4, width) its inverse; the largest eigenvalues of that */
+    const int64_t *order;      /* (targets) the largest weighted eigenvalue first */
+    double *bounds;            /* (elements) what no later gain exceeds */
+    double *gains;             /* (elements) */
+} Greedy;
+
 /* A search for groups whose reduced cost, unit * links that leave it - duals of its robots + blinding * robots blinded, is less
    than `limit`, and of which blinding at most n_blinded leaves less than the threshold. Arcs as in `Anneal`. */
 typedef struct {
