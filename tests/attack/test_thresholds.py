@@ -22,6 +22,7 @@ from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import TreeRecord
+from ratt_opt.curvatures.planar.contexts import DescentRecord
 from ratt_opt.graph import group_list
 from ratt_opt.graph.largest_group.annealed_cut import CutAnnealRecord
 from ratt_opt.graph.separable_groups import LEVEL, PartitionsRecord
@@ -237,12 +238,12 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(13, np.int64)
+    sizes = np.zeros(14, np.int64)
     layout(sizes.ctypes.data)
     records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord)]
     first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
     of_graphs = LEVEL.itemsize, ctypes.sizeof(PartitionsRecord), ctypes.sizeof(CutAnnealRecord)
-    assert sizes.tolist() == [*first, *records, *of_graphs, ctypes.sizeof(GreedyRecord)]
+    assert sizes.tolist() == [*first, *records, *of_graphs, ctypes.sizeof(GreedyRecord), ctypes.sizeof(DescentRecord)]
 
 
 def test_the_example_of_the_page_of_the_engine():

@@ -21,6 +21,7 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[10] = sizeof(Partitions);
     sizes[11] = sizeof(CutAnneal);
     sizes[12] = sizeof(Greedy);
+    sizes[13] = sizeof(Descent);
 }
 
 /* Those of the searches for best plans. */

@@ -86,6 +86,18 @@ typedef struct {
     double *gains;             /* (elements) */
 } Greedy;
 
+/* Descent over the contexts of one element: planar targets by their mean, even and odd parts, (3, targets). */
+typedef struct {
+    int64_t owners, targets;
+    double sign, value;        /* -1 for the largest marginal, which is then negated; the marginal in the context */
+    const double *parts;       /* (options, 3, targets) */
+    const int64_t *ends;       /* (owners + 1) the first option of each owner */
+    const double *added;       /* what the element adds */
+    double *total;             /* of the context */
+    int64_t *picks;            /* (owners) the option of each owner in the context */
+    double *rest, *one;        /* spare */
+} Descent;
+
 /* A search for groups whose reduced cost, unit * links that leave it - duals of its robots + blinding * robots blinded, is less
    than `limit`, and of which blinding at most n_blinded leaves less than the threshold. Arcs as in `Anneal`. */
 typedef struct {
