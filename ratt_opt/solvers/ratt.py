@@ -14,6 +14,7 @@ from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.lazy_greedy import LazyGreedy
 
 __all__ = [
     "alpha_cs_in_share",
@@ -147,8 +148,6 @@ def _lazy_greedy(
     problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray, budget: Budget
 ) -> int:
     """The same choices with few evaluations; the number is that of the algorithm as it stands."""
-    from ratt_opt.solvers.lazy_greedy import LazyGreedy
-
     is_open = np.zeros(objective.n, dtype=np.bool_)
     is_open[candidates] = True
     greedy, evaluations = LazyGreedy(objective, is_open), -len(candidates)
