@@ -2,8 +2,6 @@
 
 What a group needs is proved only for groups in the program's solutions: each gets a weak set of its own, as large as it
 can be, which says as much of the groups around it. At exact needs the program hardly leaves a part of a link.
-
-Imported only where compiled loops are used.
 """
 
 from __future__ import annotations
