@@ -37,8 +37,6 @@ FIRST = 8
 CLOSE = 1e-11
 """Marginals that differ by less, relative to the criterion before any measurement, are compared as the plain loop
 does: its values, rounded its way. It is a thousand times what either rounds off."""
-
-
 TARGETS_AT_ONCE = 1_000_000
 """Targets times candidates between two looks at the clock: some milliseconds."""
 

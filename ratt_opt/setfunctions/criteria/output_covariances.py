@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["output_covariances", "output_traces"]
 
-AT_ONCE = 1 << 14
-"""Matrices in one call: some milliseconds."""
+AT_ONCE = 4_000_000
+"""Multiplications, about, in one call: some milliseconds."""
 
 
 def output_traces(matrices: FloatArray, output: FloatArray) -> FloatArray:
@@ -37,7 +37,7 @@ def _of_each(name: str, matrices: FloatArray, output: FloatArray, shape: tuple[i
     own = checked("output", np.ascontiguousarray(output), np.float64, (targets, q, d))
     found, spare = np.empty((len(flat), targets, *shape)), np.empty((d + q, d))
     call = function(name, None, *[c_int64] * 4, *[c_void_p] * 4)
-    step = max(AT_ONCE // max(targets, 1), 1)
+    step = max(AT_ONCE // max(targets * d**3, 1), 1)
     for first in range(0, len(flat), step):
         some, where = address(flat[first:]), address(found[first:])
         call(min(step, len(flat) - first), targets, q, d, some, address(own), address(spare), where)
