@@ -37,8 +37,9 @@ def _of_each(name: str, matrices: FloatArray, output: FloatArray, shape: tuple[i
     own = checked("output", np.ascontiguousarray(output), np.float64, (targets, q, d))
     found, spare = np.empty((len(flat), targets, *shape)), np.empty((d + q, d))
     call = function(name, None, *[c_int64] * 4, *[c_void_p] * 4)
+    given, where, others = address(flat), address(found), (address(own), address(spare))
     step = max(AT_ONCE // max(targets * d**3, 1), 1)
     for first in range(0, len(flat), step):
-        some, where = address(flat[first:]), address(found[first:])
-        call(min(step, len(flat) - first), targets, q, d, some, address(own), address(spare), where)
+        some, to = given + first * flat.strides[0], where + first * found.strides[0]
+        call(min(step, len(flat) - first), targets, q, d, some, *others, to)
     return found.reshape(*matrices.shape[:-2], *shape)
