@@ -36,7 +36,7 @@ def team(seed: int) -> Scenario:
 def plan(seed: int) -> None:
     """The child: measurements in, controls out, a line each."""
     tracker = Tracker(team(seed), time_limit=SHARE * PERIOD)
-    tracker.step()  # plans from the start, and compiles
+    tracker.step()  # plans from the start, and loads modules
     tracker = Tracker(team(seed), time_limit=SHARE * PERIOD)
     print(json.dumps({"ready": True}), flush=True)
     for line in sys.stdin:

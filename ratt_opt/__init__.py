@@ -11,11 +11,9 @@ def __getattr__(name: str) -> object:
 
     import lazy_loader
 
-    from ratt_opt.running.cache import provide_cache
     from ratt_opt.running.interrupts import interrupts_between_packages
     from ratt_opt.running.topics import names_of, read_topics
 
-    provide_cache()
     attached, names, _ = lazy_loader.attach_stub(__name__, __file__)
 
     def load(name: str) -> object:

@@ -5,7 +5,6 @@ from ._version import __version__ as __version__
 
 # == The main job
 from .main_job.bound import bound as bound
-from .main_job.warm_up import warm_up as warm_up
 from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
 from .budget import Stop as Stop
 

@@ -141,7 +141,7 @@ class Budget:
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether the user interrupted: nothing is begun any more that compiles on first use, however short it is."""
+        """Whether the user interrupted: nothing is begun any more, however short it is."""
         return self._interrupt.happened
 
     @property

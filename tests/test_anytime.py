@@ -102,7 +102,7 @@ def test_limits_are_kept_where_groups_are_many(budget):
     """In processor time, which a busy machine does not stretch."""
     problem = ro.random_scenario(20, 12, alpha_s=budget[0], alpha_c=2 * budget[1], seed=1).problem()
     plan = ro.ratt(problem).elements
-    ro.worst_case_attack(problem, plan, time_limit=1)  # loads what is compiled
+    ro.worst_case_attack(problem, plan, time_limit=1)  # loads modules
     for limit in (0.1, 0.5):
         began = time.process_time()
         ro.worst_case_attack(problem, plan, time_limit=limit)

@@ -232,7 +232,7 @@ def test_every_block_is_run_by_something() -> None:
 
 @pytest.mark.parametrize("path", sorted((ROOT / "docs" / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples_run(path: Path, folder: Path) -> None:
-    """Each in this process, so that compiled loops are shared; the site runs them too, and shows their figures."""
+    """Each in this process, so that modules are shared; the site runs them too, and shows their figures."""
     from matplotlib.figure import Figure
 
     names: dict[str, object] = {"__name__": "__main__"}

@@ -38,7 +38,7 @@ def test_any_budget_has_a_bracket_in_time(robots, name, data):
     f, owners = team(robots, 2, robots, name)
     problem = ro.Problem(f, owners, None, *data.draw(budgets(robots)))
     plan = ro.ratt(problem).elements
-    ro.worst_case_attack(problem, plan, time_limit=1)  # loads and compiles, as does the next
+    ro.worst_case_attack(problem, plan, time_limit=1)  # loads modules, as does the next
     ro.solve_maxmin(problem, time_limit=1)
     began = time.process_time()
     attack = ro.worst_case_attack(problem, plan, time_limit=1)

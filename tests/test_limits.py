@@ -110,7 +110,6 @@ NO_SEARCH = {
     "survivor_bound",
     "theorem1_bound",
     "undominated",
-    "warm_up",
 }
 """Formulas, files, planners and heuristics of polynomial time, flights and fits as long as their arguments say, and
 generators that their caller may leave."""
@@ -194,7 +193,7 @@ def test_every_public_function_is_a_row_or_no_search():
 
 def overrun(row, case, limit):
     """Processor seconds beyond the limit (which a busy machine does not stretch); the least of three calls."""
-    call(row, case, 0.3)  # loads and compiles
+    call(row, case, 0.3)  # loads modules
     times = []
     for _ in range(3):
         began = time.process_time()

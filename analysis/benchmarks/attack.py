@@ -233,8 +233,8 @@ def main() -> None:
     """Print every table."""
     options = _options()
     small = random_scenario(13, 3, alpha_s=2, alpha_c=12, seed=0).problem("trace")
-    compiled = processor_seconds(lambda: worst_case_attack(small, ratt(small).elements))
-    print(f"First attack on a large team, with loading or compiling: {compiled:.2f} s")
+    first = processor_seconds(lambda: worst_case_attack(small, ratt(small).elements))
+    print(f"First attack on a large team, imports included: {first:.2f} s")
     cases = Cases(
         robots=tuple(options.robots),
         objectives=tuple(options.objectives),

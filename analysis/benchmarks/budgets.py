@@ -38,7 +38,7 @@ GAP = 5e-5
 BUSY = 10
 """Wall seconds that a processor second may take on a busy machine before a call counts as lost."""
 SMALL = 13
-"""Robots of the problems that a new process solves first, not counted: what is compiled is loaded then."""
+"""Robots of the problems that a new process solves first, not counted: modules are loaded then."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

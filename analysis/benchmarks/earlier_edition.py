@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["earlier_bracket"]
 
 SPARE = 120.0
-"""Seconds beyond the limit before an earlier edition is given up: first uses compile, and some overrun."""
+"""Seconds beyond the limit before an earlier edition is given up: many compile at first use, and some overrun."""
 BUSY = 3
 """Wall seconds that a processor second may take on a busy machine."""
 WARM = 1.0
-"""Seconds of a first search, with no budgets to speak of, not counted: what is compiled is loaded then."""
+"""Seconds of a first search, with no budgets to speak of, not counted: modules and compiled code are loaded then."""
 
 
 def earlier_bracket(
@@ -62,7 +62,7 @@ def earlier_bracket(
         environment = {
             **os.environ,
             "PYTHONPATH": str(tree),
-            "NUMBA_CACHE_DIR": str(Path(tempfile.gettempdir(), "numba")),
+            "NUMBA_CACHE_DIR": str(Path(tempfile.gettempdir(), "numba")),  # of editions that compiled with it
         }
         try:
             done = subprocess.run(

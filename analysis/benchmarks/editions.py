@@ -2,8 +2,9 @@
 
 Run as ``python -m analysis.benchmarks.editions FOLDER [--rows ...] [--kinds trace ...] [--rounds 3]``; FOLDER holds
 the earlier edition (``git worktree add FOLDER COMMIT``). Every row is a few calls of the public interface that both
-know. Each round starts one process of each edition, which makes the calls once uncounted (imports and compiled code)
-and once counted in processor seconds; shown is the smallest of the rounds, by which noise of the machine counts least.
+know. Each round starts one process of each edition, which makes the calls once uncounted (imports, and what some
+editions compile) and once counted in processor seconds; shown is the smallest of the rounds, by which noise of the
+machine counts least.
 """
 
 from __future__ import annotations

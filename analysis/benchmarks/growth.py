@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SIZES = (10, 20, 50, 100, 200, 500, 1000)
 OBJECTIVES = ("trace", "logdet", "maxeig")
 WARM = 200
-"""Robots of a problem that compiles what larger ones need, not counted."""
+"""Robots of a problem that loads what larger ones need, not counted."""
 PATIENCE = 1.0
 """Processor seconds of an earlier edition's RATT after which larger teams are not asked for."""
 EARLIER = """

@@ -91,7 +91,7 @@ def against_baselines(cap: float) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for alpha_s, alpha_c in budgets:
         problem = paper_problem(10, n_targets, (alpha_s, alpha_c), 0, "trace")
-        solve_maxmin(problem, gap=gap)  # imports and compiled code
+        solve_maxmin(problem, gap=gap)  # imports
         result, ours = timed(lambda p=problem: solve_maxmin(p, gap=gap))  # type: ignore[misc]
         conic, theirs = timed(lambda p=problem: solve_conic_model(p, cap))  # type: ignore[misc]
         plans = float(np.prod([float(len(choice)) for choice in problem.choices]))

@@ -50,7 +50,7 @@ def flown(steps: int) -> list[dict[str, object]]:
         for name, planner in planners.items():
             if n > TEAMS[0][0] and name != "ratt":
                 continue
-            run_mission(scenario, steps=1, planner=planner, attacker="random")  # compiles
+            run_mission(scenario, steps=1, planner=planner, attacker="random")  # imports
             mission = run_mission(scenario, steps=steps, planner=planner, attacker="random")
             rows.append(_row(f"N={n} M={m}", 1, name, float(np.median(mission.seconds))))
     return rows
@@ -69,7 +69,7 @@ def ahead() -> list[dict[str, object]]:
         world = World(scenario, MissionModel(motion=motion, beam=beam), horizon)
         ratt(
             first_step(world, offered_sequences(world, world.motion.initial(scenario), scenario.poses, 0.0))
-        )  # compiles
+        )  # imports
         began = perf_counter()
         problem = first_step(world, offered_sequences(world, world.motion.initial(scenario), scenario.poses, 0.0))
         ratt(problem)

@@ -36,7 +36,7 @@ SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
 GAP = 1e-6
 """Names a max-min search."""
 WARM, WARM_LARGE = 24, 64
-"""Robots of the first problems of each objective, not counted: what is compiled is loaded then. Large teams are asked
+"""Robots of the first problems of each objective, not counted: modules are loaded then. Large teams are asked
 who is inside first (``attack/pricing.py``)."""
 
 
@@ -100,7 +100,7 @@ def measured(what: str, problem: Problem, seed: int, options: argparse.Namespace
 
 
 def warm_up(objective: str) -> None:
-    """Load or compile what is compiled."""
+    """Load what searches load when they are first used."""
     for family in ("disk-6", "dense", "hubs"):  # hubs: nothing quicker than prices closes them
         problem = ro.network_scenario(family, WARM, 5, alpha_s=1 / 3, alpha_c=0.3, seed=0).problem(objective)
         ro.worst_case_attack(problem, ro.ratt(problem).elements, time_limit=2)

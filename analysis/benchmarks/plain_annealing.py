@@ -2,105 +2,96 @@
 
 from __future__ import annotations
 
+import math
 import time
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
-import numba
 import numpy as np
 
 from ratt_opt.attack.links import Links
+from ratt_opt.attack.team import Team
 from ratt_opt.problem import Attack
-from ratt_opt.setfunctions.criteria.compiled import team_criterion
-from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
+    from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.problem import Problem
 
 __all__ = ["plain_annealing"]
 
-HOT, COLD, MOVES = 0.02, 0.0002, 200_000
-"""Temperatures relative to the team's value, and moves of one cooling of plain annealing."""
+HOT, COLD, MOVES = 0.02, 0.0002, 20_000
+"""Temperatures relative to the team's value, and moves of one cooling of plain annealing: some tenths of a second."""
 
 
-class _Team(NamedTuple):
-    """``prior`` : (M, T), ``information`` : (N, M, T) packed matrices; ``baseline`` : the criterion without a robot."""
+class _Cooling:
+    """One cooling from the whole team; the best attack until now is ``best_group`` (N,) and ``best_blind`` (N,)."""
 
-    code: int
-    weights: Any
-    prior: Any
-    information: Any
-    baseline: float
+    def __init__(self, team: Team, links: Links, blind: BoolArray, budget: int, rng: np.random.Generator) -> None:
+        self._team, self._links, self._budget, self._rng = team, links, budget, rng
+        self._group, self._blind, self._cut = np.zeros(team.robots, dtype=np.int64), blind, 0
+        self._values = np.array([self._value(g) for g in range(team.robots)])
+        self._energy, self._least = float(self._values.max()), math.inf
+        self.best_group, self.best_blind = self._group.copy(), blind.copy()
 
+    def _value(self, g: int) -> float:
+        return self._team.value((self._group == g) & ~self._blind)
 
-@numba.njit(cache=True)
-def _value(team: Any, group: Any, blind: Any, sums: Any) -> float:
-    """Value of those of ``group`` (N,) that are not ``blind`` (N,); ``sums`` (M, T) is spare."""
-    sums[:] = team.prior
-    for i in range(len(group)):
-        if group[i] and not blind[i]:
-            sums += team.information[i]
-    return float(team.baseline - team_criterion(team.code, team.weights, sums))
+    def run(self, hot: float, cold: float) -> None:
+        """Make all moves: a robot changes groups, or is blinded instead of another."""
+        for move in range(MOVES):
+            i, j = self._rng.integers(0, self._team.robots, 2).tolist()
+            temperature = hot * (cold / hot) ** (move / MOVES)
+            if self._rng.random() < 0.5:
+                self._blind_instead(i, j, temperature)
+            else:
+                own = int(self._rng.integers(0, self._team.robots))
+                self._transfer(i, own if self._rng.random() < 0.1 else int(self._group[j]), temperature)
 
+    def _blind_instead(self, i: int, j: int, temperature: float) -> None:
+        if self._blind[i] or not self._blind[j] or self._links.seeing[i]:
+            return
+        self._blind[i], self._blind[j] = True, False
+        if not self._is_kept({int(self._group[i]), int(self._group[j])}, 0, temperature):
+            self._blind[i], self._blind[j] = False, True
 
-@numba.njit(cache=True)
-def _cool(team: Any, links: Any, group: Any, blind: Any, budget: int, heat: Any, rng: Any) -> float:  # noqa: PLR0917
-    """One cooling of plain annealing: the largest group's value, links within ``budget``; best state in place."""
-    n_robots, sums = len(group), np.empty_like(team.prior)
-    best, best_group, best_blind = np.inf, group.copy(), blind.copy()
-    values, cut = np.zeros(n_robots), 0
-    for g in range(n_robots):
-        values[g] = _value(team, group == g, blind, sums)
-    energy = values.max()
-    for move in range(MOVES):
-        i, j = int(rng.random() * n_robots), int(rng.random() * n_robots)
-        home, target, change, blinds = group[i], group[j], 0, rng.random() < 0.5
-        if blinds and (blind[i] or not blind[j] or links.seeing[i]):
-            continue
-        if blinds:
-            blind[i], blind[j] = True, False
-        else:
-            if rng.random() < 0.1:  # a group of its own
-                target = int(rng.random() * n_robots)
-            for a in range(links.start[i], links.start[i + 1]):
-                other = group[links.robot[a]]
-                change += (other == home) * 1 - (other == target) * 1
-            if target == home or cut + change > budget:
-                continue
-            group[i] = target
-        old = values[home], values[target]
-        values[home] = _value(team, group == home, blind, sums)
-        values[target] = _value(team, group == target, blind, sums)
-        after, temperature = values.max(), heat[0] * (heat[1] / heat[0]) ** (move / MOVES)
-        if after <= energy or rng.random() < np.exp((energy - after) / temperature):
-            energy, cut = after, cut + change
-            if energy < best:
-                best, best_group[:], best_blind[:] = energy, group, blind
-            continue
-        values[home], values[target] = old
-        if blinds:
-            blind[i], blind[j] = False, True
-        else:
-            group[i] = home
-    group[:], blind[:] = best_group, best_blind
-    return float(best)
+    def _transfer(self, i: int, target: int, temperature: float) -> None:
+        home = int(self._group[i])
+        others = self._group[self._links.robot[self._links.start[i] : self._links.start[i + 1]]]
+        more = int((others == home).sum() - (others == target).sum())
+        if target == home or self._cut + more > self._budget:
+            return
+        self._group[i] = target
+        if not self._is_kept({home, target}, more, temperature):
+            self._group[i] = home
+
+    def _is_kept(self, changed: set[int], more: int, temperature: float) -> bool:
+        """Whether what has changed in these groups stays."""
+        before = self._values.copy()
+        for g in changed:
+            self._values[g] = self._value(g)
+        after = float(self._values.max())
+        if after > self._energy and self._rng.random() >= math.exp((self._energy - after) / temperature):
+            self._values = before
+            return False
+        self._energy, self._cut = after, self._cut + more
+        if after < self._least:
+            self._least, self.best_group, self.best_blind = after, self._group.copy(), self._blind.copy()
+        return True
 
 
 def plain_annealing(problem: Problem, plan: IntArray, seconds: float, seed: int) -> float:
     """Worst value that annealing from the whole team finds, cooled again and again for that many seconds."""
-    objective = problem.objective
-    if not isinstance(objective, InformationObjective) or objective.compiled_code is None:
+    team = Team.of(problem.objective, plan)
+    if team is None:
         raise TypeError("the criterion has no compiled loops")
-    prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
-    baseline = float(objective.combine(objective.criterion(objective.prior_information)))
-    team = _Team(objective.compiled_code, np.array(objective.weights), prior, information, baseline)
     links, rng = Links.of(problem.threat), np.random.default_rng(seed)
-    n_robots, whole, best = problem.n_robots, problem.objective(plan), np.inf
-    heat, ends = np.array([HOT, COLD]) * whole, time.monotonic() + seconds
+    whole, best, ends = problem.objective(plan), np.inf, time.monotonic() + seconds
     while time.monotonic() < ends:
-        group, blind = np.zeros(n_robots, dtype=np.int64), np.zeros(n_robots, dtype=np.bool_)
+        blind = np.zeros(problem.n_robots, dtype=np.bool_)
         blind[rng.permutation(np.flatnonzero(~links.seeing))[: problem.threat.n_blinded]] = True
-        _cool(team, links, group, blind, problem.alpha_c, heat, rng)
+        cooling = _Cooling(team, links, blind, problem.alpha_c, rng)
+        cooling.run(HOT * whole, COLD * whole)
+        group = cooling.best_group
         cut = frozenset((i, j) for i, j in problem.communication.links if group[i] != group[j])
-        best = min(best, problem.team_value(plan, Attack(frozenset(np.flatnonzero(blind).tolist()), cut)))
+        attack = Attack(frozenset(np.flatnonzero(cooling.best_blind).tolist()), cut)
+        best = min(best, problem.team_value(plan, attack))
     return best

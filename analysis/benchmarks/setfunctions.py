@@ -6,7 +6,7 @@ element); and the table of a trace objective of 25 targets against one flat NumP
 
 Brackets: total curvature over feasible sets (log-det: curvature) of Section VI scenarios until
 ``(1 - lower) / (1 - upper)`` is at most 1.10 (N = 10, M = 15; 1.2 with anisotropic priors) or 1.15 (N = 30, M = 25).
-Compiled loops are loaded first: compiling them, once per installation, takes seconds that are not counted.
+Modules are loaded first.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def flat_trace(f: TraceObjective) -> np.ndarray[tuple[int], np.dtype[np.float64]
 def brackets() -> None:
     """Curvature brackets of Section VI scenarios."""
     small = random_scenario(10, 4, alpha_s=1, alpha_c=1, seed=0).problem("maxeig")
-    total_curvature(small.objective, small.robot, gap=0.0, max_nodes=100)  # loads the compiled loops
+    total_curvature(small.objective, small.robot, gap=0.0, max_nodes=100)  # loads modules
     print(
         f"{'N':>3} {'M':>3} {'prior':>11} {'objective':>9} {'seed':>4} {'lower':>10} {'upper':>10} {'ratio':>7} ",
         end="",
@@ -115,7 +115,7 @@ def anisotropic(f: InformationObjective, seed: int) -> InformationObjective:
 def _measure(n: int) -> None:
     """Both checks of one random monotone table, in this process alone, with its peak memory."""
     warm = TableFunction(np.zeros(16))
-    find_submodularity_violation(warm), total_curvature(warm)  # loads the compiled passes
+    find_submodularity_violation(warm), total_curvature(warm)  # loads modules
     f = TableFunction(_monotone(n))
     plain = best_seconds(lambda: plain_passes(f), repeats=3)
     began = time.perf_counter()

@@ -4,8 +4,8 @@ Run as ``python -m analysis.golden.ablation [--seconds 4] [--cases 16] [--only N
 [--folder build/ablation]``. From networks, complete graphs and best plans that many cases each are taken that took
 long, evenly over their names; each is asked with everything, and without each part, for that many seconds of the
 processor. Printed in Markdown: rows closed with everything and without, lost and gained, geometric means of gaps and
-seconds, without over with. Rows are appended as they end: run it again to go on. Compile before (any attack does it):
-what is compiled within a row's limit is missing there. ``--twice`` measures a second time.
+seconds, without over with. Rows are appended as they end: run it again to go on.
+``--twice`` measures a second time.
 """
 
 from __future__ import annotations

@@ -28,13 +28,13 @@ __all__ = ["GAP", "measured", "measured_by_name", "warm"]
 GAP = 1e-4
 """Names a search for the best plan."""
 BRIEF = 2.0
-"""Seconds below which a run is made again and the second counts: the first may have loaded compiled code."""
+"""Seconds below which a run is made again and the second counts: the first may have loaded modules."""
 WARM = 40
 """Robots of the complete graphs that are attacked once before any case."""
 
 
 def measured_by_name(part: str, name: str) -> dict[str, Any]:
-    """A row of the corpus, for a worker that was told its name; the first call loads what is compiled."""
+    """A row of the corpus, for a worker that was told its name; the first call loads modules."""
     warm()
     return measured(case_called(part, name))
 
@@ -94,7 +94,7 @@ def _proved(problem: Problem, found: MaxMinResult) -> dict[str, Any]:
 
 @cache
 def warm() -> None:
-    """Load or compile what is compiled, once in a process."""
+    """Load what searches load when they are first used, once in a process."""
     for kind in CRITERIA:
         warm_up(kind)
         for robots in (WARM // 4, WARM // 2, WARM):

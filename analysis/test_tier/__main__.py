@@ -59,7 +59,6 @@ def _measure(options: argparse.Namespace) -> None:
     environment = os.environ | {"PYTHONPATH": str(tree.root), "TIER_FOLDER": str(folder)}
     command = [sys.executable, "-m", "pytest", "--whole", "-n0", "-p", "analysis.test_tier.reach", *options.tests]
     subprocess.run(command, cwd=tree.root, env=environment, check=False)
-    tree.keep_compiled()
     new = read_costs(folder / "measured.csv")
     costs, lines = (read_costs(folder / COSTS), load(folder / REACH)) if options.tests else ({}, {})
     write_costs(folder / COSTS, costs | new)

@@ -26,8 +26,8 @@ __all__ = ["Campaign", "Measured", "Row", "draw", "family_of", "read_rows"]
 FIELDS = ("number", "family", "fault", "found", "test", "seconds")
 PATIENCE = 5.0
 """A test that takes this many times its usual seconds has found the fault."""
-COMPILING = 30.0
-"""Seconds besides, for what is compiled again."""
+MORE = 30.0
+"""Seconds besides: a short test may wait for a disk or another process."""
 NEAR = 6.0
 """Usual seconds of the tests that a fault is tried with alone; all the others run once for all faults together."""
 REFUSED = "does not compile"
@@ -163,7 +163,7 @@ class Campaign:
     def _run(self, tests: Sequence[str], *, short: bool) -> str:
         if not tests:
             return ""
-        limits = {test: PATIENCE * self._measured.seconds(test, short=short) + COMPILING for test in tests}
+        limits = {test: PATIENCE * self._measured.seconds(test, short=short) + MORE for test in tests}
         ended, test = self._tree.run(limits, self._measured.cases if short else {})
         return "" if ended in {"passed", "no tests"} else f"{test} {ended}"
 

@@ -56,13 +56,11 @@ class Cost:
 
     tests: int
     seconds: float
-    compiling: float
     shared: float = 0.0
 
     def __add__(self, other: Cost) -> Cost:
         """The cost of more cases of the same function."""
-        seconds, compiling = self.seconds + other.seconds, self.compiling + other.compiling
-        return Cost(self.tests + other.tests, seconds, compiling, max(self.shared, other.shared))
+        return Cost(self.tests + other.tests, self.seconds + other.seconds, max(self.shared, other.shared))
 
 
 def read_costs(path: Path) -> dict[str, Cost]:
@@ -78,9 +76,9 @@ def write_costs(path: Path, costs: Mapping[str, Cost]) -> None:
     """Write a row for each test function, sorted by name."""
     with path.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(("function", "tests", "seconds", "compiling", "shared"))
+        rows.writerow(("function", "tests", "seconds", "shared"))
         for name, cost in sorted(costs.items()):
-            rows.writerow((name, cost.tests, *(f"{one:.3f}" for one in (cost.seconds, cost.compiling, cost.shared))))
+            rows.writerow((name, cost.tests, f"{cost.seconds:.3f}", f"{cost.shared:.3f}"))
 
 
 def reached_units(reach: Reach, tests: Sequence[str]) -> tuple[list[np.ndarray], np.ndarray]:
@@ -123,7 +121,7 @@ def parts_of(names: Sequence[str], costs: Sequence[Cost]) -> list[Part]:
     users = Counter(file for file, cost in zip(files, costs, strict=True) if cost.shared)
     parts: list[Part] = []
     for test, (name, cost) in enumerate(zip(names, costs, strict=True)):
-        each = max((cost.seconds - cost.compiling) / cost.tests, LEAST)
+        each = max(cost.seconds / cost.tests, LEAST)
         few = min(cost.tests, CASES)
         shared = cost.shared / max(1, users[files[test]])
         always = min(few, max(0, int(((CHECKERS if name.startswith(OF_CHECKERS) else EVERY) - shared) / each)))
@@ -188,7 +186,7 @@ def summary(costs: Mapping[str, Cost], cases: Mapping[str, int]) -> list[tuple[s
             tier,
             sum(n > 0 for n in of.values()),
             sum(of.values()),
-            sum((costs[name].seconds - costs[name].compiling) * n / costs[name].tests for name, n in of.items()),
+            sum(costs[name].seconds * n / costs[name].tests for name, n in of.items()),
         )
         for tier, of in (("short", short), ("whole", whole))
     ]

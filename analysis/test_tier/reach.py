@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from coverage import Coverage
-from numba.core import event
 
 from analysis.test_tier.choose import Cost, write_costs
 
@@ -64,15 +63,13 @@ class Costs:
         self._now = item.nodeid.partition("[")[0]
         self._switch(self._now)
         self._of_fixtures, before = 0.0, _seconds()
-        compiler: Any = event.TimingListener()  # type: ignore[no-untyped-call]
-        with event.install_listener("numba:compiler_lock", compiler):
-            try:
-                return (yield)
-            finally:
-                own = _seconds() - before - self._of_fixtures
-                cost = Cost(1, own, compiler.duration if compiler.done else 0.0, self._shared_by(item))
-                self._costs[self._now] = self._costs.get(self._now, Cost(0, 0.0, 0.0)) + cost
-                self._switch("")
+        try:
+            return (yield)
+        finally:
+            own = _seconds() - before - self._of_fixtures
+            cost = Cost(1, own, self._shared_by(item))
+            self._costs[self._now] = self._costs.get(self._now, Cost(0, 0.0)) + cost
+            self._switch("")
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Iterator[Any]:

@@ -1,7 +1,7 @@
-"""Which test functions reach a line: measured for Python, by names for what is compiled, which coverage cannot see.
+"""Which test functions reach a line: measured for Python, by names for C, which coverage cannot see.
 
-A compiled function counts as reached by the tests that reach a line of Python which names it, or which names a compiled
-function that calls it. The same holds for constants and classes, whose lines run once, at import.
+A function in C counts as reached by the tests that reach a line of Python which names it, or which names a function in
+C that calls it. The same holds for constants and classes, whose lines run once, at import.
 """
 
 from __future__ import annotations
@@ -175,8 +175,7 @@ def _pieces_of_python(tree: ast.Module) -> dict[int, Piece]:
     for node in [*(one for one in ast.walk(tree) if isinstance(one, ast.FunctionDef)), *tree.body]:
         end = (node.end_lineno or 0) + 1
         if isinstance(node, ast.FunctionDef):
-            compiled = any("njit" in ast.unparse(one) for one in node.decorator_list)
-            piece = Piece(frozenset({node.name}), range(node.body[0].lineno, end), measured=not compiled)
+            piece = Piece(frozenset({node.name}), range(node.body[0].lineno, end), measured=True)
         else:
             stored = (one for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store))
             name = {node.name} if isinstance(node, ast.ClassDef) else set()

@@ -20,7 +20,6 @@ __all__ = ["ROOT", "Tree"]
 
 ROOT = Path(__file__).parents[2]
 LOOPS = "ratt_opt/native/_loops*"
-COMPILED = "*.nb[ic]"
 
 
 class Tree:
@@ -29,11 +28,10 @@ class Tree:
     def __init__(self, folder: Path) -> None:
         self.folder = folder.absolute()
         self.root = self.folder / "tree"
-        self._kept = self.folder / "kept"
         self._worker: subprocess.Popen[str] | None = None
 
     def prepare(self) -> None:
-        """Clone, compile the loops of C, and keep what Numba has compiled, unless that is done."""
+        """Clone, unless that is done, and compile the loops."""
         if not self.root.exists():
             self.folder.mkdir(parents=True, exist_ok=True)
             subprocess.run(["git", "clone", "--quiet", ROOT, self.root], check=True)
@@ -41,22 +39,6 @@ class Tree:
                 (self.folder / "shared").symlink_to(data)
         subprocess.run(["git", "checkout", "--quiet", "ratt_opt", "ratt_audit"], cwd=self.root, check=True)
         self._make_loops()
-        self.keep_compiled()
-
-    def keep_compiled(self) -> None:
-        """Remember the machine code of the sources without a fault."""
-        for path in self.root.glob(f"ratt_opt/**/{COMPILED}"):
-            target = self._kept / path.relative_to(self.root)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            if not target.exists():
-                shutil.copy2(path, target)
-
-    def _give_back_compiled(self) -> None:
-        """Numba removes what was made of other sources."""
-        for path in self._kept.rglob(COMPILED):
-            target = self.root / path.relative_to(self._kept)
-            if not target.exists() or target.stat().st_size != path.stat().st_size:
-                shutil.copy2(path, target)
 
     def _make_loops(self) -> bool:
         made = subprocess.run([sys.executable, "hatch_build.py"], cwd=self.root, capture_output=True, check=False)
@@ -85,7 +67,6 @@ class Tree:
             for path, content in loops:
                 path.unlink(missing_ok=True)  # a process may still run the one with faults
                 path.write_bytes(content)
-            self._give_back_compiled()
 
     def run(self, limits: Mapping[str, float], cases: Mapping[str, int]) -> tuple[str, str]:
         """Run test functions, or some cases of them, each within its seconds: how it ended, and the last test."""

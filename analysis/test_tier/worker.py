@@ -19,7 +19,7 @@ import pytest
 
 OPTIONS = ("-qx", "-oaddopts=", "--import-mode=importlib", "--tb=line", "-pno:cacheprovider", "-pno:faulthandler")
 IMPORTED = (
-    *("cvxpy", "distributed", "highspy", "matplotlib.pyplot", "networkx", "numba", "pandas", "pydantic"),
+    *("cvxpy", "distributed", "highspy", "matplotlib.pyplot", "networkx", "pandas", "pydantic"),
     *("scipy.optimize", "stonesoup.platform", "typer"),
 )
 """What the tests import and no fault changes; without Hypothesis, whose plug-in must come after pytest."""

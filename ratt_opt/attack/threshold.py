@@ -15,9 +15,9 @@ from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.master import best_duals
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.groups import GroupList
     from ratt_opt.attack.sets_below import SetsBelow
     from ratt_opt.budget import Budget
+    from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["Answer", "decide"]

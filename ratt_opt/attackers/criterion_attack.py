@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.pricing import Plan
+from ratt_opt.attackers.by_covers.cover_search import CoverSearch
+from ratt_opt.attackers.by_partition.split_search import SplitSearch
 from ratt_opt.attackers.by_size.relaxed_teams import PossibleGroups, unprotected_bound
 from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
 from ratt_opt.attackers.first_bound import first_bound
@@ -16,6 +18,7 @@ from ratt_opt.attackers.heuristics.greedy import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.attackers.tree_bound import bound_by_trees
 from ratt_opt.budget import OutOfBudget
+from ratt_opt.graph.separable_groups import separable_groups
 
 if TYPE_CHECKING:
     from ratt_opt.attackers.by_prices.price_search import PriceSearch
@@ -186,8 +189,6 @@ class CriterionAttack(TeamAttack):
 
     def list_groups(self) -> None:
         """The groups an attack may leave, if they are few enough, and soon listed."""
-        from ratt_opt.graph.separable_groups import separable_groups  # compiles
-
         self._groups = separable_groups(self._threat, MANY_GROUPS, self.task.budget.part())
 
     def without_protection(self) -> None:
@@ -210,8 +211,6 @@ class CriterionAttack(TeamAttack):
 
     def exact_covers(self) -> Stop:
         """Dual prices that leave few of the listed groups, then exact covers."""
-        from ratt_opt.attackers.by_covers.cover_search import CoverSearch  # compiles
-
         assert self._team is not None
         assert self._groups is not None
         return last_stage(self.task, CoverSearch(self.task, self._team, self._groups))
@@ -284,8 +283,6 @@ class CriterionAttack(TeamAttack):
 
     @cached_property
     def _partitions(self) -> Resumable:
-        from ratt_opt.attackers.by_partition.split_search import SplitSearch  # compiles
-
         assert self._team is not None
         assert self._groups is not None
         return SplitSearch(self.task, self._team, self._groups)

@@ -72,7 +72,6 @@ def worst_case_attack(
       without a limit, dual prices stop after half a million nodes.
     - Without a limit ``HEURISTIC`` says that no stage is left that could close the bracket. That happens to functions
       and criteria of your own, and on complete graphs with very many vectors of group sizes.
-    - Searches of larger teams are compiled when they are first used: about a minute, once on a machine.
 
     A keyboard interrupt or a spent budget returns the bracket reached. If the user interrupts before any attack is
     known, the result is the team without an attack and, as lower end, the value of no measurement.

@@ -9,6 +9,7 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
 from ratt_opt.budget import Budget
+from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
 from ratt_opt.graph.largest_group.counting import largest_left
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import forced_group_size
@@ -109,8 +110,6 @@ def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int
     cut = min(tried, key=lambda one: largest_left(graph, one, blinded))
     part = (budget or Budget()).part(ANNEALING_SHARE)
     if len(graph.links) <= MOST_ANNEALED and largest_left(graph, cut, blinded) > 1 and part.stop() is None:
-        from ratt_opt.graph.largest_group.annealed_cut import annealed_cut  # compiles
-
         cut = annealed_cut(cuts_only, cut, 1, part, ignoring=blinded)
     return largest_left(graph, cut, blinded)
 

@@ -64,15 +64,13 @@ def run(arguments: list[str]) -> int:
     with Interrupts() as interrupts:
         try:
             from ratt_opt.cli.program import run_program
-            from ratt_opt.running.cache import provide_cache
 
             _draw_into_files()
-            provide_cache()
             return run_program(arguments)
         except KeyboardInterrupt:
             pass
         except Exception as error:  # noqa: BLE001  (the last line of defence)
-            # Compiled code and imports turn an interrupt into errors of their own.
+            # Imports turn an interrupt into errors of their own.
             fault = None if interrupts.happened else error
         from ratt_opt.cli.faults import keep_traceback
         from ratt_opt.cli.terminal import fail

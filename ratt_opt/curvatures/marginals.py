@@ -15,6 +15,7 @@ import numpy as np
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt.setfunctions.lattice import marginal_ends
 from ratt_opt.setfunctions.properties import mask_without
 
 if TYPE_CHECKING:
@@ -82,8 +83,6 @@ def enumerate_marginals(domain: Domain, budget: Budget, values: FloatArray | Non
     """
     alone = len(np.unique(domain.owners)) == domain.restricted.n
     if values is None and alone and isinstance(domain.restricted, TableFunction):
-        from ratt_opt.setfunctions.lattice import marginal_ends
-
         f = domain.restricted
         budget.check()
         least, most = marginal_ends(f.values, f.n)

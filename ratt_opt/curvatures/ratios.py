@@ -24,6 +24,7 @@ from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, 
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.setfunctions.lattice import smallest_gain_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -189,8 +190,6 @@ def _monotone_values(domain: Domain, budget: Budget) -> FloatArray:
 
 def _smallest_ratio(values: FloatArray, groups: list[IntArray], budget: Budget) -> tuple[float, Context, Context]:
     """``gamma`` (1 if nothing restricts it) and the sets that attain it."""
-    from ratt_opt.setfunctions.lattice import smallest_gain_ratio
-
     ratio, top, part = smallest_gain_ratio(np.ravel(values), np.array(values.shape, dtype=np.int64), budget)
     if not np.isfinite(ratio):
         return 1.0, (), ()

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["address", "checked", "function"]
 
+ANYTHING = ctypes.c_char * 0
 REMEDY = "install the package with pip, or, in a checkout, run python hatch_build.py"
 
 
@@ -58,4 +59,6 @@ def checked(argument: str, array: Any, kind: DTypeLike, shape: Sequence[int], *,
 
 def address(array: Any) -> int:
     """Where a checked array is in memory; it must be kept alive while C uses it."""
+    if array.flags.writeable:  # in a quarter of the time
+        return ctypes.addressof(ANYTHING.from_buffer(array))
     return int(array.ctypes.data)

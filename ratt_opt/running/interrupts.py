@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from types import FrameType
 
 __all__ = [
-    "again_later",
     "imported_whole",
     "interrupt_main_thread",
     "interrupts_afterwards",
@@ -26,7 +25,7 @@ AGAIN_AFTER = 0.01
 """Seconds until an interrupt that cannot be met where it came comes again."""
 
 
-def again_later(number: int = signal.SIGINT) -> None:
+def _again_later(number: int) -> None:
     """Interrupt the main thread once more in a moment."""
     threading.Timer(AGAIN_AFTER, interrupt_main_thread, [number]).start()
 
@@ -71,7 +70,7 @@ def interrupts_between_packages(load: Callable[[str], object], name: str) -> obj
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         if _must_wait(frame):
-            again_later(number)
+            _again_later(number)
         else:
             before(number, frame)
 

@@ -11,7 +11,7 @@ import sys
 import threading
 from contextlib import ContextDecorator, suppress
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from typing import Self
@@ -74,7 +74,6 @@ class _Screen:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._watch, daemon=True, name="progress")
                 self._thread.start()
-        _hear_compilers()
 
     def leave(self, step: Step) -> None:
         with self._lock:
@@ -123,30 +122,3 @@ def _somebody_looks() -> bool:
     from multiprocessing import parent_process  # takes 10 ms, where somebody looks
 
     return threading.current_thread() is threading.main_thread() and parent_process() is None
-
-
-_HEARD: list[object] = []
-"""The listener to the compiler, once there is one."""
-
-
-def _hear_compilers() -> None:
-    """Have a step for as long as loops are compiled, if Numba is loaded: nothing here loads it."""
-    events: Any = sys.modules.get("numba.core.event")
-    if events is None or _HEARD:
-        return
-    steps: list[Step] = []
-
-    class Compilers(events.Listener):  # type: ignore[misc]
-        """Compiling nests: a loop that calls another compiles that too."""
-
-        def on_start(self, event: object) -> None:
-            del event
-            steps.append(Step("compiling loops, once an installation").__enter__())
-
-        def on_end(self, event: object) -> None:
-            del event
-            if steps:
-                steps.pop().__exit__()
-
-    _HEARD.append(Compilers())
-    events.register("numba:compile", _HEARD[0])

@@ -128,7 +128,7 @@ class CriterionParts(ProofParts):
     """What files, tables and the command line call it; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
     compiled_code: ClassVar[int | None] = None
-    """Its number in the compiled loops for planar targets (``criteria/compiled.py``), if it is there."""
+    """Its number in the compiled loops (``native/src/team.h``), if it is there."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()

@@ -16,6 +16,7 @@ from ratt_opt._validation import check_number
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import checked_values, finite_values
+from ratt_opt.setfunctions.lattice import disjoint_slack, marginal_ends, overlapping_slack, second_differences
 from ratt_opt.setfunctions.metered import table_within
 from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
 
@@ -152,8 +153,6 @@ def find_monotonicity_violation(
         return asked.sampled()
     if f.n == 0:
         return None
-    from ratt_opt.setfunctions.lattice import marginal_ends
-
     x = int(marginal_ends(values, f.n)[0].argmin())
     sets = values.reshape(-1, 2, 1 << x)
     base = mask_without(int((sets[:, 1] - sets[:, 0]).argmin()), x)
@@ -231,8 +230,6 @@ def find_subadditivity_violation(
 
 
 def _subadditive(asked: _Question, values: FloatArray) -> Violation | NotFound | None:
-    from ratt_opt.setfunctions.lattice import disjoint_slack, marginal_ends, overlapping_slack, second_differences
-
     n = asked.f.n
     # Theory needs the premises exactly.
     if values.min() >= 0 and (n < 2 or second_differences(values, n, asked.budget).min() >= 0):
@@ -250,8 +247,6 @@ def _second_order(asked: _Question) -> Violation | NotFound | None:
         return asked.sampled()
     if n < 2:
         return None
-    from ratt_opt.setfunctions.lattice import second_differences
-
     try:
         slack = second_differences(values, n, asked.budget)
         if asked.rule == "modular":

@@ -11,33 +11,43 @@ last time it was: information only grows, so covariances only shrink.
   ``max(g(P), lambda_max(P) mu / (1 + mu))``, target by target.
 - Max-eigenvalue: no bound is kept; targets are looked at worst first, and a candidate is left as soon as one of them
   stays worse than with the best candidate.
-
-Imported only if many elements are to choose from: compiling takes seconds, once per machine (cached).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from ctypes import POINTER, Structure, byref, c_double, c_int64, c_void_p
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.running.compiling import numba
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
-from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.native.library import address, checked, function
 from ratt_opt.setfunctions.criteria.two_by_two import triples
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.budget import Budget
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["LazyGreedy"]
 
-TRACE, WORST_AXIS = TraceObjective.compiled_code, MaxEigenvalueObjective.compiled_code
+LANES = 8
+"""Targets side by side in C; their number is made a multiple of it."""
 FIRST = 8
 """Candidates of the largest bounds that are evaluated first: a large marginal spares the others."""
 CLOSE = 1e-11
 """Marginals that differ by less, relative to the criterion before any measurement, are compared as the plain loop
 does: its values, rounded its way. It is a thousand times what either rounds off."""
+TARGETS_AT_ONCE = 1_000_000
+"""Targets times candidates between two looks at the clock: some milliseconds."""
+
+
+class GreedyRecord(Structure):
+    """``Greedy`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("criterion", "targets", "width")),
+        *((name, c_void_p) for name in ("weights", "information", "sums", "covariances", "order", "bounds", "gains")),
+    ]
 
 
 class LazyGreedy:
@@ -46,30 +56,55 @@ class LazyGreedy:
     Parameters
     ----------
     objective : with compiled loops, planar targets
-    is_open : (E,) candidates
+    is_open : (E,) candidates; the caller closes those that are none any more
     """
 
     def __init__(self, objective: InformationObjective, is_open: BoolArray) -> None:
         self._objective, self._is_open = objective, is_open
-        # Targets last: compiled loops over them become vector instructions.
-        self._information = np.ascontiguousarray(triples(objective.information).swapaxes(-1, -2))
-        self._sums = np.ascontiguousarray(triples(objective.prior_information).T)
+        checked("is_open", is_open, np.bool_, (objective.n,))
+        self._information = _by_rows(objective.information, 0.0)
+        self._sums = _by_rows(objective.prior_information, 1.0)
+        weights, width = objective.weights, self._sums.shape[-1]
+        self._weights = np.append(weights, np.full(width - len(weights), weights[-1:].max(initial=0.0)))
         self._bounds = np.full(len(is_open), np.inf)
-        self._marginals = np.full(len(is_open), -np.inf)
+        self._gains = np.full(len(is_open), -np.inf)
         self._chosen: list[int] = []
         self._close = CLOSE * objective.prior_magnitude
 
-    def choose(self) -> int:
-        """The candidate of largest value beside those chosen, the lowest among equals; it is chosen."""
-        objective = self._objective
-        data = objective.compiled_code, np.array(objective.weights), self._information, self._sums
-        _evaluate(data, self._is_open, self._close, (self._bounds, self._marginals))
-        marginals = np.where(self._is_open, self._marginals, -np.inf)
-        close = np.flatnonzero(marginals >= marginals.max() - self._close)
+    def choose(self, budget: Budget) -> int | None:
+        """The candidate of largest value beside those chosen, the lowest among equals; it is chosen.
+
+        ``None`` if the budget is over before.
+        """
+        if not self._evaluate(budget):
+            return None
+        close = np.flatnonzero(self._gains >= self._gains.max() - self._close)
         pick = int(close[0]) if self._are_equal(close) else self._plainly(close)
         self._chosen.append(pick)
         self._sums = self._sums + self._information[pick]
         return pick
+
+    def _evaluate(self, budget: Budget) -> bool:
+        """Fill in the gains of all candidates that come within ``close`` of the largest; -inf for the others."""
+        targets, width, covariances = self._objective.n_targets, len(self._weights), _inverse(self._sums)
+        order = np.argsort(-(self._weights * covariances[3])[:targets])
+        arrays = self._weights, self._information, self._sums, covariances, order, self._bounds, self._gains
+        record = GreedyRecord(self._objective.compiled_code, targets, width, *map(address, arrays))
+        call = function("evaluate_gains", c_double, POINTER(GreedyRecord), c_void_p, c_int64, *[c_double] * 2)
+        self._gains[:] = -np.inf
+        bounds = np.where(self._is_open, self._bounds, -np.inf)
+        first = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
+        first = first[np.argsort(-bounds[first], kind="stable")]
+        first = first[self._is_open[first]]
+        best = call(byref(record), address(first), len(first), self._close, -np.inf)
+        bounds[first] = -np.inf
+        left, size = np.flatnonzero(bounds >= best - self._close), max(TARGETS_AT_ONCE // width, 1)
+        for start in range(0, len(left), size):
+            if budget.is_over:
+                return False
+            some = left[start : start + size]
+            best = call(byref(record), address(some), len(some), self._close, best)
+        return True
 
     def _are_equal(self, elements: IntArray) -> bool:
         return len(elements) == 1 or bool((self._information[elements] == self._information[elements[0]]).all())
@@ -80,76 +115,18 @@ class LazyGreedy:
         return int(elements[np.argmax(values)])
 
 
-@numba.njit(cache=True)
-def _evaluate(data: Any, is_open: Any, close: float, known: Any) -> None:
-    """Fill in the marginals of all candidates that come within ``close`` of the largest; -inf for those that do not."""
-    code, weights, information, sums = data
-    bounds, marginals = known
-    now = (sums, *_prepare(weights, sums))
-    best, later = -np.inf, np.where(is_open, bounds, -np.inf)
-    marginals[:] = -np.inf
-    for _ in range(FIRST):
-        e = int(np.argmax(later))
-        if later[e] >= best - close:
-            later[e] = -np.inf
-            marginals[e], bounds[e] = _marginal(code, weights, information[e], now, best - close)
-            best = max(best, marginals[e])
-    for e in range(len(is_open)):
-        if is_open[e] and later[e] >= best - close and later[e] > -np.inf:
-            marginals[e], bounds[e] = _marginal(code, weights, information[e], now, best - close)
-            best = max(best, marginals[e])
+def _inverse(sums: FloatArray) -> FloatArray:
+    """(4, W) inverses of (3, W) matrices, and their largest eigenvalues."""
+    a, b, c = sums
+    determinant, half = a * c - b * b, (a - c) / 2
+    largest = ((a + c) / 2 + np.sqrt(half * half + b * b)) / determinant
+    return np.stack([c / determinant, -b / determinant, a / determinant, largest])
 
 
-@numba.njit(cache=True)
-def _prepare(weights: Any, sums: Any) -> Any:
-    """(4, M) covariances as triples with their largest eigenvalue; targets, those of the largest weighted one first."""
-    covariances = np.empty((4, sums.shape[1]))
-    for j in range(sums.shape[1]):
-        a, b, c = sums[0, j], sums[1, j], sums[2, j]
-        determinant, half = a * c - b * b, (a - c) / 2
-        covariances[0, j], covariances[1, j], covariances[2, j] = c / determinant, -b / determinant, a / determinant
-        covariances[3, j] = ((a + c) / 2 + np.sqrt(half * half + b * b)) / determinant
-    return covariances, np.argsort(-weights * covariances[3])
-
-
-@numba.njit(cache=True)
-def _marginal(code: int, weights: Any, added: Any, now: Any, enough: float) -> Any:
-    """The marginal of an element and what bounds its later ones; may stop with ``-inf`` once it is below ``enough``."""
-    sums, covariances, order = now
-    if code == TRACE:
-        rows = (sums[0], sums[1], sums[2]), (added[0], added[1], added[2])
-        covariance = covariances[0], covariances[1], covariances[2], covariances[3]
-        return _trace_marginal(weights, rows[1], rows[0], covariance)
-    marginal, worst = 0.0, -np.inf
-    current = weights[order[0]] * covariances[3, order[0]]
-    for j in order:
-        a, b, c = sums[0, j] + added[0, j], sums[1, j] + added[1, j], sums[2, j] + added[2, j]
-        determinant = a * c - b * b
-        if code == WORST_AXIS:
-            if weights[j] * covariances[3, j] <= worst:
-                break
-            half = (a - c) / 2
-            worst = max(worst, weights[j] * ((a + c) / 2 + np.sqrt(half * half + b * b)) / determinant)
-            if current - worst < enough:
-                return -np.inf, np.inf
-        else:
-            p, q, r = covariances[0, j], covariances[1, j], covariances[2, j]
-            marginal += weights[j] * np.log(determinant * (p * r - q * q))
-    if code == WORST_AXIS:
-        return current - worst, np.inf
-    return marginal, marginal
-
-
-@numba.njit(cache=True, fastmath={"reassoc", "contract", "nsz", "nnan"})
-def _trace_marginal(weights: Any, added: Any, sums: Any, covariances: Any) -> Any:
-    """The marginal, and what no later one exceeds; in a form that the compiler turns into vector instructions."""
-    marginal, bound = 0.0, 0.0
-    (x, y, z), (u, v, t), (p, q, r, largest) = sums, added, covariances
-    for j in range(len(weights)):
-        a, b, c = x[j] + u[j], y[j] + v[j], z[j] + t[j]
-        determinant, mu = a * c - b * b, p[j] * u[j] + 2 * q[j] * v[j] + r[j] * t[j]
-        share = 1 / (determinant * (1 + mu))  # one division for both
-        gain, later = p[j] + r[j] - (a + c) * (1 + mu) * share, largest[j] * mu * determinant * share
-        marginal += weights[j] * gain
-        bound += weights[j] * (gain if gain > later else later)
-    return marginal, bound
+def _by_rows(matrices: FloatArray, diagonal: float) -> FloatArray:
+    """(..., M, 2, 2) as (..., 3, W): multiples of the unit matrix come behind them, so that ``LANES`` divides W."""
+    count = matrices.shape[-3]
+    rows = np.zeros((*matrices.shape[:-3], 3, -(-count // LANES) * LANES))
+    rows[..., :count] = np.swapaxes(triples(matrices), -1, -2)
+    rows[..., ::2, count:] = diagonal
+    return rows

@@ -14,6 +14,7 @@ from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.lazy_greedy import LazyGreedy
 
 __all__ = [
     "alpha_cs_in_share",
@@ -25,8 +26,8 @@ __all__ = [
     "ratt",
 ]
 
-PLAIN_WORK = 30_000_000
-"""Criteria of single targets that the plain loop evaluates in about half a second; beyond, evaluation is lazy."""
+PLAIN_WORK = 200_000
+"""Criteria of single targets that take some milliseconds in the plain loop; beyond, lazy evaluation is faster."""
 
 SIZE_SHARE, QUICK, HALF, AT_ONCE = 0.1, 2.0, 0.5, 0.3
 """Of the seconds left for ``n_max``. What takes no longer than ``QUICK`` seconds is the same within any limit of
@@ -147,14 +148,14 @@ def _lazy_greedy(
     problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray, budget: Budget
 ) -> int:
     """The same choices with few evaluations; the number is that of the algorithm as it stands."""
-    from ratt_opt.solvers.lazy_greedy import LazyGreedy  # compiles
-
     is_open = np.zeros(objective.n, dtype=np.bool_)
     is_open[candidates] = True
     greedy, evaluations = LazyGreedy(objective, is_open), -len(candidates)
     while (left := int(is_open.sum())) > 0 and not budget.is_over:
+        pick = greedy.choose(budget)
+        if pick is None:
+            break
         evaluations += left
-        pick = greedy.choose()
         elements[problem.robot[pick]] = pick
         is_open[problem.choices[int(problem.robot[pick])]] = False
     return evaluations

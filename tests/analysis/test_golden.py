@@ -72,7 +72,7 @@ def test_a_sample_is_answered_as_it_was():
         if (case.part, case.name) in chosen:
             found = measured(case)
             now[case.part, case.name] = {name: str(value) for name, value in found.items()}
-    for key in lost(recorded, now):  # its first run may have compiled within its limit
+    for key in lost(recorded, now):  # its first run may have loaded modules within its limit
         now[key] = {name: str(value) for name, value in measured(case_called(*key)).items()}
     assert not apart(recorded, now)
     assert not lost(recorded, now)

@@ -27,7 +27,7 @@ def test_the_oldest_dependencies_are_those_that_the_project_states() -> None:
     assert all(re.fullmatch(r"[\w\[\]-]+==[\d.]+", pin) for pin in pins)
     assert all(f'"{pin.replace("==", ">=")}"' in stated for pin in pins)
     names = {pin.partition("==")[0] for pin in pins}
-    assert {"numpy", "numba", "python-flint", "pytest", "distributed"} <= names
+    assert {"numpy", "python-flint", "pytest", "distributed"} <= names
     assert "ratt-opt" not in names
     assert [environment.name for environment in pythons.environments()] == ["3.11", "3.12", "3.13", "3.11-oldest"]
     assert f'requires-python = ">={pythons.PYTHONS[0]}"' in stated

@@ -117,7 +117,7 @@ def test_every_fault_drawn_can_be_read_and_all_families_have_some() -> None:
 
 
 def costs(*seconds: float, tests: int = 1) -> list[Cost]:
-    return [Cost(tests, one, 0.0) for one in seconds]
+    return [Cost(tests, one) for one in seconds]
 
 
 def test_the_tier_takes_what_reaches_most_for_its_seconds() -> None:
@@ -144,12 +144,12 @@ def test_every_function_has_some_cases_in_the_tier_and_checkers_have_more() -> N
     """Unless one case takes longer than the seconds of a function."""
     names = ("tests/a.py::quick", "tests/a.py::slow", f"{OF_CHECKERS}b.py::faults", f"{OF_CHECKERS}b.py::slow")
     each = (EVERY / 3.5, 1.5 * EVERY, CHECKERS / 8.5, 1.5 * CHECKERS)
-    parts = parts_of(names, [Cost(9, 9 * one, 0.0) for one in each])
+    parts = parts_of(names, [Cost(9, 9 * one) for one in each])
     assert chosen(parts, [np.array([0])] * 4, np.array([1.0]), 0.0) == {0: 3, 2: 8}
 
 
 def test_functions_of_a_file_share_the_seconds_of_its_fixture() -> None:
-    given = [Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0, shared=4.0), Cost(1, 0.1, 0.0)]
+    given = [Cost(1, 0.1, shared=4.0), Cost(1, 0.1, shared=4.0), Cost(1, 0.1)]
     parts = parts_of(["f::a", "f::b", "g::c"], given)
     assert [part.seconds for part in parts] == pytest.approx([2.1, 2.1, 0.1])
     assert [part.always for part in parts] == [False, False, True]
@@ -165,13 +165,14 @@ def test_the_list_says_what_is_left_out(tmp_path: Path) -> None:
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """A package of one compiled loop, a constant, and what calls it."""
+    """A package of one loop in C, a constant, and what calls it."""
     (tmp_path / "ratt_opt" / "native" / "src").mkdir(parents=True)
     (tmp_path / "ratt_audit").mkdir()
-    loop = "import numba\nLIMIT = 3\n\n\n@numba.njit(cache=True)\ndef loop(x):\n    return x + 1\n"
-    (tmp_path / "ratt_opt" / "loops.py").write_text(loop, encoding="utf-8")
-    call = "def call(x):\n    if x < LIMIT:\n        return loop(x)\n    return 0\n"
-    calls = f"from ratt_opt.loops import LIMIT, loop\n\n\n{call}"
+    loop = "static int more(int x) {\n    return x + 1;\n}\n\nEXPORTED int loop(int x) {\n    return more(x);\n}\n"
+    (tmp_path / "ratt_opt" / "native" / "src" / "loops.c").write_text(loop, encoding="utf-8")
+    (tmp_path / "ratt_opt" / "limits.py").write_text("\nLIMIT = 3\n", encoding="utf-8")
+    call = "def call(x):\n    if x < LIMIT:\n        return function('loop')(x)\n    return 0\n"
+    calls = f"from ratt_opt.limits import LIMIT\n\n\n{call}"
     (tmp_path / "ratt_opt" / "calls.py").write_text(calls, encoding="utf-8")
     return tmp_path
 
@@ -181,8 +182,9 @@ def test_compiled_lines_are_reached_by_what_reaches_their_callers(package: Path)
     save(package / "reach.json", {"ratt_opt/calls.py": lines})
     reach = Reach(package, load(package / "reach.json"))
     assert reach.tests("ratt_opt/calls.py", 7) == {"b"}
-    assert reach.tests("ratt_opt/loops.py", 7) == {"a"}
-    assert reach.tests("ratt_opt/loops.py", 2) == {"a", "b"}
+    assert reach.tests("ratt_opt/native/src/loops.c", 6) == {"a"}
+    assert reach.tests("ratt_opt/native/src/loops.c", 2) == {"a"}
+    assert reach.tests("ratt_opt/limits.py", 2) == {"a", "b"}
     assert json.loads((package / "reach.json").read_text())["tests"] == ["a", "b"]
 
 

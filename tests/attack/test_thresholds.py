@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from itertools import combinations
 
 import networkx as nx
 import numpy as np
@@ -15,7 +14,6 @@ from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, Duals
 from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.families.disjoint_sets import ChoiceRecord, DisjointRecord
-from ratt_opt.attack.groups import BRANCH, GroupList
 from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.pricing import QuestionRecord
@@ -24,10 +22,15 @@ from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import TreeRecord
+from ratt_opt.curvatures.planar.contexts import DescentRecord
+from ratt_opt.graph import group_list
+from ratt_opt.graph.largest_group.annealed_cut import CutAnnealRecord
+from ratt_opt.graph.separable_groups import LEVEL, PartitionsRecord
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.solvers.lazy_greedy import GreedyRecord
 from tests.strategies import random_problem
 
 RECORDS = AnnealRecord, QuestionRecord, SetQuestionRecord, ChoiceRecord, DisjointRecord
@@ -59,7 +62,7 @@ def asked(threat, below, threshold, **options):
 def test_any_values_against_the_plain_test(seed, monkeypatch):
     """Values in any order, so that nothing is inherited from set to set; everything in one piece and in many."""
     if seed % 2:
-        for module, name, few in ((sets_below, "VALUES", 8), (groups, "AT_ONCE", 3), (exact_cover, "STEPS", 2)):
+        for module, name, few in ((sets_below, "VALUES", 8), (group_list, "STEPS", 3), (exact_cover, "STEPS", 2)):
             monkeypatch.setattr(module, name, few)
     rng = np.random.default_rng(seed)
     n_robots = int(rng.integers(1, 9))
@@ -137,27 +140,6 @@ def test_what_no_attack_leaves_is_skipped(seed):
             assert threshold <= values[following] <= follow.min() + 1e-12
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_groups_against_all_sets(seed, monkeypatch):
-    monkeypatch.setattr(groups, "AT_ONCE", [groups.AT_ONCE, 3][seed % 2])
-    rng = np.random.default_rng(seed)
-    threat = random_problem(rng, int(rng.integers(1, 8)), kind="logdet", controls=1).threat
-    graph = nx.Graph(threat.graph.links)
-    graph.add_nodes_from(range(threat.graph.n_robots))
-    listed, cuts = GroupList(threat.graph, threat.alpha_c, threat.protected_links).all(Budget())
-    expected = {}
-    for size in range(1, threat.graph.n_robots + 1):
-        for inside in combinations(range(threat.graph.n_robots), size):
-            leaving = [link for link in threat.graph.links if (link[0] in inside) != (link[1] in inside)]
-            if (
-                nx.is_connected(graph.subgraph(inside))
-                and len(leaving) <= threat.alpha_c
-                and not threat.protected_links.intersection(leaving)
-            ):
-                expected[sum(1 << i for i in inside)] = len(leaving)
-    assert dict(zip(listed.tolist(), cuts.tolist(), strict=True)) == expected
-
-
 def random_columns(rng, robots, count):
     masks = rng.integers(1, 2**robots, count).astype(np.uint32)
     return Columns(
@@ -222,13 +204,12 @@ class Spent(Budget):
 
 
 def test_the_budget_is_asked_on_the_way(monkeypatch):
-    monkeypatch.setattr(groups, "AT_ONCE", 4)
+    monkeypatch.setattr(group_list, "STEPS", 4)
     problem = random_problem(np.random.default_rng(4), 12, kind="trace", controls=1, complete=True, protect=False)
     threat = Threat(problem.communication, 3, 30)
     team = Team.of(problem.objective, np.arange(12))
-    graph = GroupList(threat.graph, 30, frozenset())
     with pytest.raises(OutOfBudget):
-        graph.all(Spent())
+        groups.groups_of(threat).all(Spent())
     with pytest.raises(OutOfBudget):
         SetsBelow(team).mark(1.0, Spent())
 
@@ -257,10 +238,12 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(9, np.int64)
+    sizes = np.zeros(14, np.int64)
     layout(sizes.ctypes.data)
     records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord)]
-    assert sizes.tolist() == [ctypes.sizeof(TeamRecord), BRANCH.itemsize, exact_cover.LEVEL.itemsize, *records]
+    first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
+    of_graphs = LEVEL.itemsize, ctypes.sizeof(PartitionsRecord), ctypes.sizeof(CutAnnealRecord)
+    assert sizes.tolist() == [*first, *records, *of_graphs, ctypes.sizeof(GreedyRecord), ctypes.sizeof(DescentRecord)]
 
 
 def test_the_example_of_the_page_of_the_engine():

@@ -13,9 +13,6 @@ non-decreasing criteria. Their formulas stand here once more.
 
 from __future__ import annotations
 
-from math import log, sqrt
-
-import numba
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_array, vstack
@@ -67,41 +64,39 @@ def bits(mask):
     return [i for i in range(int(mask).bit_length()) if int(mask) >> i & 1]
 
 
-@numba.njit(cache=True)
 def lost(name, weights, sums):
-    """The criterion of posterior information (M, 3): what a team's value subtracts from the prior's."""
-    total = 0.0
-    for j in range(len(sums)):
-        a, b, c = sums[j]
-        determinant = a * c - b * b
-        if name == "trace":
-            total += weights[j] * (a + c) / determinant
-        elif name == "logdet":
-            total -= weights[j] * log(determinant)
-        else:  # the largest eigenvalue of the inverse is 1 / the smallest one
-            least = 0.5 * (a + c) - sqrt(0.25 * (a - c) ** 2 + b * b)
-            total = max(total, weights[j] / least)
-    return total
+    """The criterion of posterior information (..., M, 3): what a team's value subtracts from the prior's."""
+    a, b, c = np.moveaxis(sums, -1, 0)
+    determinant = a * c - b * b
+    if name == "trace":
+        return (weights * (a + c) / determinant).sum(axis=-1)
+    if name == "logdet":
+        return -(weights * np.log(determinant)).sum(axis=-1)
+    # The largest eigenvalue of the inverse is 1 / the smallest one.
+    return (weights / (0.5 * (a + c) - np.sqrt(0.25 * (a - c) ** 2 + b * b))).max(axis=-1)
 
 
-@numba.njit(cache=True)
-def blinding(name, weights, whole, seeing, information, free, first, count, most_lost, blinded):  # noqa: PLR0917
-    """Whether blinding so many robots from ``first`` on loses more than ``most_lost``; ``blinded`` says which.
+def blinding(name, weights, whole, seeing, information, free, first, count, most_lost):  # noqa: PLR0917
+    """Robots, so many from ``first`` on, that lose more than ``most_lost`` if they are blinded; ``None`` : none do.
 
     ``whole`` : (M, 3) of all that are not blinded yet; ``seeing`` : of those before ``first``, which stay so
     """
     if count == 0:
-        return lost(name, weights, whole) > most_lost
-    kept = seeing.copy()
+        return [] if lost(name, weights, whole) > most_lost else None
+    less = whole - information[first:]
+    if count == 1:
+        found = np.flatnonzero((lost(name, weights, less) > most_lost) & free[first:])
+        return [first + int(found[0])] if len(found) else None
+    kept = lost(name, weights, seeing + information[first:].cumsum(axis=0))
     for i in range(first, len(information) - count + 1):
-        less = whole - information[i]
-        if free[i] and blinding(name, weights, less, kept, information, free, i + 1, count - 1, most_lost, blinded):
-            blinded[i] = True
-            return True
-        kept += information[i]
-        if lost(name, weights, kept) <= most_lost:
-            return False
-    return False
+        if free[i]:
+            before = seeing + information[first:i].sum(axis=0)
+            rest = blinding(name, weights, less[i - first], before, information, free, i + 1, count - 1, most_lost)
+            if rest is not None:
+                return [i, *rest]
+        if kept[i - first] <= most_lost:
+            return None
+    return None
 
 
 class SecondAttacker:
@@ -144,11 +139,12 @@ class SecondAttacker:
         """Fewest robots of a group to blind, no fewer than ``least``; ``None`` where the budget does not do."""
         members = [i for i in self._order.tolist() if int(group) >> i & 1]
         free = np.array([i not in self._problem.protected_robots for i in members])
-        information, blinded = self._robots[members], np.zeros(len(members), dtype=bool)
+        information = self._robots[members]
         team = self._name, self._weights, self._prior + information.sum(axis=0), self._prior, information, free
         for count in range(least, min(self._problem.alpha_s, len(members)) + 1):
-            if blinding(*team, 0, count, self._nothing - threshold, blinded):
-                return {members[k] for k in np.flatnonzero(blinded).tolist()}
+            found = blinding(*team, 0, count, self._nothing - threshold)
+            if found is not None:
+                return {members[k] for k in found}
         return None
 
     def _partition(self, need):

@@ -59,7 +59,7 @@ def test_more_time_runs_the_first_stages_again() -> None:
     problem = ro.network_scenario("small-world", 60, 4, alpha_s=12, alpha_c=26, seed=0).problem()
     plan, memory = ro.ratt(problem).elements, AttackMemory()
     at_once = ro.worst_case_attack(problem, plan, time_limit=0, memory=memory)
-    for seconds in (2, 8, 32):  # two are enough where nothing has to be compiled
+    for seconds in (2, 8, 32):  # two are enough unless the machine is busy
         later = ro.worst_case_attack(problem, plan, time_limit=seconds, memory=memory)
         if later.lower > at_once.lower:
             break

@@ -126,7 +126,7 @@ def test_a_fault_of_the_program_is_one_line_and_a_file(
 
 
 def test_an_interrupt_that_another_error_hides_is_an_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lazy imports and compiled code turn a KeyboardInterrupt into errors of their own."""
+    """Imports turn a KeyboardInterrupt into errors of their own."""
     import signal
 
     def hidden(*_: Any, **__: Any) -> Any:

@@ -15,36 +15,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from ratt_opt import random_scenario, save_scenario
-from ratt_opt.running import cache
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 PROGRAM = [sys.executable, "-c", "from ratt_opt.cli import main; main()"]
-NOTHING_CAN_BE_WRITTEN = """
-import os, sys, tempfile
-from pathlib import Path
-import ratt_opt
-home = str(Path(ratt_opt.__file__).parent), "/dev/null"
-def refused(path):
-    return str(path).startswith(home)
-access, made, opened = os.access, os.makedirs, tempfile.TemporaryFile
-def makedirs(path, *given, **named):
-    if refused(path):
-        raise OSError(30, "Read-only file system")
-    return made(path, *given, **named)
-def temporary(*given, dir=None, **named):
-    if refused(dir):
-        raise OSError(30, "Read-only file system")
-    return opened(*given, dir=dir, **named)
-os.access = lambda path, mode, **named: not refused(path) and access(path, mode, **named)
-os.makedirs, tempfile.TemporaryFile = makedirs, temporary
-sys.argv[1:] = ["schema"]
-from ratt_opt.cli import run
-assert run(sys.argv[1:]) == 0
-from ratt_opt.graph import separable_groups
-print(separable_groups.__name__, os.environ["NUMBA_CACHE_DIR"], file=sys.stderr)
-"""
 
 
 @pytest.fixture(scope="module")
@@ -112,24 +87,3 @@ def test_settings_of_figures_for_other_programs_change_nothing(folder: Path, tmp
     done = subprocess.run(command, env={**os.environ, **settings}, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "plan.png").stat().st_size > 1000
-
-
-def test_compiled_loops_are_kept_where_something_can_be_written() -> None:
-    known = {cache.VARIABLE, "XDG_CACHE_HOME"}
-    environment = {name: value for name, value in os.environ.items() if name not in known} | {"HOME": "/dev/null"}
-    done = subprocess.run(
-        [sys.executable, "-c", NOTHING_CAN_BE_WRITTEN], env=environment, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    name, folder = done.stderr.split()[-2:]
-    assert name == "ratt_opt.graph.separable_groups"
-    assert "ratt-opt-compiled-" in folder
-    assert not os.path.exists(folder)
-
-
-def test_a_place_that_exists_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(cache.VARIABLE, raising=False)
-    monkeypatch.setattr(cache, "__file__", str(tmp_path / "none" / "x.py"))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache" / "of" / "mine"))
-    cache.provide_cache()
-    assert cache.VARIABLE not in os.environ

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import networkx as nx
@@ -7,7 +8,9 @@ import numpy as np
 import pytest
 
 import ratt_opt.graph.separable_groups as separable_groups_module
+from ratt_opt import InputError
 from ratt_opt.budget import Budget
+from ratt_opt.graph import group_list
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.connected_partitions import connected_partitions
 from ratt_opt.graph.separable_groups import PartitionSearch, separable_groups
@@ -31,6 +34,8 @@ def test_groups_are_those_of_the_definition(seed):
     threat = random_problem(np.random.default_rng(seed), 1 + seed % 8, kind="logdet", controls=1).threat
     groups = separable_groups(threat, 10_000)
     found = [tuple(groups.members(k).tolist()) for k in range(len(groups.masks))]
+    for group, links in zip(found, groups.links.tolist(), strict=True):
+        assert links == sum((i in group) != (j in group) for i, j in threat.graph.links)
     assert len(found) == len(set(found))
     assert set(found) == set(by_definition(threat))
     if len(found) > 1:
@@ -42,7 +47,7 @@ def test_groups_are_those_of_the_definition(seed):
 def test_a_listing_that_the_budget_ends_goes_on_the_next_time(seed, monkeypatch):
     threat = random_problem(np.random.default_rng(seed), 5 + seed % 4, kind="logdet", controls=1).threat
     expected = set(by_definition(threat))
-    monkeypatch.setattr(separable_groups_module, "STEPS", 1)
+    monkeypatch.setattr(group_list, "STEPS", 1)
     separable_groups_module._listing.cache_clear()
     looks = iter([False, True] * 10**5)
     monkeypatch.setattr(Budget, "is_over", property(lambda _: next(looks)))
@@ -55,8 +60,9 @@ def test_a_listing_that_the_budget_ends_goes_on_the_next_time(seed, monkeypatch)
 
 @pytest.mark.parametrize("seed", range(60))
 @pytest.mark.parametrize("limit", [1, 10**6])
-def test_partitions_are_all_those_within_both_budgets(seed, limit):
-    """Also when the search is paused after every node."""
+def test_partitions_are_all_those_within_both_budgets(seed, limit, monkeypatch):
+    """Also when the search is paused after every node, or every group that it looks at."""
+    monkeypatch.setattr(separable_groups_module, "GROUPS_AT_ONCE", [10**6, 1][seed % 2])
     rng = np.random.default_rng(seed)
     threat = random_problem(rng, 1 + seed % 7, kind="logdet", controls=1).threat
     groups = separable_groups(threat, 10_000)
@@ -64,7 +70,7 @@ def test_partitions_are_all_those_within_both_budgets(seed, limit):
     search, found = PartitionSearch(groups, need.copy()), []
     while not search.finished:
         before = search.nodes
-        chosen = search.next(before + limit)
+        chosen = search.next(limit)
         assert search.nodes <= before + limit
         if chosen is not None:
             found.append(frozenset(tuple(groups.members(k).tolist()) for k in chosen))
@@ -94,3 +100,28 @@ def test_needs_that_rise_on_the_way_only_shorten_the_search():
 
 def test_too_many_robots_for_a_mask():
     assert separable_groups(Threat(CommunicationGraph.from_networkx(nx.path_graph(61), 61), 1, 1), 10_000) is None
+
+
+def test_a_partition_of_one_robot():
+    groups = separable_groups(Threat(CommunicationGraph(1, frozenset()), 1, 0), 10)
+    search = PartitionSearch(groups, np.zeros(1, dtype=np.int64))
+    assert search.next(10) == [0]
+    assert search.next(10) is None
+    assert search.finished
+    search = PartitionSearch(groups, np.full(1, 2))
+    assert search.next(10) is None
+    assert (search.finished, search.nodes) == (True, 0)
+
+
+def test_what_c_may_not_read_is_refused():
+    groups = separable_groups(Threat(CommunicationGraph.from_networkx(nx.cycle_graph(5), 5), 1, 2), 100)
+    need = np.zeros(len(groups.masks), dtype=np.int64)
+    PartitionSearch(groups, need)
+    for bad in (need.astype(np.int32), need.tolist(), need[1:], np.repeat(need, 2)[::2], need[:, None]):
+        with pytest.raises(InputError):
+            PartitionSearch(groups, bad)
+    for name in ("masks", "start", "neighbours"):
+        array = getattr(groups, name)
+        for bad in (array.astype(np.int32), array[:-1].copy(), np.repeat(array, 2)[::2]):
+            with pytest.raises(InputError):
+                PartitionSearch(replace(groups, **{name: bad}), need)

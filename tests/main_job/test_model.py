@@ -256,10 +256,6 @@ def test_what_to_protect_is_said_by_names(tmp_path: Path, capsys) -> None:
     assert all(names[i] in shown for link in best for i in link if i < 2)
 
 
-def test_warming_up_takes_seconds_and_says_how_many() -> None:
-    assert ro.warm_up() > 0
-
-
 def last(problem: ro.Problem) -> list[int]:
     return [own[-1] for own in problem.choices]
 

@@ -28,18 +28,6 @@ class Slow(ro.SetFunction):
 ro.find_submodularity_violation(Slow())
 print("done")
 """
-COMPILING = """
-import numba, ratt_opt.running.progress as p
-p.PATIENCE = p.PERIOD = 0.01
-@numba.njit
-def loop(n):
-    total = 0.0
-    for i in range(n):
-        total += i ** 0.5
-    return total
-with p.Step("outer"):
-    print(loop(10) > 0)
-"""
 
 
 def on_a_terminal(code: str, columns: int = 0) -> tuple[str, str]:
@@ -85,13 +73,6 @@ def test_a_short_step_shows_nothing() -> None:
         on_a_terminal("import ratt_opt as ro; ro.caa(5, 3); ro.find_submodularity_violation(ro.Modular([1.0]))")[1]
         == ""
     )
-
-
-def test_compiling_is_a_step() -> None:
-    printed, shown = on_a_terminal(COMPILING)
-    assert printed == "True\n"
-    assert "outer (0 s) > compiling loops, once an installation (0 s)" in shown
-    assert shown.endswith(ERASE)
 
 
 def test_nothing_is_written_where_there_is_no_terminal() -> None:

@@ -19,8 +19,6 @@ from ratt_opt import (
     find_subadditivity_violation,
     find_submodularity_violation,
 )
-from ratt_opt.budget import Budget
-from ratt_opt.setfunctions.lattice import second_differences
 from tests.setfunctions.oracle import pair_slack, worst_slack
 from tests.strategies import information_data, monotone_table
 
@@ -192,16 +190,3 @@ def test_tiny_ground_sets():
         for check in CHECKS.values():
             assert check(TableFunction(values)) is None
     assert find_monotonicity_violation(TableFunction([1.0, 0.0])).slack == -1.0
-
-
-@pytest.mark.parametrize("n", [1, 2, 8, 9, 10, 11, 13, 14, 15, 16])
-def test_second_differences_at_every_block_size(n):
-    """Tables smaller than a chunk, than a block, and larger than both, against one NumPy expression a pair."""
-    values = np.random.default_rng(n).normal(size=1 << n)
-    table = values.reshape((2,) * n)  # axis a is element n - 1 - a
-    expected = np.zeros((n, n))
-    for i in range(n):
-        for j in range(i + 1, n):
-            f = np.moveaxis(table, (n - 1 - i, n - 1 - j), (0, 1))
-            expected[i, j] = ((f[1, 0] - f[1, 1]) - (f[0, 0] - f[0, 1])).min()
-    np.testing.assert_array_equal(second_differences(values, n, Budget()), expected)

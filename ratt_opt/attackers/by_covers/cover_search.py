@@ -100,5 +100,5 @@ class _Threshold:
         masks = every.masks[own]
         lowest = np.bitwise_count((masks & -masks) - 1)
         start = np.searchsorted(lowest, np.arange(len(every.robots) + 1))
-        some = SeparableGroups(every.threat, masks, start, every.robots, every.neighbours)
+        some = SeparableGroups(every.threat, masks, every.links[own], start, every.robots, every.neighbours)
         return SettledPartitions(survivors, some, self._listed.need[cheap], self.threshold)

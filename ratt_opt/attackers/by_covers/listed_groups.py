@@ -2,8 +2,6 @@
 
 What a group needs is proved only for groups in the program's solutions: each gets a weak set of its own, as large as it
 can be, which says as much of the groups around it. At exact needs the program hardly leaves a part of a link.
-
-Imported only where compiled loops are used.
 """
 
 from __future__ import annotations
@@ -36,7 +34,7 @@ class ListedGroups:
     def __init__(self, listed: SeparableGroups, weak: WeakSets, program: CoverProgram) -> None:
         self._threat, self._weak, self._program, self._asked = listed.threat, weak, program, 0
         self._seeing = sum(1 << i for i in self._threat.protected_robots)
-        self.masks, self.links = listed.by_robots(), listed.links()
+        self.masks, self.links = listed.by_robots(), listed.links
         self.rows, self.need = np.arange(len(self.masks)), np.zeros(len(self.masks), dtype=np.int64)
 
     def _raise_needs(self) -> None:

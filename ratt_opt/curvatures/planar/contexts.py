@@ -5,11 +5,14 @@ Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.planar_
 
 from __future__ import annotations
 
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+
+from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -70,6 +73,16 @@ def _smallest(total: FloatArray) -> FloatArray:
     return np.asarray((total[..., 0, :] - np.sqrt(even * even + odd * odd)).min(axis=-1))
 
 
+class DescentRecord(Structure):
+    """``Descent`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("owners", "targets")),
+        *((name, c_double) for name in ("sign", "value")),
+        *((name, c_void_p) for name in ("parts", "ends", "added", "total", "picks", "rest", "one")),
+    ]
+
+
 class PlanarDescent:
     """``value`` is the marginal of an element in the context ``picks`` (R,), the smallest of those seen.
 
@@ -79,10 +92,12 @@ class PlanarDescent:
     def __init__(self, options: Options, base: FloatArray, added: FloatArray, *, sign: float) -> None:
         self._options, self._base, self._added, self._sign = options, base, added, sign
         self._ends = np.append(options.first, len(options.owners))
+        self._total, self._picks = np.empty(base.shape), options.first.copy()
+        self._arrays, self._record = self._for_c()
         self._starts: set[tuple[int, ...]] = set()
         self._paired: tuple[int, ...] | None = None
         self.picks = options.first.copy()
-        self.value = self._best(self._total(self.picks)[None])[1]
+        self.value = self._best(self._sum(self.picks)[None])[1]
 
     def offer(self, picks: IntArray) -> None:
         """Descend from a context, one owner at a time, if it is new."""
@@ -104,23 +119,47 @@ class PlanarDescent:
     def pairs(self, budget: Budget) -> None:
         """Descend from the best context over two owners at a time, until it is the best of its neighbours."""
         while self._paired != tuple(self.picks.tolist()) and not budget.is_over:
-            self._paired = tuple(self.picks.tolist())
-            self._run(self.picks, pairs=True)
+            start = tuple(self.picks.tolist())
+            self._run(self.picks, budget)
             self._run(self.picks)
+            if not budget.is_over:
+                self._paired = start
 
-    def _run(self, picks: IntArray, *, pairs: bool = False) -> None:
-        from ratt_opt.curvatures.planar.compiled import descend, descend_pairs
+    def _run(self, picks: IntArray, budget: Budget | None = None) -> None:
+        """Descend over one owner at a time, or, with a budget, over each pair of owners once as far as that lasts."""
+        self._picks[:], self._total[:] = picks, self._sum(picks)
+        self._record.value = self._sign * self._best(self._total[None])[1]
+        if budget is None:
+            call = function("descend", c_int, POINTER(DescentRecord))
+            while call(byref(self._record)):
+                pass
+        else:
+            call = function("descend_pairs", None, POINTER(DescentRecord), c_int64)
+            for i in range(len(picks)):
+                if budget.is_over:
+                    break
+                call(byref(self._record), i)
+        self._keep(self._picks, self._best(self._sum(self._picks)[None])[1])
 
-        picks, improve = picks.copy(), descend_pairs if pairs else descend
-        improve(self._options.parts, self._ends, self._total(picks), self._added, self._sign, picks)
-        self._keep(picks, self._best(self._total(picks)[None])[1])
+    def _for_c(self) -> tuple[list[FloatArray | IntArray], DescentRecord]:
+        """The record of the descent, and arrays that it points to."""
+        count, targets, owners = len(self._options.owners), self._base.shape[-1], len(self._picks)
+        arrays = [
+            checked("parts", self._options.parts, np.float64, (count, 3, targets)),
+            checked("first", self._ends, np.int64, (owners + 1,)),
+            checked("added", self._added, np.float64, (3, targets)),
+            checked("base", self._total, np.float64, (3, targets)),
+            checked("first", self._picks, np.int64, (owners,)),
+            *np.empty((2, 3, targets)),
+        ]
+        return arrays, DescentRecord(owners, targets, self._sign, 0.0, *map(address, arrays))
 
     def _keep(self, picks: IntArray, value: float) -> None:
         # A relative improvement: rounding must not make two contexts take turns.
         if self._sign * value < self._sign * self.value - 1e-12 * abs(self.value):
             self.picks, self.value = picks.copy(), value
 
-    def _total(self, picks: IntArray) -> FloatArray:
+    def _sum(self, picks: IntArray) -> FloatArray:
         return np.asarray(self._base + self._options.parts[picks].sum(axis=0))
 
     def _best(self, totals: FloatArray) -> tuple[int, float]:

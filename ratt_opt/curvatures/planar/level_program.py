@@ -10,7 +10,7 @@ sector ``|a - middle| <= half < pi/2``. Then :class:`LevelProgram` finds a numbe
 - In the sector ``y . v >= 0`` for the two unit vectors ``v`` at ``middle +- (pi/2 - half)``.
 
 All are linear in ``S``. Whatever multipliers the linear program has, clipped and normalised, give a valid ``V``: a sum
-over owners of their best option (``compiled.py``). If the sector holds no mixture at all ``V`` is merely low, as
+over owners of their best option. If the sector holds no mixture at all ``V`` is merely low, as
 the multipliers of its edges are capped.
 """
 
@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.planar.contexts import along, levels
+from ratt_opt.curvatures.planar.inequalities import MARGIN
 from ratt_opt.highs import LinearProgram, Rows
 
 if TYPE_CHECKING:
@@ -161,6 +162,7 @@ class LevelProgram:
     ) -> None:
         self._base, self._allowed = base, allowed
         self._parts, self._owners = np.ascontiguousarray(options.parts[allowed]), options.owners[allowed]
+        self._first = np.flatnonzero(np.diff(self._owners, prepend=-1))
         if start is None:
             shares = 1 / np.bincount(self._owners)[self._owners]
             start = _worst(base + np.tensordot(shares, self._parts, axes=1))
@@ -172,16 +174,14 @@ class LevelProgram:
 
     def bound(self, slope: float, budget: Budget, enough: float = -np.inf) -> Relaxed:
         """The bound with one slope; ``enough`` : a ceiling low enough to stop at. It holds at every stop."""
-        from ratt_opt.curvatures.planar.compiled import ceiling, violated
-
         self._program.change_slope(slope)
         for last in [False] * (ROUNDS - 1) + [True]:
             z, level, weights = self._program.solve()
-            highest = ceiling(self._scores, self._constants, np.append(-slope, weights), self._owners)
+            highest = self._ceiling(np.append(-slope, weights))
             own = float(self._constants[0] + self._scores[0] @ z)
             if last or highest <= enough or not np.isfinite(level) or budget.is_over:
                 break
-            found = violated(self._parts, self._base, z, level - VIOLATION * abs(level - own), NEW_CUTS)
+            found = self._violated(z, level - VIOLATION * abs(level - own))
             if len(found[0]) == 0:
                 break
             self._add(*found)
@@ -192,6 +192,21 @@ class LevelProgram:
         multipliers = weights[EDGES:][binding]
         average = _average(cuts, multipliers, self._base)
         return Relaxed(highest, mixture, level, own, cuts, multipliers, average, slope)
+
+    def _ceiling(self, weights: FloatArray) -> float:
+        """Largest weighted sum of the forms ``constants + scores . z`` over all contexts: each owner's best option."""
+        options = weights @ self._scores
+        best = np.maximum.reduceat(options, self._first) if len(options) else options
+        terms = np.concatenate([weights * self._constants, best])
+        return float(terms.sum() + MARGIN * np.abs(terms).sum())
+
+    def _violated(self, z: FloatArray, limit: float) -> tuple[IntArray, FloatArray]:
+        """Targets of the mixture ``z`` (n,) whose level is below a limit, weakest first, and their weakest angles."""
+        total = self._base + (z @ self._parts.reshape(len(z), self._base.size)).reshape(self._base.shape)
+        level = levels(total)
+        targets = np.argsort(level, kind="stable")[:NEW_CUTS]
+        targets = targets[level[targets] < limit]
+        return targets, np.arctan2(-total[2, targets], -total[1, targets])
 
     def _add(self, targets: IntArray, angles: FloatArray) -> None:
         directions = along(angles)

@@ -1,20 +1,21 @@
-"""Few links whose cut leaves no group above a size, by simulated annealing over the robots' groups, in compiled code.
-
-Imported only if compiled loops are used.
-"""
+"""Few links whose cut leaves no group above a size, by simulated annealing over the robots' groups."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from ctypes import POINTER, Structure, byref, c_double, c_int64, c_void_p, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt.errors import InputError
 from ratt_opt.graph.largest_group.counting import largest_left
-from ratt_opt.running.compiling import numba
+from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
@@ -59,70 +60,80 @@ def annealed_cut(
 
 def _cut_below(threat: Threat, size: int, budget: Budget, ignoring: Collection[int]) -> frozenset[Link] | None:
     """A cut within the budget that leaves groups of at most ``size`` robots that count, if a few coolings find one."""
-    n_robots, links = threat.graph.n_robots, sorted(threat.graph.links)
-    arcs = np.array([*links, *(link[::-1] for link in links)], dtype=np.int64).reshape(-1, 2)
-    price = np.array([len(links) + 1 if link in threat.protected_links else 1 for link in links] * 2, dtype=np.int64)
-    order = np.lexsort(arcs.T[::-1])
-    first = np.searchsorted(arcs[order, 0], np.arange(n_robots + 1))
+    n_robots = threat.graph.n_robots
     counts = np.array([i not in ignoring for i in range(n_robots)], dtype=np.int64)
-    network = (first, arcs[order, 1].copy(), price[order], counts)
-    rng = np.random.default_rng(size)
-    fewest = -(-int(counts.sum()) // size)
+    network, rng, fewest = _Network.of(threat), np.random.default_rng(size), -(-int(counts.sum()) // size)
     for count in dict.fromkeys(fewest + round(share * fewest) for share in SPARE_GROUPS):
-        group = rng.integers(0, count, n_robots)
-        state = (group, np.bincount(group[counts > 0], minlength=count), group.copy())
+        cooling = Cooling(network, counts, rng.integers(0, count, n_robots), count, size, rng)
         within, moves = threat.alpha_c + 1, MOVES * n_robots
         for start in range(0, moves, MOVES_AT_ONCE):
             if budget.stop() is not None:
                 break
-            part = (start, min(start + MOVES_AT_ONCE, moves), moves)
-            within = int(_cool(network, state, np.array([size, within]), part, rng))
+            within = cooling.run(start, min(start + MOVES_AT_ONCE, moves), moves, within)
             if within <= threat.alpha_c:
-                best = state[2]
-                return frozenset((i, j) for i, j in links if best[i] != best[j])
+                return frozenset((i, j) for i, j in threat.graph.links if cooling.best[i] != cooling.best[j])
     return None
 
 
-@numba.njit(cache=True)
-def _cool(network: Any, state: Any, goal: Any, part: Any, rng: Any) -> Any:
-    """Moves of one cooling: the fewest links cut so far by groups within the size, those groups in place.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Network:
+    """``start`` : (N + 1,) of each robot's arcs; ``robot``, ``price`` : (2 E,) an arc's other end, and its cut's."""
 
-    Parameters
-    ----------
-    network : start (N + 1,) of each robot's arcs; other robot and price (2 E,) of an arc; what each robot counts (N,)
-    state : group (N,) of each robot, size (K,) of the groups, best groups (N,) so far
-    goal : largest size; fewest links so far; part : first and last move of this call, moves of the cooling
+    start: IntArray
+    robot: IntArray
+    price: IntArray
+
+    @classmethod
+    def of(cls, threat: Threat) -> _Network:
+        """A protected link costs more than all links."""
+        links = sorted(threat.graph.links)
+        arcs = np.array([*links, *(link[::-1] for link in links)], dtype=np.int64).reshape(-1, 2)
+        price = np.array(
+            [len(links) + 1 if link in threat.protected_links else 1 for link in links] * 2, dtype=np.int64
+        )
+        order = np.lexsort(arcs.T[::-1])
+        start = np.searchsorted(arcs[order, 0], np.arange(threat.graph.n_robots + 1))
+        return cls(start, arcs[order, 1].copy(), price[order])
+
+
+class CutAnnealRecord(Structure):
+    """``CutAnneal`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("robots", "groups", "most")),
+        *((name, c_void_p) for name in ("start", "robot", "price", "counts", "group", "best", "sizes")),
+        *((name, c_double) for name in ("hot", "cold", "oversize")),
+        *((name, c_void_p) for name in ("random", "uniform")),
+    ]
+
+
+class Cooling:
+    """One cooling from the labels ``group`` (N,) below ``count``; ``best`` : (N,) those of the fewest links cut.
+
+    ``counts`` : (N,) 1, or 0 for robots that do not count for a group's ``size``
+
+    Raises ``InputError`` : an array has another type or shape, or a label is none.
     """
-    first, others, price, counts = network
-    group, sizes, best = state
-    most, fewest = goal
-    n_robots, cut, over = len(group), 0, 0
-    for i in range(n_robots):
-        for a in range(first[i], first[i + 1]):
-            cut += price[a] * (group[others[a]] != group[i])
-    cut //= 2
-    for g in range(len(sizes)):
-        over += max(sizes[g] - most, 0)
-    for move in range(part[0], part[1]):
-        heat = HOT * (COLD / HOT) ** (move / part[2])
-        i = int(rng.random() * n_robots)
-        degree = first[i + 1] - first[i]
-        if degree and rng.random() < 0.95:
-            target = group[others[first[i] + int(rng.random() * degree)]]
-        else:
-            target = int(rng.random() * len(sizes))
-        home = group[i]
-        if home == target:
-            continue
-        change, excess = 0, counts[i] * (int(sizes[target] >= most) - int(sizes[home] > most))
-        for a in range(first[i], first[i + 1]):
-            change += price[a] * (int(group[others[a]] == home) - int(group[others[a]] == target))
-        worse = change + OVERSIZE * excess
-        if worse <= 0 or rng.random() < np.exp(-worse / heat):
-            group[i], cut, over = target, cut + change, over + excess
-            sizes[home] -= counts[i]
-            sizes[target] += counts[i]
-            if over == 0 and cut < fewest:
-                fewest = cut
-                best[:] = group
-    return fewest
+
+    def __init__(  # noqa: PLR0917
+        self, network: _Network, counts: IntArray, group: IntArray, count: int, size: int, rng: np.random.Generator
+    ) -> None:
+        n_robots, arcs = len(network.start) - 1, len(network.robot)
+        shapes = {"start": n_robots + 1, "robot": arcs, "price": arcs}
+        given = [checked(name, getattr(network, name), np.int64, (length,)) for name, length in shapes.items()]
+        given.append(checked("counts", counts, np.int64, (n_robots,)))
+        given.append(checked("group", group, np.int64, (n_robots,), written=True))
+        if not ((group >= 0) & (group < count)).all():
+            raise InputError("group", f"must be in [0, {count - 1}]", group)
+        self.best, sizes = group.copy(), np.bincount(group, counts, minlength=count).astype(np.int64)
+        self._arrays = [*given, self.best, sizes]
+        # The state of NumPy's generator, and the function of its that reads it: `bitgen_t` in its reference.
+        self._rng, bits = rng, rng.bit_generator.ctypes
+        source = bits.state_address, cast(bits.next_double, c_void_p)
+        where = map(address, self._arrays)
+        self._record = CutAnnealRecord(n_robots, count, size, *where, HOT, COLD, OVERSIZE, *source)
+
+    def run(self, first: int, last: int, moves: int, fewest: int) -> int:
+        """Go through some of the ``moves``; the fewest links cut so far, less than ``fewest``, or that."""
+        call = function("anneal_cut", c_int64, POINTER(CutAnnealRecord), *[c_int64] * 4)
+        return int(call(byref(self._record), first, last, moves, fewest))

@@ -18,6 +18,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph, Link
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
 from ratt_opt.graph.few_cuts import attacks_are_few, partitions_by_few_cuts
+from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
 from ratt_opt.graph.largest_group.bridges import by_bridges, is_nearly_a_tree
 from ratt_opt.graph.largest_group.counting import (
     COUNTED,
@@ -32,6 +33,7 @@ from ratt_opt.graph.largest_group.counting import (
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.largest_group.spreading import TREES, forced_size, forced_size_soon
+from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.running.progress import Step
@@ -41,7 +43,6 @@ if TYPE_CHECKING:
 
     import networkx as nx
 
-    from ratt_opt.graph.separable_groups import PartitionSearch
 
 __all__ = ["bound_soon", "by_search", "by_separable_groups", "by_subsets", "smallest_largest_group"]
 
@@ -164,8 +165,6 @@ def bound_soon(threat: Threat, budget: Budget) -> int:
 
 def by_spreading(threat: Threat, budget: Budget) -> LargestGroup:
     """Bracket by annealing from above and by tree inequalities from below: hundreds of robots in seconds."""
-    from ratt_opt.graph.largest_group.annealed_cut import annealed_cut  # compiles
-
     quick = by_counting(threat, budget)
     cut = annealed_cut(threat, quick.cut, quick.lower, budget)
     upper = largest_left(threat.graph, cut)
@@ -217,8 +216,6 @@ def by_subsets(threat: Threat, budget: Budget) -> LargestGroup:
 
 def by_separable_groups(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup | None:
     """Smallest largest group, or the bracket that the budget allows; ``None`` if the groups are too many to list."""
-    from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups  # compiles
-
     groups = separable_groups(threat, MOST_GROUPS, budget)
     if groups is None:
         return None

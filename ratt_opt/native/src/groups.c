@@ -2,46 +2,45 @@
 #include "records.h"
 #include "sets.h"
 
-/* The robot next to `inside`, in neither set, with the most links to both; -1 where there is none. */
-static int most_linked(int robots, const uint32_t *neighbours, uint32_t inside, uint32_t outside) {
+/* The robot next to those inside, and not decided, with the most links to decided ones; -1 where there is none. */
+static int most_linked(const uint64_t *neighbours, const Branch *node) {
     int pick = -1, most = -1;
-    for (int i = 0; i < robots; i++) {
-        int links = size_of(neighbours[i] & inside);
-        if ((inside | outside) >> i & 1 || links == 0) continue;
-        links += size_of(neighbours[i] & outside);
+    for (uint64_t rest = node->near & ~(node->inside | node->outside); rest; rest &= rest - 1) {
+        int i = lowest(rest), links = size_of(neighbours[i] & (node->inside | node->outside));
         if (links > most) pick = i, most = links;
     }
     return pick;
 }
 
 /* List connected sets that at most `most` links leave, none of them protected; each grows from its lowest robot, and a
-   robot next to it is taken in or left out, which costs its links. Goes on from `position`: robots begun with, depth of
-   the stack (2 robots + 2). Ends after `steps` or `room` sets; returns how many were written. */
-EXPORTED int64_t list_groups(int robots, const uint32_t *neighbours, const uint32_t *protected_links, int most,
-                             Branch *stack, int64_t *position, int64_t steps, int64_t room, uint32_t *groups, uint8_t *cuts) {
+   robot next to it is taken in or left out, which costs its links. At most 63 robots. Goes on from `position`: robots begun
+   with, depth of the stack (2 robots + 2). Ends after `steps` or `room` sets; returns how many were written. */
+EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most,
+                             Branch *stack, int64_t *position, int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts) {
     int64_t found = 0;
     while (steps-- > 0 && found < room) {
         if (position[1] == 0) {
             if (position[0] == robots) break;
             int first = (int)position[0]++;
-            uint32_t below = ((uint32_t)1 << first) - 1;
-            stack[0] = (Branch){(uint32_t)1 << first, below, size_of(neighbours[first] & below)};
+            uint64_t below = ((uint64_t)1 << first) - 1;
+            stack[0] = (Branch){(uint64_t)1 << first, below, neighbours[first], size_of(neighbours[first] & below)};
             position[1] = (protected_links[first] & below) == 0;
             continue;
         }
         Branch node = stack[--position[1]];
         if (node.cut > most) continue;
-        int pick = most_linked(robots, neighbours, node.inside, node.outside);
+        int pick = most_linked(neighbours, &node);
         if (pick < 0) {
             groups[found] = node.inside;
-            cuts[found++] = (uint8_t)node.cut;
+            cuts[found++] = (uint16_t)node.cut;
             continue;
         }
-        uint32_t bit = (uint32_t)1 << pick;
+        uint64_t bit = (uint64_t)1 << pick;
+        int64_t inside = size_of(neighbours[pick] & node.inside), outside = size_of(neighbours[pick] & node.outside);
         if (!(protected_links[pick] & node.inside))
-            stack[position[1]++] = (Branch){node.inside, node.outside | bit, node.cut + size_of(neighbours[pick] & node.inside)};
+            stack[position[1]++] = (Branch){node.inside, node.outside | bit, node.near, node.cut + inside};
         if (!(protected_links[pick] & node.outside))
-            stack[position[1]++] = (Branch){node.inside | bit, node.outside, node.cut + size_of(neighbours[pick] & node.outside)};
+            stack[position[1]++] = (Branch){node.inside | bit, node.outside, node.near | neighbours[pick], node.cut + outside};
     }
     return found;
 }

@@ -17,6 +17,11 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[6] = sizeof(Choice);
     sizes[7] = sizeof(DisjointSets);
     sizes[8] = sizeof(GroupTree);
+    sizes[9] = sizeof(PartitionLevel);
+    sizes[10] = sizeof(Partitions);
+    sizes[11] = sizeof(CutAnneal);
+    sizes[12] = sizeof(Greedy);
+    sizes[13] = sizeof(Descent);
 }
 
 /* Those of the searches for best plans. */

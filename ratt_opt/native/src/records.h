@@ -6,11 +6,29 @@
 
 #include "team.h"
 
-/* A node of the list of groups: robots inside, robots outside, links between them. */
+/* A node of the list of groups: robots inside, robots outside, those next to one inside; links between the first two. */
 typedef struct {
-    uint32_t inside, outside;
-    int32_t cut;
+    uint64_t inside, outside, near;
+    int64_t cut;
 } Branch;
+
+/* A level of the search of partitions. */
+typedef struct {
+    uint64_t left;                    /* robots in no group so far */
+    int64_t cut, blinded;             /* by the groups so far */
+    int64_t next, group;              /* the group tried next, and the one that is chosen */
+} PartitionLevel;
+
+/* Partitions of the team into listed groups, within both budgets. */
+typedef struct {
+    int64_t n_blinded, most_cut;
+    const uint64_t *groups;           /* sorted by lowest robot */
+    const int64_t *starts;            /* (robots + 1) the first group of each lowest robot */
+    const uint64_t *neighbours;       /* (robots) */
+    const int64_t *needs;             /* (groups) robots to blind, at least; may be raised between two calls */
+    PartitionLevel *levels;           /* (robots + 1) */
+    int64_t depth, nodes;             /* depth: -1 at the end; nodes: groups tried */
+} Partitions;
 
 /* A level of the search of covers. */
 typedef struct {
@@ -42,6 +60,43 @@ typedef struct {
     double *least;
     uint64_t *random;                  /* not 0 */
 } Anneal;
+
+/* An annealed cut that leaves no group with more than `most` robots; arcs as in `Anneal`. */
+typedef struct {
+    int64_t robots, groups, most;
+    const int64_t *start, *robot;
+    const int64_t *price, *counts;     /* (arcs) of a cut; (robots) 1, or 0 for those that no size counts */
+    int64_t *group, *best;             /* (robots) labels of groups; the same where the fewest links were cut */
+    int64_t *sizes;                    /* (groups) robots that count */
+    double hot, cold, oversize;        /* temperatures at the first and after the last move; the price of a robot too many */
+    void *random;                      /* NumPy's source of random bits, and its function for doubles in [0, 1) */
+    double (*uniform)(void *random);
+} CutAnneal;
+
+/* What the next choices of the greedy algorithm add; planar matrices [[a, b], [b, c]] as rows of a, of b and of c, so that
+   targets lie side by side. Rows have `width` places: behind the targets come ones that add nothing (trace, log-det). */
+typedef struct {
+    int64_t criterion, targets, width;
+    const double *weights;     /* (width) */
+    const double *information; /* (elements, 3, width) */
+    const double *sums;        /* (3, width) the posterior information so far */
+    const double *covariances; /* (4, width) its inverse; the largest eigenvalues of that */
+    const int64_t *order;      /* (targets) the largest weighted eigenvalue first */
+    double *bounds;            /* (elements) what no later gain exceeds */
+    double *gains;             /* (elements) */
+} Greedy;
+
+/* Descent over the contexts of one element: planar targets by their mean, even and odd parts, (3, targets). */
+typedef struct {
+    int64_t owners, targets;
+    double sign, value;        /* -1 for the largest marginal, which is then negated; the marginal in the context */
+    const double *parts;       /* (options, 3, targets) */
+    const int64_t *ends;       /* (owners + 1) the first option of each owner */
+    const double *added;       /* what the element adds */
+    double *total;             /* of the context */
+    int64_t *picks;            /* (owners) the option of each owner in the context */
+    double *rest, *one;        /* spare */
+} Descent;
 
 /* A search for groups whose reduced cost, unit * links that leave it - duals of its robots + blinding * robots blinded, is less
    than `limit`, and of which blinding at most n_blinded leaves less than the threshold. Arcs as in `Anneal`. */

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.maxeig_marginals import MARGIN, marginal_ends
+from ratt_opt.setfunctions.criteria.output_covariances import output_covariances
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import eigenvalues as eigenvalues_of
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
@@ -193,8 +194,6 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted largest eigenvalues of the outputs' covariances."""
-        from ratt_opt.setfunctions.criteria.compiled_outputs import output_covariances  # compiles
-
         outputs = output_covariances(posterior_information, self.output)
         if outputs.shape[-1] == 1:
             return np.asarray(self.weights * outputs[..., 0, 0])

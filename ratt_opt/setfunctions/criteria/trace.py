@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.setfunctions.criteria.output_covariances import output_traces
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
@@ -199,8 +200,6 @@ class OutputTraceObjective(TraceObjective):
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted traces of the outputs' covariances."""
-        from ratt_opt.setfunctions.criteria.compiled_outputs import output_traces  # compiles
-
         return np.asarray(self.weights * output_traces(posterior_information, self.output))
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:

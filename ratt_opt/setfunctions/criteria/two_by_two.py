@@ -1,8 +1,4 @@
-"""Criteria of one symmetric matrix ``[[a, b], [b, c]]`` in closed form.
-
-Written once for both languages: on arrays NumPy evaluates them entry by entry, and ``compiled.py`` compiles these
-same functions for numbers.
-"""
+"""Criteria of symmetric matrices ``[[a, b], [b, c]]`` in closed form, from arrays of their entries."""
 
 from __future__ import annotations
 
@@ -16,8 +12,6 @@ __all__ = [
     "eigenvalues",
     "largest_of_inverse",
     "logdet_gradient",
-    "matrix_of_logdet_gradient",
-    "matrix_of_trace_gradient",
     "trace_gradient",
     "trace_of_inverse",
     "triples",
@@ -64,21 +58,6 @@ def trace_gradient(a: Any, b: Any, c: Any) -> Any:
     det = a * c - b * b
     p, q, r = c / det, -b / det, a / det
     return p * p + q * q, 2 * (q * (p + r)), q * q + r * r
-
-
-def matrix_of_logdet_gradient(a: Any, b: Any, c: Any) -> Any:
-    """The matrix at which ``log det`` has the gradient ``[[a, b], [b, c]]``, positive definite."""
-    det = a * c - b * b
-    return c / det, -b / det, a / det
-
-
-def matrix_of_trace_gradient(a: Any, b: Any, c: Any) -> Any:
-    """The matrix at which ``-tr(L^{-1})`` has that gradient ``G``: ``G^{-1/2}``, as ``G^{1/2} = (G + s) / t``
-    with ``s = det(G)^{1/2}`` and ``t = (tr(G) + 2 s)^{1/2}``.
-    """
-    root = np.sqrt(a * c - b * b)
-    scale = np.sqrt(a + c + 2 * root) * root
-    return (c + root) / scale, -b / scale, (a + root) / scale
 
 
 def triples(matrices: Any) -> Any:

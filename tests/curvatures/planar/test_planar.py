@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import product
+from dataclasses import replace
+from itertools import combinations, pairwise, product
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from scipy.optimize import linprog
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
-from ratt_opt.curvatures.planar import context_search
+from ratt_opt.curvatures.planar import context_search, inequalities
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
 from ratt_opt.curvatures.planar.inequalities import (
@@ -205,6 +206,99 @@ def test_descents_end_where_no_change_of_one_or_two_owners_is_better():
             assert sign * found.value <= values[near].min() + slack
         found.enumerate(np.ones(len(options.owners), dtype=bool))
         assert sign * found.value == pytest.approx(values.min(), abs=slack)
+
+
+def plainly_descended(options, total, added, sign, picks, *, pairs):
+    """Picks and value after one owner, or two, at a time, in the order and with the roundings of the definition."""
+    ends = np.append(options.first, len(options.owners))
+    own = [range(a, b) for a, b in pairwise(ends.tolist())]
+    picks, value = picks.copy(), sign * float(marginals(total, added))
+    changes = list(combinations(range(len(picks)), 2)) if pairs else [(i,) for i in range(len(picks))]
+    while True:
+        before = picks.copy()
+        for owners in changes:
+            now, rest = [picks[i] for i in owners], total
+            for i in owners:
+                rest = rest - options.parts[picks[i]]
+            for chosen in product(*(own[i] for i in owners)):
+                after = rest
+                for k in chosen:
+                    after = after + options.parts[k]
+                found = sign * float(marginals(after, added))
+                if found < value - 1e-12 * abs(value):
+                    picks[list(owners)], value = chosen, found
+            if [picks[i] for i in owners] != now:
+                total = rest
+                for i in owners:
+                    total = total + options.parts[picks[i]]
+        if pairs or np.array_equal(before, picks):
+            return picks.tolist(), value
+
+
+def random_options(rng, owners, targets):
+    """Of so many owners beside the element's; targets fewer than C has side by side, as many, and more."""
+    count = rng.integers(1, 4, owners)
+    owner = np.repeat(np.arange(owners), count).astype(np.int64)
+    first = np.concatenate([[0], np.cumsum(count)])[:owners].astype(np.int64)
+    mean, angle = rng.gamma(0.5, 1.0, (len(owner), targets)), rng.uniform(-np.pi, np.pi, (len(owner), targets))
+    share = rng.random((len(owner), targets))
+    parts = np.stack([mean, mean * share * np.cos(angle), mean * share * np.sin(angle)], axis=1)
+    return Options(np.arange(len(owner)), owner, first, parts)
+
+
+@pytest.mark.parametrize("targets", [1, 2, 7, 8, 9, 20])
+@pytest.mark.parametrize("owners", [0, 1, 2, 4])
+def test_descents_are_those_of_the_definition(owners, targets):
+    rng = np.random.default_rng([owners, targets])
+    for trial in range(6):
+        options, sign = random_options(rng, owners, targets), float(1 - 2 * (trial % 2))
+        base, added = np.zeros((3, targets)), np.zeros((3, targets))
+        base[0], added[0] = rng.uniform(0.2, 1, targets), rng.uniform(0, 1, targets)
+        descent = PlanarDescent(options, base, added, sign=sign)
+        start = options.first + rng.integers(0, np.bincount(options.owners, minlength=owners), owners)
+        for budget in (None, FREE):
+            descent._run(start, budget)
+            total = base + options.parts[start].sum(axis=0)
+            expected = plainly_descended(options, total, added, sign, start, pairs=budget is not None)
+            assert (descent._picks.tolist(), descent._record.value) == expected
+
+
+@pytest.mark.parametrize("shape", [(0, 1, 1), (1, 0, 1), (1, 1, 0), (3, 7, 2), (4, 20, 9)])
+def test_sums_over_owners_of_their_largest_option(shape, monkeypatch):
+    """In one part and in several."""
+    (rows, options, places), rng = shape, np.random.default_rng(sum(shape))
+    owners = np.sort(rng.integers(0, 3, options))
+    levels, slopes, own = rng.normal(size=(rows, options)), rng.random(rows), rng.normal(size=(options, places))
+    values = levels[:, :, None] - slopes[:, None, None] * own
+    largest = [values[:, owners == one].max(axis=1) for one in np.unique(owners)]
+    for terms in (10**6, 1):
+        monkeypatch.setattr(inequalities, "TERMS", terms)
+        sums, sizes = inequalities._sums_of_largest(owners, levels, slopes, own)
+        assert sums == pytest.approx(sum(largest, np.zeros((rows, places))))
+        assert sizes == pytest.approx(sum(map(np.abs, largest), np.zeros((rows, places))))
+
+
+def test_what_c_may_not_read_is_refused():
+    options = random_options(np.random.default_rng(0), 3, 2)
+    base, added = np.ones((3, 2)), np.ones((3, 2))
+    PlanarDescent(options, base, added, sign=1.0)
+    for bad in (added.astype(np.float32), added.tolist(), np.ones((3, 4))[:, ::2], np.ones((3, 3))):
+        with pytest.raises(ro.InputError):
+            PlanarDescent(options, base, bad, sign=1.0)
+    for bad in (options.parts[:-1].copy(), options.parts[:, ::-1], options.parts.astype(np.float32)):
+        with pytest.raises(ro.InputError):
+            PlanarDescent(replace(options, parts=bad), base, added, sign=1.0)
+    good = {
+        "owners": np.zeros(2, dtype=np.int64),
+        "levels": np.ones((2, 2)),
+        "slopes": np.ones(2),
+        "own": np.ones((2, 3)),
+    }
+    inequalities._sums_of_largest(**good)
+    for name, array in good.items():
+        for bad in (array.astype(np.float32), np.repeat(array, 2, axis=-1)[..., ::2]):
+            with pytest.raises(ro.InputError):
+                inequalities._sums_of_largest(**good | {name: bad})
 
 
 def test_two_inequalities_leave_no_better_pair_than_the_formulas_say():

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.setfunctions.criteria import compiled
+from ratt_opt.attack.team import Team
 from ratt_opt.setfunctions.criteria.registry import CRITERIA, criterion_called
-from ratt_opt.setfunctions.criteria.two_by_two import triples
 from ratt_opt.setfunctions.criterion_parts import OPTIONAL_PARTS, CriterionParts
 from ratt_opt.setfunctions.information import InformationObjective, from_triangles, triangles
 from tests.strategies import OBJECTIVES, information_data
@@ -77,7 +76,7 @@ def test_gradients_are_supergradients_and_point_upwards(criterion):
 
 
 @pytest.mark.parametrize("criterion", ALL)
-def test_the_planar_the_general_and_the_compiled_formula_agree(criterion):
+def test_the_planar_and_the_general_formula_agree(criterion):
     rng = np.random.default_rng(53)
     for _ in range(40):
         f = draw(rng, criterion, 2)
@@ -92,16 +91,6 @@ def test_the_planar_the_general_and_the_compiled_formula_agree(criterion):
         general = type(f)(np.tile(np.eye(3), (f.n_targets, 1, 1)), np.zeros((1, f.n_targets, 3, 3)), f.weights)
         known = {"trace": f.weights * 1e-9, "logdet": -f.weights * np.log(1e9), "maxeig": 0.0}[f.name]
         assert general.criterion(wide) - known == pytest.approx(f.criterion(rows), rel=1e-9)
-        for matrices in rows:
-            ours = compiled.team_criterion(f.compiled_code, f.weights, triples(matrices))
-            assert ours == pytest.approx(float(f.combine(f.criterion(matrices))), rel=1e-12, abs=1e-12)
-            if f.prior_criterion is not None and f.combine(np.ones(3)) == 1:
-                continue  # one target's value has no meaning of its own
-            alone = [
-                compiled.target_value(f.compiled_code, w, before, tuple(after))
-                for w, before, after in zip(f.weights, triples(f.prior_information), triples(matrices), strict=True)
-            ]
-            assert sum(alone) == pytest.approx(float(f.value(matrices)), rel=1e-9)
 
 
 def test_parts_are_inherited_with_the_formula_they_belong_to_and_not_without_it():
@@ -170,7 +159,7 @@ def test_a_criterion_is_copied_pickled_and_shown(criterion):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("dimension", [1, 2, 3, 4, 5, 6])
-def test_the_compiled_criteria_are_those_of_the_definition(name, dimension):
+def test_criteria_in_c_are_those_of_the_definition(name, dimension):
     rng = np.random.default_rng(dimension)
     for scale in [1e-9, 1e-3, 1.0, 1e3, 1e7]:
         for weights in [None, rng.uniform(0.2, 3, 4)]:
@@ -179,5 +168,6 @@ def test_the_compiled_criteria_are_those_of_the_definition(name, dimension):
             sums = f.prior_information + f.information
             packed = triangles(sums)
             assert from_triangles(packed) == pytest.approx(sums)
-            ours = compiled.team_criteria(f.compiled_code, np.array(f.weights), packed)
-            assert ours == pytest.approx(f.combine(f.criterion(sums)), rel=1e-7 if scale > 1e3 else 1e-9)
+            ours = [Team.of(f, np.array([e])).whole_value for e in range(f.n)]
+            close = (1e-7 if scale > 1e3 else 1e-9) * f.prior_magnitude
+            assert ours == pytest.approx(f.singletons(), rel=1e-9, abs=close)

@@ -1,0 +1,94 @@
+"""The groups of robots that an attack may leave: connected, and cut off by no more links than the budget has."""
+
+from __future__ import annotations
+
+from ctypes import c_int, c_int64, c_void_p
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import neighbour_masks
+from ratt_opt.native.library import address, function
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.communication import CommunicationGraph, Link
+
+__all__ = ["BRANCH", "GroupList"]
+
+STEPS = 20_000
+"""Steps between two looks at the clock, each of which lists one group at most: some milliseconds."""
+BRANCH = np.dtype([*((name, np.uint64) for name in ("inside", "outside", "near")), ("cut", np.int64)])
+
+
+class GroupList:
+    """The groups of one graph and link budget, listed as far as has been asked.
+
+    ``robots`` : number of robots
+    ``kinds`` : types of the bit masks and of the numbers of links; of small graphs, small ones
+
+    Raises ``InputError`` : the robots are too many for a mask.
+    """
+
+    def __init__(
+        self,
+        graph: CommunicationGraph,
+        most_cut: int,
+        protected_links: frozenset[Link],
+        kinds: tuple[type[np.integer[Any]], type[np.integer[Any]]] = (np.int64, np.int64),
+    ) -> None:
+        most = int(np.iinfo(kinds[0]).max).bit_length()
+        if graph.n_robots > most:
+            raise InputError("graph", f"must have at most {most} robots to list its groups", graph.n_robots)
+        self.robots, self._most_cut, self._kinds = graph.n_robots, most_cut, kinds
+        self._neighbours = np.array(neighbour_masks(graph.n_robots, graph.links), dtype=np.uint64)
+        self._protected = np.array(neighbour_masks(graph.n_robots, protected_links), dtype=np.uint64)
+        self._stack, self._position = np.zeros(2 * graph.n_robots + 2, BRANCH), np.zeros(2, np.int64)
+        self._parts: list[tuple[NDArray[Any], NDArray[Any]]] = []
+        self._count = 0
+
+    def __len__(self) -> int:
+        """Groups so far."""
+        return self._count
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all are listed."""
+        return bool(self._position[0] == self.robots and self._position[1] == 0)
+
+    def go_on(self) -> None:
+        """List some more."""
+        call = function(
+            "list_groups", c_int64, c_int, *[c_void_p] * 2, c_int64, *[c_void_p] * 2, *[c_int64] * 2, *[c_void_p] * 2
+        )
+        groups, cuts = np.empty(STEPS, np.uint64), np.empty(STEPS, np.uint16)
+        given = self._neighbours, self._protected
+        state = address(self._stack), address(self._position)
+        found = call(
+            self.robots, *map(address, given), self._most_cut, *state, STEPS, STEPS, address(groups), address(cuts)
+        )
+        self._parts.append((groups[:found].astype(self._kinds[0]), cuts[:found].astype(self._kinds[1])))
+        self._count += found
+
+    def all(self, budget: Budget) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Bit masks (G,) of all groups, and links that leave each (G,).
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or the user interrupted; what is listed is gone on with.
+        """
+        while not self.is_complete:
+            budget.check()
+            self.go_on()
+        return self.so_far()
+
+    def so_far(self) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Bit masks (G,) of the groups so far, and links that leave each (G,)."""
+        if len(self._parts) != 1:
+            empty = tuple(np.empty(0, kind) for kind in self._kinds)
+            masks, links = (np.concatenate([empty[k], *(part[k] for part in self._parts)]) for k in range(2))
+            self._parts = [(masks, links)]
+        return self._parts[0]
