@@ -107,7 +107,9 @@ def ceilings(  # noqa: PLR0917
     level = np.tensordot(cuts, parts, axes=((1, 2), (1, 2)))  # (B, K)
     start = np.tensordot(cuts, base, axes=((1, 2), (0, 1)))[:, None]
     own_start = slope[:, None] * np.einsum("ps,sp->s", own_base[:, target], direction)
-    own = np.ascontiguousarray(np.einsum("kps,sp->ks", parts[:, :, target], direction))
+    own = np.zeros((len(parts), len(target)))
+    for p in range(3):
+        own += np.take(parts[:, p], target, axis=1) * direction[:, p]
     best, size = _sums_of_largest(owners, level, slope, own)
     total, size = start - own_start + best, np.abs(start) + np.abs(own_start) + size
     return np.asarray(total + MARGIN * size)

@@ -7,6 +7,7 @@
 
 enum { LANES = 32 };      /* ends side by side: one alone would wait for the one before, and is no vector instruction */
 enum { BLOCK = 1 << 13 }; /* differences at once: 64 KiB, which stay in a core's own cache for all elements */
+enum { FEW = 1 << 10 };   /* the same if only one element looks at them */
 
 static inline double lesser(double a, double b) { return a < b ? a : b; }
 
@@ -121,11 +122,11 @@ EXPORTED void near_differences(const double *values, int j, int64_t first, int64
 /* The least of `known` and the same by i, no less than 13, and j, over the sets without both of numbers first..last - 1:
    whole blocks. */
 EXPORTED double far_differences(const double *values, int i, int j, int64_t first, int64_t last, double known) {
-    double low[BLOCK], high[BLOCK];
-    for (; first < last; first += BLOCK) {
+    double low[FEW], high[FEW];
+    for (; first < last; first += FEW) {
         const double *neither = values + without(without(first, i), j), *lower = neither + ((int64_t)1 << i);
-        for (int64_t s = 0; s < BLOCK; s++) low[s] = neither[s] - neither[s + ((int64_t)1 << j)], high[s] = lower[s] - lower[s + ((int64_t)1 << j)];
-        known = smallest_difference(high, low, BLOCK, known);
+        for (int64_t s = 0; s < FEW; s++) low[s] = neither[s] - neither[s + ((int64_t)1 << j)], high[s] = lower[s] - lower[s + ((int64_t)1 << j)];
+        known = smallest_difference(high, low, FEW, known);
     }
     return known;
 }
