@@ -23,9 +23,8 @@ __all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
 
 CASES = 100
 """Between two looks at the clock: some hundredths of a second."""
-FIRST_CRITERIA, MOST_CRITERIA, MORE = 4_000_000, 256_000_000, 4
-"""Criteria of single targets looked at for a tree over sets: before the first look at the clock, a tenth of a second;
-at most; and how many times more each attempt may look at."""
+CRITERIA, MOST_CRITERIA = 4_000_000, 256_000_000
+"""Criteria of single targets for a tree over sets: between two looks at the clock, a tenth of a second; and at most."""
 MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 5_000, 20_000, 700_000
 """Of a tree; and numbers in all of its flows, as the verifier reads files of two million."""
 BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded"), ("worth", "copies", "budget", "flow", "listed")
@@ -100,15 +99,15 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
         return {"size": size, "tree": ["budget"]}
     trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages)
     nobody = np.zeros(plan.robots, dtype=np.int64)
-    call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_int64] * 2)
-    looked, code = FIRST_CRITERIA, FULL
+    call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_void_p] * 2, *[c_int64] * 2)
+    rows, depth = np.zeros((plan.robots + 1, 3), np.int32), np.full(1, -1, np.int32)
+    effort, looked, code = CRITERIA // sets.objective.n_targets, 0, PAUSED
     with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), Order.MEMBERS, nobody) as search:
-        while code == FULL and looked <= MOST_CRITERIA:
+        while code == PAUSED and looked < MOST_CRITERIA:
             tick()
-            trees.record.count = 0
-            code = call(search.handle, byref(trees.record), size, looked // sets.objective.n_targets)
             tell(COVERING, trees.record.count)
-            looked *= MORE
+            code = call(search.handle, byref(trees.record), address(rows), address(depth), size, effort)
+            looked += CRITERIA
     if code != FINISHED:
         raise NotClosedError
     return {"size": size, "tree": trees.named()}

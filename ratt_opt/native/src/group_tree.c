@@ -15,6 +15,12 @@ enum { TRIED = 64 };             /* kept flows, those that closed a case last */
 /* Robots valued at a case, for each robot, to find how many are blinded, and to show it; the latter in one group, too. */
 enum { QUICK = 60, WRITTEN = 600, OF_ONE = 10000 };
 
+/* Of a tree over sets: any `size` of the `count` robots in the search's row of order are worth the threshold with what senses; those
+   before `first` do not sense. */
+typedef struct {
+    int32_t count, first, size;
+} Row;
+
 /* Of a node, `low` robots are blinded as far as is written, and `need` as far as is found; `found`: one more senses for sure. */
 typedef struct {
     Search *s;
@@ -23,6 +29,7 @@ typedef struct {
     int64_t *gains; /* (2 robots) */
     uint8_t *seen;  /* (robots) */
     int *queue;     /* (robots) */
+    Row *rows;      /* (robots + 1) */
 } Proof;
 
 static int count_sure(const Proof *p, const Node *node) {
@@ -182,42 +189,56 @@ static int copies_are_enough(Proof *p, const Node *node, int size) {
     return p->out->averages ? sum >= size * p->s->q.threshold : sorted[0] >= p->s->q.threshold;
 }
 
-/* Write that any `size` of `count` robots, in row `depth` of the search's order, bring what senses to the threshold: 1; 0 if some do
-   not, and -1 if the effort or the room ends first. */
-static int write_some(Proof *p, int depth, int count, int size, int64_t *effort) {
+/* A row of the search: what senses, and the worth of copies of each robot; those of least worth come first. */
+static void open_row(Proof *p, Row *rows, int depth, int count, int size) {
     Search *s = p->s;
-    int n = p->robots, *order = s->order + depth * n;
-    double *sums = s->sums + (size_t)depth * (s->width + n), *worth = sums + s->width;
-    if (size == 0) {
-        if (value_of(s->q.team, sums) < s->q.threshold) return 0;
-        write_node(p, WORTH, 0);
-        return 1;
-    }
-    *effort -= count;
-    for (int k = 0; k < count; k++) {
+    int *order = s->order + depth * p->robots;
+    double *sums = s->sums + (size_t)depth * (s->width + p->robots), *worth = sums + s->width;
+    rows[depth] = (Row){count, 0, size};
+    for (int k = 0; size > 0 && k < count; k++) {
         int robot = order[k], at = k;
         double value = value_of_copies(s, sums, size, robot, -1);
         for (; at > 0 && worth[at - 1] > value; at--) worth[at] = worth[at - 1], order[at] = order[at - 1];
         worth[at] = value, order[at] = robot;
     }
-    for (int first = 0;; first++) { /* those before it do not sense */
-        double sum = 0.0;
-        if (count - first < size) {
-            write_node(p, BUDGET, 0);
-            return 1;
+}
+
+/* What closes a row: a leaf, -1 if it has to branch, -2 if what senses is worth less and nobody more does. */
+static int closing_leaf(const Proof *p, const Row *row, int depth) {
+    const Search *s = p->s;
+    const double *sums = s->sums + (size_t)depth * (s->width + p->robots), *worth = sums + s->width;
+    double sum = 0.0;
+    if (row->size == 0) return value_of(s->q.team, sums) < s->q.threshold ? -2 : WORTH;
+    if (row->count - row->first < row->size) return BUDGET;
+    for (int k = row->first; k < row->first + row->size; k++) sum += p->out->averages ? worth[k] : worth[row->first];
+    return sum >= row->size * s->q.threshold ? COPIES : -1;
+}
+
+/* Go on with the tree of the rows down to `*depth`: FINISHED, OPEN if some set is worth less, FULL, or PAUSED once so many robots
+   were valued. */
+static int write_sets(Proof *p, Row *rows, int32_t *depth, int64_t effort) {
+    Search *s = p->s;
+    int n = p->robots;
+    while (*depth >= 0) {
+        Row *row = rows + *depth;
+        int leaf = closing_leaf(p, row, *depth);
+        if (leaf == -2) return OPEN;
+        if (leaf >= 0) {
+            write_node(p, leaf, 0);
+            if (--*depth >= 0) rows[*depth].first++;
+            continue;
         }
-        for (int k = first; k < first + size; k++) sum += p->out->averages ? worth[k] : worth[first];
-        if (sum >= size * s->q.threshold) {
-            write_node(p, COPIES, 0);
-            return 1;
-        }
-        if (*effort <= 0 || p->out->count + 2 * n > p->out->capacity) return -1;
-        write_node(p, SENSE, order[first]);
-        add_information(s->q.team, sums, 1.0, order[first], sums + s->width + n);
-        memcpy(order + n, order + first + 1, (size_t)(count - first - 1) * sizeof(int));
-        int answer = write_some(p, depth + 1, count - first - 1, size - 1, effort);
-        if (answer <= 0) return answer;
+        if (p->out->count + 2 * n > p->out->capacity) return FULL;
+        if (effort <= 0) return PAUSED;
+        int *order = s->order + *depth * n, left = row->count - row->first - 1;
+        double *sums = s->sums + (size_t)*depth * (s->width + n);
+        write_node(p, SENSE, order[row->first]);
+        add_information(s->q.team, sums, 1.0, order[row->first], sums + s->width + n);
+        memcpy(order + n, order + row->first + 1, (size_t)left * sizeof(int));
+        open_row(p, rows, ++*depth, left, row->size - 1);
+        effort -= left;
     }
+    return FINISHED;
 }
 
 /* Write a tree over the robots inside of which any `size` besides those that sense are worth the threshold; 0 if that is not shown,
@@ -229,7 +250,9 @@ static int write_inside(Proof *p, const Node *node, int size, int64_t effort) {
     memcpy(s->sums, node->sums, (size_t)s->width * sizeof(double));
     for (int i = 0; i < p->robots; i++)
         if (IS_INSIDE(node->state[i]) && MAY_SENSE(node->state[i])) s->order[count++] = i;
-    if (write_some(p, 0, count, size, &effort) > 0) return 1;
+    int32_t depth = 0;
+    open_row(p, p->rows, 0, count, size);
+    if (write_sets(p, p->rows, &depth, effort - count) == FINISHED) return 1;
     p->out->count = before;
     return 0;
 }
@@ -381,14 +404,16 @@ static int expand(Proof *p) {
     return PAUSED;
 }
 
-/* Write a tree that any `size` robots are worth the threshold: 0 it is finished, 2 it is not as far as `effort`, robots valued, and the
-   arrays go, 3 some set is worth less. */
-EXPORTED int grow_sets_tree(Search *s, GroupTree *out, int64_t size, int64_t effort) {
+/* Write a tree that any `size` robots are worth the threshold, on from `*depth`, or from its root if that is -1: 0 it is finished,
+   1 paused once so many robots were valued, 2 too large for the arrays, 3 some set is worth less. */
+EXPORTED int grow_sets_tree(Search *s, GroupTree *out, Row *rows, int32_t *depth, int64_t size, int64_t effort) {
     Proof p = {.s = s, .robots = s->robots, .out = out};
-    memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
-    for (int i = 0; i < s->robots; i++) s->order[i] = i;
-    int answer = write_some(&p, 0, s->robots, (int)size, &effort);
-    return answer > 0 ? FINISHED : answer ? FULL : OPEN;
+    if (*depth < 0) {
+        memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
+        for (int i = 0; i < s->robots; i++) s->order[i] = i;
+        open_row(&p, rows, *depth = 0, s->robots, (int)size);
+    }
+    return write_sets(&p, rows, depth, effort);
 }
 
 /* Grow a tree for so many cases: 0 it is finished, 1 paused, 2 too large for the arrays, 3 some group is not closed. */
@@ -396,7 +421,8 @@ EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
     size_t n = (size_t)s->robots;
     Proof p = {.s = s, .robots = s->robots, .arcs = (int)s->q.start[n], .out = out};
     p.gains = malloc(2 * n * sizeof(int64_t)), p.seen = malloc(n), p.queue = malloc(n * sizeof(int));
-    int code = p.gains && p.seen && p.queue ? PAUSED : FULL;
+    p.rows = malloc((n + 1) * sizeof(Row));
+    int code = p.gains && p.seen && p.queue && p.rows ? PAUSED : FULL;
     if (code == PAUSED && out->count == 0) {
         Node *node = s->nodes;
         for (size_t i = 0; i < n; i++) node->state[i] = (int8_t)(SENSES | OUTSIDE | (s->q.seeing[i] ? 0 : BLINDED));
@@ -409,6 +435,6 @@ EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
     int64_t stop = s->visited + cases;
     while (code == PAUSED && s->depth > 0 && s->visited < stop)
         code = out->count + 4 * (int64_t)n + 8 > out->capacity ? FULL : expand(&p);
-    free(p.gains), free(p.seen), free(p.queue);
+    free(p.gains), free(p.seen), free(p.queue), free(p.rows);
     return code == PAUSED && s->depth == 0 ? FINISHED : code;
 }
