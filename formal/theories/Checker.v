@@ -1,7 +1,7 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph Scores Covers UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -31,12 +31,15 @@ Inductive lower_proof :=
 | Cover of sets_lemma & group_tree & seq nat
 | GroupSizes of sets_lemma & size_proof
 | NoLower.
+(** A cover: an attack on links, by number, the elements that are left out, and a point for each group. *)
+Definition listed_cover := (nat * seq nat * seq nat)%type.
 Record proofs := Proofs {
   prior_low : dyadic;
   prior_high : dyadic;
   listed : seq listed_attack;
   points : seq point;
   cut_list : seq (nat * nat * nat);
+  cover_list : seq listed_cover;
   upper_part : upper_tree;
   lower_part : lower_proof
 }.
@@ -198,16 +201,25 @@ Definition gradient (pt : point) : option (seq dmat * dyadic) :=
       else None
   | _, _ => None
   end.
-Definition point_scores (g : seq dmat * dyadic) : seq dyadic * dyadic := ([seq dots g.1 row | row <- infos], g.2).
+Definition point_scores (g : seq dmat * dyadic) : tangent := ([seq dots g.1 row | row <- infos], g.2).
 Definition masked (owner group : seq nat) (s : seq dyadic) : seq dyadic :=
   [seq if x.1 \in group then x.2 else d0 | x <- zip owner s].
-Definition cut_bounds (owner : seq nat) (groups : seq (seq (seq nat))) (pts : seq (seq dyadic * dyadic))
+Definition cut_bounds (owner : seq nat) (groups : seq (seq (seq nat))) (pts : seq tangent)
     (cs : seq (nat * nat * nat)) : seq cut_bound :=
   [seq let: (a, g, k) := c in let q := nth ([::], d0) pts k in
        CutBound a g q.2 (masked owner (nth [::] (nth [::] groups a) g) q.1) | c <- cs].
 Definition cuts_in_range (groups : seq (seq (seq nat))) (n : nat) (cs : seq (nat * nat * nat)) : bool :=
   all (fun c => let: (a, g, k) := c in
     [&& (a < size groups)%N, (g < size (nth [::] groups a))%N & (k < n)%N]) cs.
+Definition cover_bounds (w : network) (groups : seq (seq (seq nat))) (pts : seq tangent) (cs : seq listed_cover) :
+    seq cover_bound :=
+  [seq let: (a, elements, ks) := c in let out := [seq e \in elements | e <- iota 0 (size (owners w))] in
+       CoverBound out (cover_levels w out (nth [::] groups a) [seq nth ([::], d0) pts k | k <- ks]) | c <- cs].
+Definition covers_in_range (attacks : seq listed_attack) (groups : seq (seq (seq nat))) (n : nat)
+    (cs : seq listed_cover) : bool :=
+  all (fun c => let: (a, _, ks) := c in
+    [&& (a < size attacks)%N, nilp (nth ([::], [::]) attacks a).1, size ks == size (nth [::] groups a)
+      & all (fun k => k < n)%N ks]) cs.
 End Cuts.
 
 (** ** All of it *)
@@ -283,8 +295,10 @@ Definition check_upper_part (highs : seq dmat) : bool :=
   if all_some grads is Some gs then
     let pts := [seq point_scores d info_matrices g | g <- gs] in
     let cuts := cut_bounds (owners w) groups pts (cut_list pr) in
-    [&& all (attack_ok w) (listed pr), cuts_in_range groups (size gs) (cut_list pr), dle d0 (upper cl)
-      & check_upper w groups cuts (upper cl) (upper_part pr) (all_plans w) [::]]
+    let covers := cover_bounds w groups pts (cover_list pr) in
+    [&& all (attack_ok w) (listed pr), cuts_in_range groups (size gs) (cut_list pr),
+        covers_in_range (listed pr) groups (size gs) (cover_list pr), dle d0 (upper cl)
+      & check_upper w groups cuts covers (upper cl) (upper_part pr) (all_plans w) [::]]
   else false.
 
 (** What the checker found out. *)

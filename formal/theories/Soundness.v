@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph Scores Covers UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -274,7 +274,7 @@ move=> okp; have le : \sum_(i : robot) delta (p i) j <= val (worst_defect pb def
   rewrite (_ : iota 0 (robots w) = index_iota 0 (robots w)); last by rewrite /index_iota subn0.
   rewrite (big_mkord xpredT (fun i => val (largest_of (fun e => nth d0 (nth [::] defects e) j) (nth [::] (all_plans w) i)))).
   apply: ler_sum => i _; apply: (largest_ofP F (fun e => nth d0 (nth [::] defects e) j)).
-  exact: in_all_plans.
+  exact: in_all_plans net_good okp.
 have ge0 : 0 <= \sum_(i : robot) delta (p i) j by apply: sumr_ge0 => i _; case: (deltaP (p i) j).
 apply: le_trans (_ : \sum_(i : robot) delta (p i) j <= _).
   rewrite big_mkcond; apply: ler_sum => i _; case: ifP => // _; by case: (deltaP (p i) j).
@@ -440,31 +440,46 @@ have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
 by rewrite (tangent_shape (val (prior_high pr)) (weight_of jt) (val t) (val b)) lexx.
 Qed.
 
+(** What the scores of a point say, in the words of trees and covers. *)
+Lemma tangentP p gs : is_plan (team_of w) p ->
+  all_some [seq gradient (objective pb) d m ws (prior_matrices pb) highs (prior_high pr) pt | pt <- points pr] = Some gs ->
+  forall q, (q < size gs)%N -> let t := nth ([::], d0) [seq point_scores d (info_matrices pb) g | g <- gs] q in
+  size t.1 = size (owners w) /\
+  forall G : {set robot}, value (contributed p G) <= val t.2 + \sum_(i in G) val (nth d0 t.1 (p i)).
+Proof.
+move=> okp eg q ql; rewrite (nth_map ([::], d0)) //= !size_map infos_size; split=> // G.
+have [szg h] := all_some_nth (TracePoint [::]) ([::], d0) q eg; rewrite szg in ql; have [_ bound] := gradientP (h ql).
+apply: le_trans (bound p G okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+by apply: eq_bigr => i _; rewrite (nth_map [::]) ?size_map ?infos_size ?element_lt.
+Qed.
+
 Theorem upper_sound p : check_upper_part pb cl pr highs -> is_plan (team_of w) p ->
   worst_case (team_of w) value p <= val (upper cl).
 Proof.
 rewrite /check_upper_part; set groups := [seq seeing_groups w a | a <- listed pr].
-case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs].
-set cuts := cut_bounds _ _ _ _ => /and4P[lok /allP range u0 tree] okp.
-have sizes k : (k < size gs)%N -> size (nth ([::], d0) pts k).1 = size (owners w).
-  by move=> kl; rewrite (nth_map ([::], d0)) //= !size_map infos_size.
-apply: (upper_treeP net_good value0 lok erefl _ okp _ tree u0).
-  apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
-  by rewrite size_map size_zip sizes // minnn.
-move=> k; rewrite size_map => kl; rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
-have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
-set grp := nth [::] (nth [::] groups a) g.
-have [szg h] := all_some_nth (TracePoint [::]) ([::], d0) q eg.
-rewrite szg in ql; have [s1 bound] := gradientP (h ql).
-have := bound p (set_of w grp) okp; rewrite -szg in ql.
-rewrite (nth_map ([::], d0)) //=; congr (_ <= _ + _).
-rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last first.
-  by rewrite size_zip !size_map infos_size minnn element_lt.
-rewrite nth_zip ?size_map ?infos_size //= (nth_map [::]) ?size_map ?infos_size ?element_lt //.
-have -> : nth 0%N (owners w) (p i) = i.
-  have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
-  by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
-by case: ifP => // _; rewrite val0.
+case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs]; set cuts := cut_bounds _ _ _ _.
+set covers := cover_bounds _ _ _ _ => /and5P[lok /allP range /allP cover_range u0 tree] okp.
+have at_ := tangentP okp eg; rewrite -/pts in at_.
+apply: (upper_treeP net_good value0 lok erefl _ okp _ _ _ tree u0) => [|k|k|k]; rewrite ?size_map; try move=> kl.
+- apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
+  by rewrite size_map size_zip (proj1 (at_ _ kl)) minnn.
+- rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
+  have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
+  set grp := nth [::] (nth [::] groups a) g; have [sz bound] := at_ q ql.
+  apply: le_trans (bound (set_of w grp)) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+  rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last by rewrite size_zip sz minnn element_lt.
+  rewrite nth_zip //=; have -> : nth 0%N (owners w) (p i) = i.
+    have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
+    by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
+  by case: ifP => // _; rewrite val0.
+- by rewrite /cover_of (nth_map (0%N, [::], [::])) //; case: (nth _ _ k) => [[a out] ks] /=; rewrite size_map size_iota.
+rewrite /cover_of (nth_map (0%N, [::], [::])) //.
+have := cover_range _ (mem_nth (0%N, [::], [::]) kl); case: (nth _ _ k) => [[a elements] ks].
+move=> /and4P[al /nilP sees /eqP sz /allP ksl] /=; rewrite /groups (nth_map ([::], [::])) //.
+apply: (failed_coverP net_good okp) => //; first exact: (allP lok _ (mem_nth _ al)).
+- by rewrite size_map size_iota.
+- by rewrite size_map sz /groups (nth_map ([::], [::])).
+by move=> t /mapP[q /ksl ql ->]; apply: at_.
 Qed.
 
 (** ** The plan's worst case *)
