@@ -164,8 +164,9 @@ let rec upper_node names groups named left next depth =
   let rec children k = if k = 0 then [] else let first = again left in first :: children (k - 1) in
   match next () with
   | Record pairs as node when List.mem_assoc "covers" pairs -> CoverLeaf (weighed "cover leaf" "covers" node)
+  | Record pairs as node when List.mem_assoc "marginals" pairs ->
+      GainLeaf (match fields "marginal leaf" [ "marginals" ] node with [ a ] -> nat "marginal leaf" a | _ -> assert false)
   | Record pairs as node when List.mem_assoc "weights" pairs -> Leaf (weighed "leaf" names.fenchel node)
-  | Record pairs when List.mem_assoc "marginals" pairs -> format "upper proof" "by marginal gains is decided by ratt-opt verify alone"
   | Record pairs as node when List.mem_assoc names.part pairs ->
       let a = match fields "part branch" [ names.part ] node with [ a ] -> index "part branch" a | _ -> assert false in
       if a >= Array.length groups then format "part branch" "names no attack";

@@ -53,16 +53,19 @@ have gen acc : size acc = n -> val (nth d0 (foldl (fun acc kw => axpy kw.2 (row 
 by rewrite gen ?size_nseq // nth_nseq if_same val0 add0r.
 Qed.
 
+Lemma foldl_maxP (T : eqType) (f : T -> dyadic) s m : val m <= val (foldl (fun m x => dmax m (f x)) m s) /\
+  {in s, forall y, val (f y) <= val (foldl (fun m x => dmax m (f x)) m s)}.
+Proof.
+elim: s m => [|y s IH] m /=; first by split.
+have [h1 h2] := IH (dmax m (f y)); rewrite val_max in h1; split.
+  by apply: le_trans h1; rewrite le_maxr lexx.
+by move=> z; rewrite in_cons => /orP[/eqP->|/h2 //]; apply: le_trans h1; rewrite le_maxr lexx orbT.
+Qed.
+
 Lemma largest_ofP f s e : e \in s -> val (f e) <= val (largest_of f s).
 Proof.
-case: s => [//|x s] h; rewrite /largest_of.
-have gen m : val m <= val (foldl (fun m x => dmax m (f x)) m s) /\
-    (forall y, y \in s -> val (f y) <= val (foldl (fun m x => dmax m (f x)) m s)).
-  elim: s {h} m => [|y s IH] m /=; first by split.
-  have [h1 h2] := IH (dmax m (f y)); rewrite val_max in h1; split.
-    by apply: le_trans h1; rewrite le_maxr lexx.
-  move=> z; rewrite in_cons => /orP[/eqP->|/h2 //]; by apply: le_trans h1; rewrite le_maxr lexx orbT.
-by move: h; rewrite in_cons => /orP[/eqP->|/(proj2 (gen (f x)))] //; apply: (proj1 (gen (f x))).
+case: s => [//|x s]; rewrite /largest_of; have [h1 h2] := foldl_maxP f s (f x).
+by rewrite in_cons => /orP[/eqP->|/h2].
 Qed.
 End Scores.
 

@@ -1,5 +1,5 @@
 (** The upper proof: a tree of cases over plans whose leaves weigh linear bounds on groups, or covers. Generic in the
-    value. *)
+    value, and in how the gains of a case bound it. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.zify Require Import zify.
 From Ratt Require Import Extrema Teams Dyadic DyadicMatrix Graph Scores Covers.
@@ -17,16 +17,26 @@ Lemma cut_boundK : cancel (fun c => (of_attack c, of_group c, constant c, scores
 Proof. by case. Qed.
 Canonical cut_bound_eqType := EqType cut_bound (CanEqMixin cut_boundK).
 
-(** Leaf: cuts by number with their weights, or covers. Branch on a robot's elements, or on the group that wins an
+(** Leaf: cuts by number with their weights, covers, or gains under an attack. Branch on a robot's elements, or on the group that wins an
     attack. *)
 Inductive upper_tree :=
 | Leaf of seq (nat * dyadic)
 | CoverLeaf of seq (nat * dyadic)
+| GainLeaf of nat
 | OnElement of nat & seq (seq nat * upper_tree)
 | OnWinner of nat & seq upper_tree.
 
+Fixpoint has_gains (t : upper_tree) : bool :=
+  match t with
+  | Leaf _ | CoverLeaf _ => false
+  | GainLeaf _ => true
+  | OnElement _ parts => has (fun bt => has_gains bt.2) parts
+  | OnWinner _ parts => has has_gains parts
+  end.
+
 Section Checker.
 Variables (w : network) (attacks : seq (seq (seq nat))) (cuts : seq cut_bound) (covers : seq cover_bound) (upper : dyadic).
+Variable gains : nat -> seq (seq nat) -> bool.
 (** [attacks]: the seeing groups of each listed attack. A cut may be used where its group is the only one or the winner. *)
 Definition cut_of (k : nat) : cut_bound := nth (CutBound 0 0 d0 [::]) cuts k.
 Definition usable (winners : seq (nat * nat)) (c : cut_bound) : bool :=
@@ -44,6 +54,7 @@ Fixpoint check_upper (t : upper_tree) (left : seq (seq nat)) (winners : seq (nat
   match t with
   | Leaf used => check_leaf left winners used
   | CoverLeaf used => check_cover_leaf w covers upper left used
+  | GainLeaf a => (a < size attacks)%N && gains a left
   | OnElement i parts =>
       [&& (i < robots w)%N, all (fun bt => ~~ nilp bt.1) parts,
           sort leq (flatten [seq bt.1 | bt <- parts]) == nth [::] left i
@@ -75,6 +86,8 @@ Definition worst := worst_case (team_of w) phi p.
 Hypothesis covers_sized : forall k, (k < size covers)%N -> size (left_out (cover_of covers k)) = size (owners w).
 Hypothesis covers_ok : forall k, (k < size covers)%N -> fails p (cover_of covers k) ->
   all (fun x => dle x upper) (levels (cover_of covers k)) -> worst <= val upper.
+Hypothesis gains_ok : forall a left g, gains a left -> in_case p left -> (g < size (nth [::] attacks a))%N ->
+  phi (contributed p (set_of w (nth [::] (nth [::] attacks a) g))) <= val upper.
 
 (** The winners declared have at least the plan's worst case. *)
 Definition winning (winners : seq (nat * nat)) : Prop := forall a g, (a, g) \in winners ->
@@ -125,10 +138,12 @@ Qed.
 Lemma check_upperP t left winners : check_upper t left winners -> 0 < worst -> in_case p left -> winning winners ->
   worst <= val upper.
 Proof.
-move: t left winners; fix IH 1 => t left winners; case: t => [used|used|i parts|a parts].
+move: t left winners; fix IH 1 => t left winners; case: t => [used|used|a|i parts|a parts].
 - exact: check_leafP.
 - rewrite [check_upper _ _ _]/= => leaf _ inc _; have [k kl /andP[low fail]] := check_cover_leafP F covers_sized leaf inc.
   exact: covers_ok kl fail low.
+- move=> /andP[al leaf] pos inc _; have [g gl best] := some_group pos al.
+  exact: le_trans best (gains_ok leaf inc gl).
 - rewrite [check_upper _ _ _]/= => /and4P[il _ /eqP cover kids] pos inc win.
   have inpi : (p (robot_of w i) : nat) \in flatten [seq bt.1 | bt <- parts].
     by rewrite -(mem_sort leq) cover -{2}(robot_ofK il); apply: inc.

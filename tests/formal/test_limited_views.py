@@ -1,4 +1,4 @@
-"""The extracted checker and the Python verifier on upper ends by covers, where robots see few targets."""
+"""The extracted checker and the Python verifier on upper ends by covers and by gains, where robots see few targets."""
 
 from __future__ import annotations
 
@@ -10,56 +10,50 @@ import pytest
 from ratt_opt import InputError, certify, limited_view_scenario, solve_maxmin
 from tests.certificates.mutants import changed, places, variants
 from tests.formal.verified import bases, decisions, disagreements, python_decision
-from tests.solvers.maxmin.engine import COVERS_ALONE
+from tests.solvers.maxmin.engine import COVERS_ALONE, MARGINALS_ALONE
 from tests.strategies import sparse_problem
 from tests.ways import go
 
-KINDS = ("trace", "logdet")
 BUDGETS = {6: (8, 2, 4), 10: (10, 3, 8)}
 """Targets, robots blinded and links cut of teams of limited views."""
+WAYS = {"covers": (COVERS_ALONE, ("trace", "logdet")), "marginals": (MARGINALS_ALONE, ("logdet",))}
+"""How the search goes and the criteria, by what the leaves of the proof are."""
+MUTATED = ("problem", "claim", "upper")
 
 
-def proved_by_covers(problem, path, **options):
-    """The certificate of the search's answer; nothing where it has no covers."""
-    found = solve_maxmin(problem, **options)
-    if found.proof is None or not found.proof.covers:
-        return None
+def proved_by(leaves, problem, path, **options):
+    """The certificate of the search's answer; nothing where its proof has no such leaves."""
     try:
-        certify(problem, found, path)
+        certify(problem, solve_maxmin(problem, **options), path)
     except InputError:  # its values are too small for the arithmetic of the lower end
         return None
     document = json.loads(path.read_text())
-    return document if "covers" in document["upper"] else None
+    return document if any(leaves in node for node in document["upper"].get("tree", ())) else None
 
 
-def limited_view(robots, seed, path):
+def limited_view(kind, robots, seed, path):
     targets, alpha_s, alpha_c = BUDGETS[robots]
     scenario = limited_view_scenario(robots, targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
-    return proved_by_covers(scenario.problem("trace"), path, gap=1e-9)
+    return proved_by("covers" if kind == "trace" else "marginals", scenario.problem(kind), path, gap=1e-9)
 
 
-def sparse_documents(folder, seeds):
+def sparse_documents(leaves, folder, seeds):
+    kinds = WAYS[leaves][1]
     for seed in seeds:
         rng = np.random.default_rng([49, seed])
-        document = proved_by_covers(sparse_problem(rng, KINDS[seed % 2]), folder / "base.json")
+        document = proved_by(leaves, sparse_problem(rng, kinds[seed % len(kinds)]), folder / "base.json")
         if document is not None:
             yield rng, document
 
 
-def about_covers(document):
-    """What the mutations are of: the upper end, the claim and what the problem says of robots and links."""
-    problem = {name: value for name, value in document["problem"].items() if name not in ("prior", "information")}
-    return {"problem": problem, "claim": document["claim"], "upper": document["upper"]}
-
-
-def sweep(folder, seeds, share):
+def sweep(leaves, folder, seeds, share):
     """Disagreements, mutants, and mutants that were accepted."""
     seen = 0
 
     def documents():
         nonlocal seen
-        for rng, document in sparse_documents(folder, seeds):
-            for at, value in list(places(about_covers(document))):
+        for rng, document in sparse_documents(leaves, folder, seeds):
+            for at, value in list(places({name: document[name] for name in MUTATED})):
                 for new in variants(value, rng):
                     if new != value and rng.random() <= share:
                         seen += 1
@@ -69,16 +63,17 @@ def sweep(folder, seeds, share):
     return found, seen, accepted
 
 
-@pytest.mark.parametrize(("robots", "seeds"), [(6, range(6)), (10, range(1))])
-def test_limited_views_are_proved_by_both(robots, seeds, tmp_path):
+@pytest.mark.parametrize("kind", ["trace", "logdet"])
+@pytest.mark.parametrize(("robots", "seeds"), [(6, range(6)), (10, range(1, 2))])
+def test_limited_views_are_proved_by_both(kind, robots, seeds, tmp_path):
     paths = [tmp_path / f"{seed}.json" for seed in seeds]
-    written = [path for seed, path in zip(seeds, paths, strict=True) if limited_view(robots, seed, path)]
+    written = [path for seed, path in zip(seeds, paths, strict=True) if limited_view(kind, robots, seed, path)]
     assert len(written) > len(paths) // 2
     assert decisions(written) == [python_decision(path) for path in written] == [0] * len(written)
 
 
 def test_forged_covers_are_refused_by_both(tmp_path):
-    document = limited_view(6, 0, tmp_path / "c.json")
+    document = limited_view("trace", 6, 0, tmp_path / "c.json")
     upper, whole = document["upper"], list(range(len(document["problem"]["owners"])))
     leaf = next(k for k, node in enumerate(upper["tree"]) if "covers" in node)
     weights = upper["tree"][leaf]["weights"]
@@ -96,7 +91,7 @@ def test_forged_covers_are_refused_by_both(tmp_path):
 
 def test_covers_that_leave_one_element_less_out_are_decided_alike(tmp_path):
     """Most are refused; some are true, as leaves and levels have a little to spare."""
-    document = limited_view(6, 0, tmp_path / "c.json")
+    document = limited_view("trace", 6, 0, tmp_path / "c.json")
     covers, rng = document["upper"]["covers"], np.random.default_rng(50)
     pairs = [(k, e) for k, cover in enumerate(covers) for e in cover["left_out"]]
     forged = [
@@ -108,18 +103,38 @@ def test_covers_that_leave_one_element_less_out_are_decided_alike(tmp_path):
     assert accepted < len(forged) // 2
 
 
-def test_mutations_of_covers_are_decided_alike(monkeypatch, tmp_path):
-    go(monkeypatch, COVERS_ALONE)
-    found, seen, accepted = sweep(tmp_path, range(8), 0.1)
+def test_forged_gains_are_refused_by_both(tmp_path):
+    document = limited_view("logdet", 6, 0, tmp_path / "c.json")
+    upper, claim = document["upper"], document["claim"]
+    leaf = next(k for k, node in enumerate(upper["tree"]) if "marginals" in node)
+    untouched = [{"robots": [], "links": []} for _ in upper["attacks"]]
+    places_and_lies = [
+        (("upper", "attacks"), untouched),
+        (("claim", "upper"), claim["lower"] * (1 - 1e-9)),
+        (("problem", "objective"), "trace"),
+        (("upper", "tree"), [{"marginals": 0}]),
+        (("upper", "tree", leaf, "marginals"), len(upper["attacks"])),
+        (("problem", "alpha_s"), 0),
+    ]
+    found, accepted = disagreements(tmp_path, ((at, changed(document, at, new)) for at, new in places_and_lies))
+    assert not found
+    assert not accepted
+
+
+@pytest.mark.parametrize("leaves", WAYS)
+def test_mutations_are_decided_alike(leaves, monkeypatch, tmp_path):
+    go(monkeypatch, WAYS[leaves][0])
+    found, seen, accepted = sweep(leaves, tmp_path, range(16), 0.05)
     assert not found
     assert seen >= 200
     assert accepted >= 20
 
 
 @pytest.mark.slow
-def test_five_thousand_mutations_of_covers_are_decided_alike(monkeypatch, tmp_path):
-    go(monkeypatch, COVERS_ALONE)
-    found, seen, _ = sweep(tmp_path, range(100, 160), 0.5)
+@pytest.mark.parametrize("leaves", WAYS)
+def test_five_thousand_mutations_are_decided_alike(leaves, monkeypatch, tmp_path):
+    go(monkeypatch, WAYS[leaves][0])
+    found, seen, _ = sweep(leaves, tmp_path, range(100, 170), 0.25)
     assert not found
     assert seen >= 5_000
 
@@ -136,9 +151,10 @@ def test_the_last_part_may_be_left_out_where_there_are_covers(tmp_path):
         assert decisions([path])[0] in codes
 
 
-def test_version_1_has_covers(tmp_path):
+@pytest.mark.parametrize("kind", ["trace", "logdet"])
+def test_version_1_has_covers_and_gains(kind, tmp_path):
     path, names = tmp_path / "c.json", {"fenchel": "cuts", "part": "attack", "element": "robot"}
-    document = limited_view(6, 0, path)
+    document = limited_view(kind, 6, 0, path)
     document |= {"version": 1, "lower": {"kind": "enumerated"}}
     document["upper"]["tree"] = [
         {names.get(name, name): value for name, value in node.items()} for node in document["upper"]["tree"]
