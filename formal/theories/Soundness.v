@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph Worth Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -843,11 +843,10 @@ rewrite /posterior /contributed imset0 big_set0 addr0.
 by rewrite [known T j + _]addrCA !addrA.
 Qed.
 
-Lemma worth_sound T : uniq T -> all below T ->
-  worth kind d m ws groups lows (lower cl) plan_room (foldl add start T) ->
-  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Lemma worth_sound :
+  worth_test start add value plan_of (val (lower cl)) (worth kind d m ws groups lows (lower cl) plan_room).
 Proof.
-move=> uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
+move=> T uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
   apply: (prior_worth uT bT TG) le => j; have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT).
   have sm := sub_symmetrical (fam_symmetrical j bT) (proj1 (lowP j)).
   by move/(is_psdP sm); rewrite mx_sub -/(fam _ j) famE.
@@ -874,12 +873,10 @@ Proof.
 move=> b il; rewrite /fam nth_mkseq // mx_add mx_scale val_nat rows_at // -/(fam _ j) famE //.
 Qed.
 
-Lemma average_sound T rest r : uniq T -> all below T -> (0 < r)%N ->
-  average_worth kind d m ws groups lows rows (lower cl) plan_room (foldl add start T) rest r ->
-  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
-  (forall i, i \in T ++ T' -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Lemma average_sound : average_test start add value plan_of (val (lower cl))
+  (average_worth kind d m ws groups lows rows (lower cl) plan_room).
 Proof.
-move=> uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
+move=> T rest r uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
 have bTT : all below (T ++ T') by rewrite all_cat bT.
 have uT' : uniq T' by move: uTT; rewrite cat_uniq => /and3P[].
 pose st := foldl add start T; pose A i := fam (add_times d m rows r st i).
