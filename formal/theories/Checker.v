@@ -248,7 +248,7 @@ Definition traces_of : seq dyadic := [seq dsum [seq mtrace d A | A <- row] | row
 
 (** The element that tells most, with what it lacks, if that is little. *)
 Definition strongest (traces : seq dyadic) (lacks : seq (seq (option (seq dyadic)))) (es : seq nat) : option (seq dmat) :=
-  let b := foldl (fun b e => if dlt (nth d0 traces b) (nth d0 traces e) then e else b) (head 0%N es) es in
+  let b := foldl (fun b e => if dlt (nth d0 traces b) (nth d0 traces e) then e else b) (head 0%N es) (behead es) in
   if each_some (fun e => nth None (nth [::] lacks b) e) es is Some ls then
     let more j := foldl (fun x l => dmax x (nth d0 l j)) (nth d0 (nth [::] defects b) j) ls in
     if nilp es then None else Some (mkseq (fun j => telling (nth [::] (nth [::] infos b) j) (more j)) m)
