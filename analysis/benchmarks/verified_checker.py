@@ -1,7 +1,7 @@
 """``ratt-check``, extracted from its proof, against the Python verifier: the same certificates, processor time of each.
 
 Run as ``python -m analysis.benchmarks.verified_checker [--robots 10 20 30] [--objectives trace logdet maxeig]
-[--networks complete small-world] [--budgets 0] [--seeds K] [--seconds S]``. The program is found as
+[--networks complete small-world limited-view] [--budgets 0] [--seeds K] [--seconds S]``. The program is found as
 ``ratt-opt verify --verified`` finds it. If the two decide differently the command ends with an error.
 """
 
@@ -19,6 +19,7 @@ from ratt_opt.certificates.extracted import check_extracted
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.write import certify
 from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.scenario.limited_view import limited_view_scenario
 from ratt_opt.scenario.networks import network_scenario
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
 
@@ -27,10 +28,13 @@ if TYPE_CHECKING:
 
 
 def team(network: str, n_robots: int, budget: int, objective: str, seed: int) -> tuple[str, Problem]:
-    """Budgets in words, and the problem: the paper's, or another network with N/10 robots blinded, N/5 links cut."""
+    """Budgets in words, and the problem: the paper's (of limited views, too), or a network, budgets N/10 and N/5."""
     n_targets, budgets = SETTINGS[n_robots]
-    alpha_s, alpha_c = budgets[budget] if network == "complete" else (n_robots // 10, n_robots // 5)
-    if network == "complete":
+    is_complete = network in ("complete", "limited-view")
+    alpha_s, alpha_c = budgets[budget] if is_complete else (n_robots // 10, n_robots // 5)
+    if network == "limited-view":
+        scenario = limited_view_scenario(n_robots, n_targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
+    elif network == "complete":
         scenario = random_scenario(n_robots, n_targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
     else:
         scenario = network_scenario(network, n_robots, n_targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)

@@ -142,20 +142,31 @@ type names = { element : string; part : string; fenchel : string }
 let first_names = { element = "robot"; part = "attack"; fenchel = "cuts" }
 let second_names = { element = "element"; part = "part"; fenchel = "fenchel" }
 
-(* [named]: the parts that the last branch on a robot names; a branch that names none has the same. *)
-let rec upper_node names groups named next depth =
+(* [left]: the elements of each robot that the case leaves, in proofs with covers, where what a branch on a robot does not
+   name is one part more; empty in others. [named]: the parts that the last branch on a robot names; a branch that names
+   none has the same. *)
+module Robots = Map.Make (Int)
+
+(* A leaf's cuts or covers and their weights. *)
+let weighed where numbers node =
+  match fields where [ numbers; "weights" ] node with
+  | [ chosen; weights ] ->
+      let chosen = List.map (nat where) (array where chosen) and weights = exacts "leaf weights" weights in
+      if List.length chosen <> List.length weights then format "leaf weights" "must be as many as it weighs";
+      List.combine chosen weights
+  | _ -> assert false
+
+let rec in_order f = function [] -> [] | x :: rest -> let first = f x in first :: in_order f rest
+
+let rec upper_node names groups named left next depth =
   if depth > deepest then format "upper tree" "is too deep";
-  let again () = upper_node names groups named next (depth + 1) in
-  let rec children k = if k = 0 then [] else let first = again () in first :: children (k - 1) in
+  let again left = upper_node names groups named left next (depth + 1) in
+  let rec children k = if k = 0 then [] else let first = again left in first :: children (k - 1) in
   match next () with
-  | Record pairs as node when List.mem_assoc "weights" pairs -> (
-      match fields "leaf" [ names.fenchel; "weights" ] node with
-      | [ cuts; weights ] ->
-          let cuts = List.map (nat "leaf cut") (array "leaf cuts" cuts) and weights = exacts "leaf weights" weights in
-          if List.length cuts <> List.length weights then format "leaf weights" "must be one for each cut";
-          Leaf (List.combine cuts weights)
-      | _ -> assert false)
-  | Record pairs when List.mem_assoc "marginals" pairs -> format "upper proof" "by marginal gains is decided by ratt-opt verify alone"
+  | Record pairs as node when List.mem_assoc "covers" pairs -> CoverLeaf (weighed "cover leaf" "covers" node)
+  | Record pairs as node when List.mem_assoc "marginals" pairs ->
+      GainLeaf (match fields "marginal leaf" [ "marginals" ] node with [ a ] -> nat "marginal leaf" a | _ -> assert false)
+  | Record pairs as node when List.mem_assoc "weights" pairs -> Leaf (weighed "leaf" names.fenchel node)
   | Record pairs as node when List.mem_assoc names.part pairs ->
       let a = match fields "part branch" [ names.part ] node with [ a ] -> index "part branch" a | _ -> assert false in
       if a >= Array.length groups then format "part branch" "names no attack";
@@ -164,13 +175,15 @@ let rec upper_node names groups named next depth =
       let given = match node with Record pairs when not (List.mem_assoc "parts" pairs) -> [ names.element ] | _ -> [ names.element; "parts" ] in
       let given = fields "element branch" given node in
       let robot = index "element branch robot" (List.hd given) in
-      List.iter (fun parts -> Hashtbl.replace named robot (List.map (nats "element branch") (array "parts" parts))) (List.tl given);
+      List.iter (fun parts -> Hashtbl.replace named robot (List.map (indices "element branch") (array "parts" parts))) (List.tl given);
       let blocks =
         match Hashtbl.find_opt named robot with
         | Some blocks -> blocks
         | None -> format "element branch" "follows none that names the parts of its robot" in
-      let kids = children (List.length blocks) in
-      OnElement (nat_of_int robot, List.combine blocks kids)
+      let before = Option.value (Robots.find_opt robot left) ~default:[] in
+      let rest = List.filter (fun e -> not (List.exists (List.mem e) blocks)) before in
+      let below block = let child = again (Robots.add robot block left) in (List.map nat_of_int block, child) in
+      OnElement (nat_of_int robot, in_order below (if rest = [] then blocks else blocks @ [ rest ]))
 
 let rec size_node next depth =
   if depth > deepest then format "lower tree" "is too deep";
@@ -358,15 +371,25 @@ let cut value =
   | [ a; g; k ] -> ((nat "cut attack" a, nat "cut group" g), nat "cut point" k)
   | _ -> format "cut" "must be a list of 3 entries"
 
-let proofs pb names prior_range upper lower =
-  (match upper with
-  | Record pairs when List.mem_assoc "covers" pairs -> format "upper proof" "by covers is decided by ratt-opt verify alone"
-  | _ -> ());
-  match fields "upper proof" [ "attacks"; "points"; "cuts"; "tree" ] upper with
-  | [ attacks; points; cuts; tree ] ->
+let cover size value =
+  match fields "cover" [ "attack"; "left_out"; "points" ] value with
+  | [ a; out; points ] ->
+      let out = indices "cover left_out" out in
+      if List.exists (fun e -> e >= size) out then format "cover left_out" "names no element";
+      ((nat "cover attack" a, List.map nat_of_int out), List.map (nat "cover point") (array "cover points" points))
+  | _ -> assert false
+
+let proofs pb size names prior_range upper lower =
+  let has_covers = match upper with Record pairs -> List.mem_assoc "covers" pairs | _ -> false in
+  let given = [ "attacks"; "points"; "cuts"; "tree" ] in
+  match fields "upper proof" (if has_covers then given @ [ "covers" ] else given) upper with
+  | attacks :: points :: cuts :: tree :: covers ->
       let listed = List.map attack (array "attacks" attacks) in
       let arity a = if attack_ok pb.net a then List.length (seeing_groups pb.net a) else raise (Fault "upper proof: an attack is not allowed") in
       let groups = Array.of_list (List.map arity listed) and named = Hashtbl.create 16 in
+      let add left (e, robot) = Robots.update robot (fun own -> Some (Option.value own ~default:[] @ [ e ])) left in
+      let owned = List.mapi (fun e robot -> (e, int_of_nat robot)) pb.net.owners in
+      let left = if has_covers then List.fold_left add Robots.empty owned else Robots.empty in
       let zero = { man = Big.zero; sc = Big.zero } in
       let low, high =
         match (pb.objective, exacts "prior_eigenvalue" prior_range) with
@@ -375,7 +398,8 @@ let proofs pb names prior_range upper lower =
         | _ -> format "prior_eigenvalue" "must be a list of two entries, of none but for maxeig" in
       { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
-        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node names groups named next 0);
+        cover_list = List.concat_map (fun found -> List.map (cover size) (array "covers" found)) covers;
+        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node names groups named left next 0);
         lower_part = lower }
   | _ -> assert false
 
@@ -393,8 +417,8 @@ let certificate document =
     fields "certificate" [ "format"; "version"; "problem"; "plan"; "claim"; "prior_eigenvalue"; "upper"; "lower" ] (without_origin document)
   with
   | [ String "ratt-opt certificate"; Number ("1" | "2" as version); stated; plan; claimed; prior_range; upper; lower ] ->
-      let pb, _ = problem stated in
+      let pb, size = problem stated in
       let names = if version = "1" then first_names else second_names in
       let lower = if version = "1" then first_lower lower else second_lower pb.net lower in
-      (pb, claim plan claimed, proofs pb names prior_range upper lower)
+      (pb, claim plan claimed, proofs pb size names prior_range upper lower)
   | _ -> format "certificate" "must be version 1 or 2 of a ratt-opt certificate"

@@ -1,6 +1,6 @@
 (** The headline theorems: what each of them assumes. *)
 From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Survivors Families Approached
-  Quadratic Criteria Logdet CaseTree Costs GroupProofs Positive SizeCosts SizeProofs Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
+  Quadratic Criteria Logdet Submodular Covers Gains CaseTree Costs GroupProofs Positive SizeCosts SizeProofs Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -36,6 +36,11 @@ Print Assumptions logdet_fenchel.
 Print Assumptions logdet_fenchel_tight.
 Print Assumptions logdet_value0.
 Print Assumptions logdet_value_mono.
+Print Assumptions logdet_gains_diminish.
+Print Assumptions logdet_value_submodular.
+Print Assumptions failed_coverP.
+Print Assumptions check_cover_leafP.
+Print Assumptions check_group_gainsP.
 Print Assumptions check_casesP.
 Print Assumptions flow_valueP.
 Print Assumptions dualsP.

@@ -3,7 +3,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.zify Require Import zify ssrZ.
-From Ratt Require Import Extrema Teams Graph.
+From Ratt Require Import Extrema Teams Graph Worth.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -297,11 +297,7 @@ Local Notation element := 'I_(top_element w).+1.
 Local Notation below := (fun i => (i < robots w)%N).
 Variables (F : realFieldType) (phi : {set element} -> F) (p : {ffun robot -> element}) (lower : F).
 
-Hypothesis worthP : forall T, uniq T -> all below T -> worth (foldl add start T) ->
-  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> lower <= phi (contributed p G).
-Hypothesis averageP : forall T rest r, uniq T -> all below T -> (0 < r)%N -> average_worth (foldl add start T) rest r ->
-  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
-  (forall i, i \in T ++ T' -> robot_of w i \in G) -> lower <= phi (contributed p G).
+Hypotheses (worthP : worth_test start add phi p lower worth) (averageP : average_test start add phi p lower average_worth).
 
 (** The robots of the group that are not blinded are in [V]. *)
 Variables (C B V : {set robot}).

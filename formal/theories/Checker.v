@@ -1,7 +1,7 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -31,12 +31,15 @@ Inductive lower_proof :=
 | Cover of sets_lemma & group_tree & seq nat
 | GroupSizes of sets_lemma & size_proof
 | NoLower.
+(** A cover: an attack on links, by number, the elements that are left out, and a point for each group. *)
+Definition listed_cover := (nat * seq nat * seq nat)%type.
 Record proofs := Proofs {
   prior_low : dyadic;
   prior_high : dyadic;
   listed : seq listed_attack;
   points : seq point;
   cut_list : seq (nat * nat * nat);
+  cover_list : seq listed_cover;
   upper_part : upper_tree;
   lower_part : lower_proof
 }.
@@ -198,17 +201,59 @@ Definition gradient (pt : point) : option (seq dmat * dyadic) :=
       else None
   | _, _ => None
   end.
-Definition point_scores (g : seq dmat * dyadic) : seq dyadic * dyadic := ([seq dots g.1 row | row <- infos], g.2).
+Definition point_scores (g : seq dmat * dyadic) : tangent := ([seq dots g.1 row | row <- infos], g.2).
 Definition masked (owner group : seq nat) (s : seq dyadic) : seq dyadic :=
   [seq if x.1 \in group then x.2 else d0 | x <- zip owner s].
-Definition cut_bounds (owner : seq nat) (groups : seq (seq (seq nat))) (pts : seq (seq dyadic * dyadic))
+Definition cut_bounds (owner : seq nat) (groups : seq (seq (seq nat))) (pts : seq tangent)
     (cs : seq (nat * nat * nat)) : seq cut_bound :=
   [seq let: (a, g, k) := c in let q := nth ([::], d0) pts k in
        CutBound a g q.2 (masked owner (nth [::] (nth [::] groups a) g) q.1) | c <- cs].
 Definition cuts_in_range (groups : seq (seq (seq nat))) (n : nat) (cs : seq (nat * nat * nat)) : bool :=
   all (fun c => let: (a, g, k) := c in
     [&& (a < size groups)%N, (g < size (nth [::] groups a))%N & (k < n)%N]) cs.
+Definition cover_bounds (w : network) (groups : seq (seq (seq nat))) (pts : seq tangent) (cs : seq listed_cover) :
+    seq cover_bound :=
+  [seq let: (a, elements, ks) := c in let out := [seq e \in elements | e <- iota 0 (size (owners w))] in
+       CoverBound out (cover_levels w out (nth [::] groups a) [seq nth ([::], d0) pts k | k <- ks]) | c <- cs].
+Definition covers_in_range (attacks : seq listed_attack) (groups : seq (seq (seq nat))) (n : nat)
+    (cs : seq listed_cover) : bool :=
+  all (fun c => let: (a, _, ks) := c in
+    [&& (a < size attacks)%N, nilp (nth ([::], [::]) attacks a).1, size ks == size (nth [::] groups a)
+      & all (fun k => k < n)%N ks]) cs.
 End Cuts.
+
+(** ** What stands for several elements of a robot, where gains bound the upper end *)
+Section Gains.
+Variables (d m : nat) (owner : seq nat) (infos : seq (seq dmat)) (defects : seq (seq dyadic)).
+
+(** So much more in every direction; [::] for nothing at all. *)
+Definition telling (A : dmat) (x : dyadic) : dmat :=
+  let B := if is_zero x then A else madd d A (mscalar d x) in if all (all is_zero) B then [::] else B.
+Definition told : seq (seq dmat) := [seq [seq telling x.1 x.2 | x <- zip r.1 r.2] | r <- zip infos defects].
+
+(** As [defect], but soon done where nothing small is enough. *)
+Definition lacking (A : dmat) : option dyadic :=
+  if is_psd d A then Some d0
+  else if defect_ok d A (dmul (enough_of d A) (dtiny 28)) then defect d A else None.
+Fixpoint each_some (T U : Type) (f : T -> option U) (s : seq T) : option (seq U) :=
+  if s is x :: s' then
+    if f x is Some y then (if each_some f s' is Some r then Some (y :: r) else None) else None
+  else Some [::].
+(** What each element lacks beside each other one of its robot, by target. *)
+Definition lacks_of : seq (seq (option (seq dyadic))) :=
+  let rows := zip owner infos in
+  [seq [seq if x.1 == y.1 then each_some (fun z => lacking (msub d z.1 z.2)) (zip x.2 y.2) else None | y <- rows]
+  | x <- rows].
+Definition traces_of : seq dyadic := [seq dsum [seq mtrace d A | A <- row] | row <- infos].
+
+(** The element that tells most, with what it lacks, if that is little. *)
+Definition strongest (traces : seq dyadic) (lacks : seq (seq (option (seq dyadic)))) (es : seq nat) : option (seq dmat) :=
+  let b := foldl (fun b e => if dlt (nth d0 traces b) (nth d0 traces e) then e else b) (head 0%N es) (behead es) in
+  if each_some (fun e => nth None (nth [::] lacks b) e) es is Some ls then
+    let more j := foldl (fun x l => dmax x (nth d0 l j)) (nth d0 (nth [::] defects b) j) ls in
+    if nilp es then None else Some (mkseq (fun j => telling (nth [::] (nth [::] infos b) j) (more j)) m)
+  else None.
+End Gains.
 
 (** ** All of it *)
 Section Check.
@@ -277,14 +322,32 @@ Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : boo
   | NoLower => false
   end.
 
-Definition check_upper_part (highs : seq dmat) : bool :=
+Definition gains_leaf (highs : seq dmat) (defects : seq (seq dyadic)) (groups : seq (seq (seq nat))) :
+    nat -> seq (seq nat) -> bool :=
+  let infos := info_matrices in
+  let by_weight := weight_groups ws in
+  let dets := [seq mdet d P | P <- prior_matrices] in
+  let all_told := told d infos defects in
+  let traces := traces_of d infos in
+  let lacks := lacks_of d (owners w) infos in
+  let room := if by_weight is [:: x] then product_room x.1 (upper cl) else d1 in
+  fun a left =>
+    let sts := [seq strongest d m infos defects traces lacks es | es <- left] in
+    all (fun g => check_group_gains d m by_weight dets highs all_told (upper cl) room left sts
+      [seq i <- iota 0 (robots w) | i \in g]) (nth [::] groups a).
+Definition gains_are_used : bool := if objective pb is LogDet then has_gains (upper_part pr) else false.
+
+Definition check_upper_part (highs : seq dmat) (defects : seq (seq dyadic)) : bool :=
   let groups := [seq seeing_groups w a | a <- listed pr] in
   let grads := [seq gradient (objective pb) d m ws prior_matrices highs (prior_high pr) pt | pt <- points pr] in
   if all_some grads is Some gs then
     let pts := [seq point_scores d info_matrices g | g <- gs] in
     let cuts := cut_bounds (owners w) groups pts (cut_list pr) in
-    [&& all (attack_ok w) (listed pr), cuts_in_range groups (size gs) (cut_list pr), dle d0 (upper cl)
-      & check_upper w groups cuts (upper cl) (upper_part pr) (all_plans w) [::]]
+    let covers := cover_bounds w groups pts (cover_list pr) in
+    let gains := if gains_are_used then gains_leaf highs defects groups else (fun _ _ => false) in
+    [&& all (attack_ok w) (listed pr), cuts_in_range groups (size gs) (cut_list pr),
+        covers_in_range (listed pr) groups (size gs) (cover_list pr), dle d0 (upper cl)
+      & check_upper w groups cuts covers (upper cl) gains (upper_part pr) (all_plans w) [::]]
   else false.
 
 (** What the checker found out. *)
@@ -297,7 +360,7 @@ Definition check : verdict :=
     match all_some [seq inverse_low d P | P <- prior_matrices], all_some [seq inverse_high d P | P <- prior_matrices],
           all_some [seq all_some [seq defect d A | A <- row] | row <- info_matrices] with
     | Some lows, Some highs, Some defects =>
-        if room_ok lows defects && check_upper_part highs then
+        if room_ok lows defects && check_upper_part highs defects then
           if has_lower then (if check_lower_part lows defects then Proved else Refused) else UpperOnly
         else Refused
     | _, _, _ => Refused

@@ -85,6 +85,8 @@ Qed.
 Lemma mx_mkm d f : mx d (mkm d f) = \matrix_(i, j) val (f i j).
 Proof. by apply/matrixP => i j; rewrite !mxE get_mkm. Qed.
 
+Lemma mx_nil d : mx d [::] = 0.
+Proof. by apply/matrixP => i j; rewrite !mxE /get !nth_nil /= val0. Qed.
 Lemma mx_add d A B : mx d (madd d A B) = mx d A + mx d B.
 Proof. by rewrite mx_mkm; apply/matrixP => i j; rewrite !mxE val_add. Qed.
 Lemma mx_sub d A B : mx d (msub d A B) = mx d A - mx d B.

@@ -18,7 +18,7 @@ Definition line_problem (infos : seq nat) (w : network) : problem :=
 
 (** One linear bound at the posterior 1/8 on the first group of one attack. *)
 Definition one_leaf (a : listed_attack) (t : attack_tree) : proofs :=
-  Proofs d0 d0 [:: a] [:: TracePoint [:: [:: Dyadic 1 3]]] [:: (0, 0, 0)%N] (Leaf [:: (0%N, whole 1)]) (AttackTree t).
+  Proofs d0 d0 [:: a] [:: TracePoint [:: [:: Dyadic 1 3]]] [:: (0, 0, 0)%N] [::] (Leaf [:: (0%N, whole 1)]) (AttackTree t).
 
 (** ** A blinded robot relays: robots in a line, one of them blinded, no link cut. *)
 Definition relay_infos : seq nat := [:: 4; 1; 3; 4].
@@ -125,7 +125,7 @@ Theorem split_exact : let pb := line_problem split_infos split_net in let cl := 
     & is_optimum (team_of split_net) phi (val F split_value)].
 Proof.
 pose cuts := [:: (0, 0, 0)%N; (0, 1, 0)%N].
-apply: (@exact_values _ _ _ _ (Proofs d0 d0 [:: ([::], [:: (1, 2)%N])] [:: TracePoint [:: [:: Dyadic 1 3]]] cuts
+apply: (@exact_values _ _ _ _ (Proofs d0 d0 [:: ([::], [:: (1, 2)%N])] [:: TracePoint [:: [:: Dyadic 1 3]]] cuts [::]
   (OnWinner 0 [:: Leaf [:: (0%N, whole 1)]; Leaf [:: (1%N, whole 1)]])
   (AttackTree (Blinded 0 Beyond (Blinded 1 Beyond (Blinded 2 Beyond (Blinded 3 Beyond
     (Group 0 [:: Group 1 [:: Worth 0; Group 2 [:: Beyond; Group 3 [:: Beyond; Worth 1; Beyond]; Beyond]]])))))))).

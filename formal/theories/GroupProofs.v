@@ -3,7 +3,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.zify Require Import zify ssrZ.
-From Ratt Require Import Extrema Teams Graph CaseTree Costs AttackGroups.
+From Ratt Require Import Extrema Teams Graph Worth CaseTree Costs AttackGroups.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -146,11 +146,7 @@ Local Notation robot := 'I_(top_robot w).+1.
 Local Notation element := 'I_(top_element w).+1.
 Variables (F : realFieldType) (phi : {set element} -> F) (p : {ffun robot -> element}) (lower : F).
 Local Notation below := (fun i => (i < robots w)%N).
-Hypothesis worthP : forall T, uniq T -> all below T -> worth (foldl add start T) ->
-  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> lower <= phi (contributed p G).
-Hypothesis averageP : forall T rest r, uniq T -> all below T -> (0 < r)%N -> average_worth (foldl add start T) rest r ->
-  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
-  (forall i, i \in T ++ T' -> robot_of w i \in G) -> lower <= phi (contributed p G).
+Hypotheses (worthP : worth_test start add phi p lower worth) (averageP : average_test start add phi p lower average_worth).
 Local Notation check_sets := (check_sets w start add worth average_worth).
 
 Theorem check_setsP l (V : {set robot}) : check_sets l -> (set_size l <= #|V|)%N -> lower <= phi (contributed p V).
@@ -404,11 +400,7 @@ Local Notation robot := 'I_(top_robot w).+1.
 Local Notation element := 'I_(top_element w).+1.
 Variables (F : realFieldType) (phi : {set element} -> F) (p : {ffun robot -> element}) (lower : F).
 Local Notation below := (fun i => (i < robots w)%N).
-Hypothesis worthP : forall T, uniq T -> all below T -> worth (foldl add start T) ->
-  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> lower <= phi (contributed p G).
-Hypothesis averageP : forall T rest r, uniq T -> all below T -> (0 < r)%N -> average_worth (foldl add start T) rest r ->
-  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
-  (forall i, i \in T ++ T' -> robot_of w i \in G) -> lower <= phi (contributed p G).
+Hypotheses (worthP : worth_test start add phi p lower worth) (averageP : average_test start add phi p lower average_worth).
 Variables (a : attack [finType of robot]) (l : sets_lemma).
 Hypotheses (oka : allowed (team_of w) a) (sets : check_sets w start add worth average_worth l).
 Local Notation near := (rows_of w (link_list w)).

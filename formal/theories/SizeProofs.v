@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.zify Require Import zify ssrZ.
-From Ratt Require Import Extrema Teams Graph CaseTree Costs AttackGroups GroupProofs Positive Sizes SizeCosts.
+From Ratt Require Import Extrema Teams Graph Worth CaseTree Costs AttackGroups GroupProofs Positive Sizes SizeCosts.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -46,11 +46,7 @@ Local Notation robot := 'I_(top_robot w).+1.
 Local Notation element := 'I_(top_element w).+1.
 Variables (F : realFieldType) (phi : {set element} -> F) (p : {ffun robot -> element}) (lower : F).
 Local Notation below := (fun i => (i < robots w)%N).
-Hypothesis worthP : forall T, uniq T -> all below T -> worth (foldl add start T) ->
-  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> lower <= phi (contributed p G).
-Hypothesis averageP : forall T rest r, uniq T -> all below T -> (0 < r)%N -> average_worth (foldl add start T) rest r ->
-  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
-  (forall i, i \in T ++ T' -> robot_of w i \in G) -> lower <= phi (contributed p G).
+Hypotheses (worthP : worth_test start add phi p lower worth) (averageP : average_test start add phi p lower average_worth).
 Variables (size_k : nat) (t : size_proof) (a0 : attack [finType of robot]).
 Hypotheses (set_worth : forall V : {set robot}, (size_k <= #|V|)%N -> lower <= phi (contributed p V))
   (oka0 : allowed (team_of w) a0) (poor : forall i, ~~ (lower <= phi (contributed p (sees (team_of w) a0 i)))).
@@ -339,13 +335,7 @@ Theorem sizesP (w : network) (S : Type) (start : S) (add : S -> nat -> S) (worth
     (average_worth : S -> seq nat -> nat -> bool) (F : realFieldType)
     (phi : {set 'I_(top_element w).+1} -> F) (p : {ffun 'I_(top_robot w).+1 -> 'I_(top_element w).+1}) (lower : F)
     (a : attack [finType of 'I_(top_robot w).+1]) (l : sets_lemma) (t : size_proof) :
-  network_ok w ->
-  (forall T, uniq T -> all (fun i => i < robots w)%N T -> worth (foldl add start T) ->
-    forall G : {set 'I_(top_robot w).+1}, (forall i, i \in T -> robot_of w i \in G) -> (lower <= phi (contributed p G))%R) ->
-  (forall T rest r, uniq T -> all (fun i => i < robots w)%N T -> (0 < r)%N -> average_worth (foldl add start T) rest r ->
-    forall (T' : seq nat) (G : {set 'I_(top_robot w).+1}), uniq (T ++ T') -> all (fun i => i < robots w)%N T' ->
-    {subset T' <= rest} -> size T' = r -> (forall i, i \in T ++ T' -> robot_of w i \in G) ->
-    (lower <= phi (contributed p G))%R) ->
+  network_ok w -> worth_test start add phi p lower worth -> average_test start add phi p lower average_worth ->
   allowed (team_of w) a -> check_sets w start add worth average_worth l ->
   check_group_sizes w start add worth average_worth (rows_of w (link_list w)) (rows_of w (kept_links w)) (set_size l) t ->
   (lower <= team_value (team_of w) phi p a)%R.

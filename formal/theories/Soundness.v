@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph Worth Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -111,6 +111,36 @@ rewrite mem_filter => /andP[/andP[y0 h] _]; rewrite (val_le F) val0 in y0; split
 have := is_psdP (add_symmetrical s (scalar_symmetrical y)) h; by rewrite mx_add mx_scalar.
 Qed.
 End Pieces.
+
+Section Telling.
+Variables (F : realFieldType) (d : nat).
+Local Notation val := (val F).
+Local Notation mx := (mx F d).
+
+Lemma is_zeroP x : is_zero x -> val x = 0.
+Proof. by rewrite /is_zero => /Z.eqb_eq e; rewrite /Dyadic.val e mul0r. Qed.
+
+Lemma mx_telling A x : mx (telling d A x) = mx A + (val x)%:M.
+Proof.
+rewrite /telling; set B := if is_zero x then A else _.
+have eB : mx B = mx A + (val x)%:M.
+  by rewrite /B; case: ifP => [/is_zeroP ->|_]; rewrite ?scalar_mx0 ?addr0 ?mx_add ?mx_scalar // raddf0 addr0.
+case: ifP => // /allP zero; rewrite -eB mx_nil; apply/matrixP => i j; rewrite !mxE /get; apply/esym.
+case: (ltnP i (size B)) => [iB|ge]; last by rewrite (nth_default [::] ge) nth_nil val0.
+have /allP row := zero _ (mem_nth [::] iB); case: (ltnP j (size (nth [::] B i))) => [jB|ge].
+  by apply: is_zeroP; apply: row; apply: mem_nth.
+by rewrite nth_default ?val0.
+Qed.
+
+Lemma lackingP A x : symmetrical (mx A) -> lacking d A = Some x -> psd (mx A + (val x)%:M).
+Proof.
+move=> s; rewrite /lacking; case: ifP => [h [<-]|_]; last by case: ifP => // _ /(defectP s)[].
+by rewrite val0 raddf0 addr0; apply: is_psdP.
+Qed.
+
+Lemma each_someE (T U : Type) (f : T -> option U) s : each_some f s = all_some [seq f x | x <- s].
+Proof. by elim: s => //= x s ->; case: (f x). Qed.
+End Telling.
 
 Section Sound.
 Variables (F : realFieldType) (pb : problem) (cl : claim) (pr : proofs).
@@ -274,7 +304,7 @@ move=> okp; have le : \sum_(i : robot) delta (p i) j <= val (worst_defect pb def
   rewrite (_ : iota 0 (robots w) = index_iota 0 (robots w)); last by rewrite /index_iota subn0.
   rewrite (big_mkord xpredT (fun i => val (largest_of (fun e => nth d0 (nth [::] defects e) j) (nth [::] (all_plans w) i)))).
   apply: ler_sum => i _; apply: (largest_ofP F (fun e => nth d0 (nth [::] defects e) j)).
-  exact: in_all_plans.
+  exact: in_all_plans net_good okp.
 have ge0 : 0 <= \sum_(i : robot) delta (p i) j by apply: sumr_ge0 => i _; case: (deltaP (p i) j).
 apply: le_trans (_ : \sum_(i : robot) delta (p i) j <= _).
   rewrite big_mkcond; apply: ler_sum => i _; case: ifP => // _; by case: (deltaP (p i) j).
@@ -302,9 +332,6 @@ by apply: psd_scalar; rewrite subr_ge0; apply: worst_ge.
 Qed.
 
 (** ** Linear bounds on groups *)
-Lemma mx_nil : mx F d [::] = 0.
-Proof. by apply/matrixP => i j; rewrite !mxE /get !nth_nil /= val0. Qed.
-
 Lemma dotsE Ws Is : size Ws = m -> size Is = m ->
   val (dots d Ws Is) = \sum_(j : target) \tr ((mx F d (nth [::] Ws j))^T *m mx F d (nth [::] Is j)).
 Proof.
@@ -440,31 +467,154 @@ have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
 by rewrite (tangent_shape (val (prior_high pr)) (weight_of jt) (val t) (val b)) lexx.
 Qed.
 
-Theorem upper_sound p : check_upper_part pb cl pr highs -> is_plan (team_of w) p ->
+(** ** Bounds by gains *)
+(** Sums over the targets, weight by weight. *)
+Lemma weight_groupsE (f : nat -> F) :
+  \sum_(j : target) weight_of j * f j = \sum_(g <- weight_groups ws) val g.1 * \sum_(j <- g.2) f j.
+Proof.
+rewrite big_map; transitivity (\sum_(v <- undup ws) \sum_(j <- iota 0 m | nth d0 ws j == v) val (nth d0 ws j) * f j).
+  rewrite (exchange_big_dep xpredT) //= [in RHS](_ : iota 0 m = index_iota 0 m); last by rewrite /index_iota subn0.
+  rewrite [RHS](big_mkord xpredT); apply: eq_bigr => j _; rewrite -big_filter.
+  have -> : [seq v <- undup ws | nth d0 ws j == v] = [:: nth d0 ws j].
+    rewrite (eq_filter (fun v => eq_sym _ v)) filter_pred1_uniq ?undup_uniq // mem_undup mem_nth // weights_size //.
+  by rewrite big_seq1.
+apply: eq_bigr => v _; rewrite weights_size mulr_sumr [RHS]big_filter.
+by apply: eq_bigr => j /eqP->.
+Qed.
+
+Lemma weight_groups_ok x : x \in weight_groups ws -> 0 < val x.1 /\ {in x.2, forall j, (j < m)%N}.
+Proof.
+move=> /mapP[v]; rewrite mem_undup => /(nthP d0)[j jm <-] ->; rewrite weights_size in jm; split=> [|k] /=.
+  exact: (weight_gt0 (Ordinal jm)).
+by rewrite mem_filter mem_iota weights_size => /andP[_ /andP[]].
+Qed.
+
+Let infos := info_matrices pb.
+Let lacks := lacks_of d (owners w) infos.
+
+Lemma lacks_ofP (b e : nat) l : nth None (nth [::] lacks b) e = Some l ->
+  [/\ (b < size (owners w))%N, (e < size (owners w))%N
+    & forall j : target, psd (info_of (inord b) j - info_of (inord e) j + (val (nth d0 l j))%:M)].
+Proof.
+set n := size (owners w); have szr : size (zip (owners w) infos) = n by rewrite size_zip size_map infos_size minnn.
+rewrite /lacks /lacks_of; case: (ltnP b n) => [bn|ge]; last by rewrite (nth_default [::]) ?size_map ?szr ?nth_nil.
+rewrite (nth_map (0%N, [::])) ?szr //; case: (ltnP e n) => [en|ge]; last by rewrite nth_default ?size_map ?szr.
+rewrite (nth_map (0%N, [::])) ?szr //; case: ifP => // _; rewrite !nth_zip ?size_map ?infos_size //= each_someE => h.
+have of_nat k : (k < n)%N -> ((inord k : element) : nat) = k.
+  by move=> kn; rewrite inordK // /top_element prednK ?owners_pos.
+split=> // j; have [_ at_] := all_some_nth ([::], [::]) d0 j h.
+rewrite size_zip !info_row_size // minnn in at_; have {at_} := at_ (ltn_ord j).
+rewrite nth_zip ?info_row_size //= !nth_info // => at_.
+rewrite /info_of !of_nat // -mx_sub; apply: lackingP at_.
+by apply: sub_symmetrical; apply: unpack_symmetrical.
+Qed.
+
+Lemma strongestP es M (e : element) (j : target) :
+  strongest d m infos defects (traces_of d infos) lacks es = Some M -> (e : nat) \in es ->
+  let R := mx F d (nth [::] M j) in [/\ symmetrical R, psd R & psd (R - info_of e j)].
+Proof.
+rewrite /strongest; set b := foldl _ _ _; rewrite each_someE; case el : (all_some _) => [ls|//].
+case: ifP => // _ [<-] ees; rewrite nth_mkseq //; set more := foldl _ _ _.
+have ei : index (e : nat) es \in iota 0 (size es) by rewrite mem_iota index_mem.
+have [sz at_] := all_some_nth 0%N [::] (index (e : nat) es) el; rewrite index_mem nth_index // in at_.
+have /lacks_ofP[bn _ /(_ j)] := at_ ees; rewrite inord_val => pl.
+have nb : ((inord b : element) : nat) = b by rewrite inordK // /top_element prednK ?owners_pos.
+rewrite nth_info // mx_telling -nb -/(info_of _ j).
+have [d1 d2] := foldl_maxP F (fun l => nth d0 l j) ls (nth d0 (nth [::] defects b) j).
+have lm : val (nth d0 (nth [::] ls (index (e : nat) es)) j) <= val more by apply: d2; rewrite mem_nth ?sz ?index_mem.
+have [del0 pd] := deltaP (inord b) j; rewrite /delta nb in del0 pd.
+have above (A : 'M[F]_d) x : psd (A + x%:M) -> x <= val more -> psd (A + (val more)%:M).
+  by move=> pA le; rewrite -[val more](subrK x) addrC raddfD /= -addrA [x%:M + _]addrC; apply: psdD => //; apply: psd_scalar; rewrite subr_ge0.
+split; [|exact: above pd d1|by rewrite addrAC; apply: above pl lm].
+by rewrite /symmetrical linearD /= tr_scalar_mx info_symmetrical.
+Qed.
+
+Lemma mx_told (e : element) (j : target) :
+  mx F d (nth [::] (nth [::] (told d infos defects) e) j) = info_of e j + (delta e j)%:M.
+Proof.
+have [sz at_] := all_some_nth [::] [::] e defectsE; rewrite -/infos in sz at_.
+have el : (e < size infos)%N by rewrite size_map infos_size element_lt.
+have [szr _] := all_some_nth [::] d0 j (at_ el); rewrite info_row_size ?element_lt // in szr.
+rewrite /told (nth_map ([::], [::])) ?size_zip ?sz ?minnn // nth_zip ?sz //=.
+rewrite (nth_map ([::], d0)) ?size_zip ?szr ?info_row_size ?element_lt ?minnn // nth_zip ?szr ?info_row_size ?element_lt //=.
+by rewrite mx_telling nth_info ?element_lt.
+Qed.
+
+Lemma gains_leafP p groups a left g : objective pb = LogDet -> dle d0 (upper cl) -> is_plan (team_of w) p ->
+  gains_leaf pb cl highs defects groups a left -> in_case p left -> (g < size (nth [::] groups a))%N ->
+  value (contributed p (set_of w (nth [::] (nth [::] groups a) g))) <= val (upper cl).
+Proof.
+move=> kind u0 okp /allP h inc gl; have {h} := h _ (mem_nth [::] gl); set grp := nth [::] _ g.
+set sts := [seq _ | es <- left]; set members := [seq i <- _ | _] => h.
+pose c i : nat := p (robot_of w i); pose I i j := info_of (p (robot_of w i)) j.
+have sumE j : \sum_(i <- members) I i j = \sum_(i in set_of w grp) info_of (p i) j.
+  rewrite big_filter (_ : iota 0 (robots w) = index_iota 0 (robots w)); last by rewrite /index_iota subn0.
+  rewrite (big_mkord (fun i => i \in grp) (fun i => I i j)); apply: eq_big => [i|i _]; first by rewrite inE.
+  by rewrite /I robot_of_val.
+have postE j : posterior prior_of info_of (contributed p (set_of w grp)) j = invmx (prior_of j) + \sum_(i <- members) I i j.
+  by rewrite /posterior sum_contributed // sumE.
+rewrite /value kind /logdet_value /logdet_penalty /logdet_base -sumrB.
+rewrite (eq_bigr (fun j => weight_of j * (ln (\det (prior_of j)) + ln (\det (invmx (prior_of j) + \sum_(i <- members) I i j))))).
+  2: by move=> j _; rewrite -mulrBr opprK postE.
+apply: (check_group_gainsP (lnP kind) weight_ge0 prior_good highP _ weight_groupsE _ _ _ _ _ h).
+- by move=> j; rewrite (nth_map [::]) ?size_map // nth_prior // mdetE.
+- by move=> x /weight_groups_ok[x0 lt]; split=> //; apply: ltW.
+- move=> x e; rewrite e; have [|x0 _] := @weight_groups_ok x; first by rewrite e mem_head.
+  by apply: (product_roomP (lnP kind)) => //; rewrite -(val0 F) -(val_le F).
+- move=> i; rewrite mem_filter mem_iota add0n => /andP[_ /andP[_ il]].
+  by rewrite -{2}(robot_ofK il); apply: inc.
+- move=> i; rewrite mem_filter mem_iota add0n => /andP[_ /andP[_ il]] j.
+  have ci : c i \in nth [::] left i by rewrite -{2}(robot_ofK il); apply: inc.
+  rewrite /Gains.known; case es : (nth None sts i) => [M|].
+    have il' : (i < size left)%N by rewrite ltnNge; apply/negP => ge; rewrite nth_default ?size_map in es.
+    rewrite (nth_map [::]) // in es; have [sR pR dR] := strongestP j es ci; split=> //; exact: info_symmetrical.
+  have [del0 pI] := deltaP (p (robot_of w i)) j; rewrite mx_told; split=> //; first exact: info_symmetrical.
+    by rewrite /symmetrical linearD /= tr_scalar_mx info_symmetrical.
+  by rewrite addrAC subrr add0r; apply: psd_scalar.
+by move=> j; rewrite -postE; apply: posterior_pd.
+Qed.
+
+(** What the scores of a point say, in the words of trees and covers. *)
+Lemma tangentP p gs : is_plan (team_of w) p ->
+  all_some [seq gradient (objective pb) d m ws (prior_matrices pb) highs (prior_high pr) pt | pt <- points pr] = Some gs ->
+  forall q, (q < size gs)%N -> let t := nth ([::], d0) [seq point_scores d (info_matrices pb) g | g <- gs] q in
+  size t.1 = size (owners w) /\
+  forall G : {set robot}, value (contributed p G) <= val t.2 + \sum_(i in G) val (nth d0 t.1 (p i)).
+Proof.
+move=> okp eg q ql; rewrite (nth_map ([::], d0)) //= !size_map infos_size; split=> // G.
+have [szg h] := all_some_nth (TracePoint [::]) ([::], d0) q eg; rewrite szg in ql; have [_ bound] := gradientP (h ql).
+apply: le_trans (bound p G okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+by apply: eq_bigr => i _; rewrite (nth_map [::]) ?size_map ?infos_size ?element_lt.
+Qed.
+
+Theorem upper_sound p : check_upper_part pb cl pr highs defects -> is_plan (team_of w) p ->
   worst_case (team_of w) value p <= val (upper cl).
 Proof.
 rewrite /check_upper_part; set groups := [seq seeing_groups w a | a <- listed pr].
-case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs].
-set cuts := cut_bounds _ _ _ _ => /and4P[lok /allP range u0 tree] okp.
-have sizes k : (k < size gs)%N -> size (nth ([::], d0) pts k).1 = size (owners w).
-  by move=> kl; rewrite (nth_map ([::], d0)) //= !size_map infos_size.
-apply: (upper_treeP net_good value0 lok erefl _ okp _ tree u0).
-  apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
-  by rewrite size_map size_zip sizes // minnn.
-move=> k; rewrite size_map => kl; rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
-have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
-set grp := nth [::] (nth [::] groups a) g.
-have [szg h] := all_some_nth (TracePoint [::]) ([::], d0) q eg.
-rewrite szg in ql; have [s1 bound] := gradientP (h ql).
-have := bound p (set_of w grp) okp; rewrite -szg in ql.
-rewrite (nth_map ([::], d0)) //=; congr (_ <= _ + _).
-rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last first.
-  by rewrite size_zip !size_map infos_size minnn element_lt.
-rewrite nth_zip ?size_map ?infos_size //= (nth_map [::]) ?size_map ?infos_size ?element_lt //.
-have -> : nth 0%N (owners w) (p i) = i.
-  have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
-  by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
-by case: ifP => // _; rewrite val0.
+case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs]; set cuts := cut_bounds _ _ _ _.
+set covers := cover_bounds _ _ _ _ => /and5P[lok /allP range /allP cover_range u0 tree] okp.
+have at_ := tangentP okp eg; rewrite -/pts in at_.
+apply: (upper_treeP net_good value0 lok erefl _ okp _ _ _ _ tree u0) => [|k|k|k|a left g]; rewrite ?size_map; try move=> kl.
+- apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
+  by rewrite size_map size_zip (proj1 (at_ _ kl)) minnn.
+- rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
+  have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
+  set grp := nth [::] (nth [::] groups a) g; have [sz bound] := at_ q ql.
+  apply: le_trans (bound (set_of w grp)) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+  rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last by rewrite size_zip sz minnn element_lt.
+  rewrite nth_zip //=; have -> : nth 0%N (owners w) (p i) = i.
+    have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
+    by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
+  by case: ifP => // _; rewrite val0.
+- by rewrite /cover_of (nth_map (0%N, [::], [::])) //; case: (nth _ _ k) => [[a out] ks] /=; rewrite size_map size_iota.
+- rewrite /cover_of (nth_map (0%N, [::], [::])) //.
+  have := cover_range _ (mem_nth (0%N, [::], [::]) kl); case: (nth _ _ k) => [[a elements] ks].
+  move=> /and4P[al /nilP sees /eqP sz /allP ksl] /=; rewrite /groups (nth_map ([::], [::])) //.
+  apply: (failed_coverP net_good okp) => //; first exact: (allP lok _ (mem_nth _ al)).
+  - by rewrite size_map size_iota.
+  - by rewrite size_map sz /groups (nth_map ([::], [::])).
+  by move=> t /mapP[q /ksl ql ->]; apply: at_.
+move: kl; case: ifP => // used; apply: gains_leafP => //; by move: used; rewrite /gains_are_used; case: (objective pb).
 Qed.
 
 (** ** The plan's worst case *)
@@ -607,20 +757,6 @@ Qed.
 
 Let groups := weight_groups ws.
 
-(** Sums over the targets, weight by weight. *)
-Lemma weight_groupsE (f : nat -> F) :
-  \sum_(j : target) weight_of j * f j = \sum_(g <- groups) val g.1 * \sum_(j <- g.2) f j.
-Proof.
-rewrite big_map; transitivity (\sum_(v <- undup ws) \sum_(j <- iota 0 m | nth d0 ws j == v) val (nth d0 ws j) * f j).
-  rewrite (exchange_big_dep xpredT) //= [in RHS](_ : iota 0 m = index_iota 0 m); last by rewrite /index_iota subn0.
-  rewrite [RHS](big_mkord xpredT); apply: eq_bigr => j _; rewrite -big_filter.
-  have -> : [seq v <- undup ws | nth d0 ws j == v] = [:: nth d0 ws j].
-    rewrite (eq_filter (fun v => eq_sym _ v)) filter_pred1_uniq ?undup_uniq // mem_undup mem_nth // weights_size //.
-  by rewrite big_seq1.
-apply: eq_bigr => v _; rewrite weights_size mulr_sumr [RHS]big_filter.
-by apply: eq_bigr => j /eqP->.
-Qed.
-
 Lemma logdet_upP k p s y : kind = LogDet -> logdet_up d m groups k p s = Some y -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ logdet_penalty ln weight_of (fam s) <= val y.
 Proof.
@@ -707,11 +843,10 @@ rewrite /posterior /contributed imset0 big_set0 addr0.
 by rewrite [known T j + _]addrCA !addrA.
 Qed.
 
-Lemma worth_sound T : uniq T -> all below T ->
-  worth kind d m ws groups lows (lower cl) plan_room (foldl add start T) ->
-  forall G : {set robot}, (forall i, i \in T -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Lemma worth_sound :
+  worth_test start add value plan_of (val (lower cl)) (worth kind d m ws groups lows (lower cl) plan_room).
 Proof.
-move=> uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
+move=> T uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
   apply: (prior_worth uT bT TG) le => j; have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT).
   have sm := sub_symmetrical (fam_symmetrical j bT) (proj1 (lowP j)).
   by move/(is_psdP sm); rewrite mx_sub -/(fam _ j) famE.
@@ -738,12 +873,10 @@ Proof.
 move=> b il; rewrite /fam nth_mkseq // mx_add mx_scale val_nat rows_at // -/(fam _ j) famE //.
 Qed.
 
-Lemma average_sound T rest r : uniq T -> all below T -> (0 < r)%N ->
-  average_worth kind d m ws groups lows rows (lower cl) plan_room (foldl add start T) rest r ->
-  forall (T' : seq nat) (G : {set robot}), uniq (T ++ T') -> all below T' -> {subset T' <= rest} -> size T' = r ->
-  (forall i, i \in T ++ T' -> robot_of w i \in G) -> val (lower cl) <= value (contributed plan_of G).
+Lemma average_sound : average_test start add value plan_of (val (lower cl))
+  (average_worth kind d m ws groups lows rows (lower cl) plan_room).
 Proof.
-move=> uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
+move=> T rest r uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
 have bTT : all below (T ++ T') by rewrite all_cat bT.
 have uT' : uniq T' by move: uTT; rewrite cat_uniq => /and3P[].
 pose st := foldl add start T; pose A i := fam (add_times d m rows r st i).

@@ -1,7 +1,8 @@
-(** The upper proof: a tree of cases over plans whose leaves weigh linear bounds on groups. Generic in the value. *)
+(** The upper proof: a tree of cases over plans whose leaves weigh linear bounds on groups, or covers. Generic in the
+    value, and in how the gains of a case bound it. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.zify Require Import zify.
-From Ratt Require Import Extrema Teams Dyadic Graph.
+From Ratt Require Import Extrema Teams Dyadic DyadicMatrix Graph Scores Covers.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -16,33 +17,33 @@ Lemma cut_boundK : cancel (fun c => (of_attack c, of_group c, constant c, scores
 Proof. by case. Qed.
 Canonical cut_bound_eqType := EqType cut_bound (CanEqMixin cut_boundK).
 
-(** Leaf: cuts by number with their weights. Branch on a robot's elements. Branch on the group that wins an attack. *)
+(** Leaf: cuts by number with their weights, covers, or gains under an attack. Branch on a robot's elements, or on the group that wins an
+    attack. *)
 Inductive upper_tree :=
 | Leaf of seq (nat * dyadic)
+| CoverLeaf of seq (nat * dyadic)
+| GainLeaf of nat
 | OnElement of nat & seq (seq nat * upper_tree)
 | OnWinner of nat & seq upper_tree.
 
-Fixpoint axpy (w : dyadic) (s acc : seq dyadic) : seq dyadic :=
-  match s, acc with
-  | x :: s', y :: acc' => dadd (dmul w x) y :: axpy w s' acc'
-  | _, _ => [::]
+Fixpoint has_gains (t : upper_tree) : bool :=
+  match t with
+  | Leaf _ | CoverLeaf _ => false
+  | GainLeaf _ => true
+  | OnElement _ parts => has (fun bt => has_gains bt.2) parts
+  | OnWinner _ parts => has has_gains parts
   end.
 
-Definition largest_of (f : nat -> dyadic) (s : seq nat) : dyadic :=
-  if s is e :: s' then foldl (fun m x => dmax m (f x)) (f e) s' else d0.
-
 Section Checker.
-Variables (w : network) (attacks : seq (seq (seq nat))) (cuts : seq cut_bound) (upper : dyadic).
+Variables (w : network) (attacks : seq (seq (seq nat))) (cuts : seq cut_bound) (covers : seq cover_bound) (upper : dyadic).
+Variable gains : nat -> seq (seq nat) -> bool.
 (** [attacks]: the seeing groups of each listed attack. A cut may be used where its group is the only one or the winner. *)
 Definition cut_of (k : nat) : cut_bound := nth (CutBound 0 0 d0 [::]) cuts k.
 Definition usable (winners : seq (nat * nat)) (c : cut_bound) : bool :=
   ((size (nth [::] attacks (of_attack c)) == 1%N) && (of_group c == 0%N)) || ((of_attack c, of_group c) \in winners).
 
-Definition leaf_total (used : seq (nat * dyadic)) : seq dyadic :=
-  foldl (fun acc kw => axpy kw.2 (scores (cut_of kw.1)) acc) (nseq (size (owners w)) d0) used.
-
 Definition check_leaf (left : seq (seq nat)) (winners : seq (nat * nat)) (used : seq (nat * dyadic)) : bool :=
-  let total := leaf_total used in
+  let total := weighed (size (owners w)) (fun k => scores (cut_of k)) used in
   let mass := dsum [seq kw.2 | kw <- used] in
   let base := dsum [seq dmul kw.2 (constant (cut_of kw.1)) | kw <- used] in
   let best := dsum [seq largest_of (nth d0 total) (nth [::] left i) | i <- iota 0 (robots w)] in
@@ -52,6 +53,8 @@ Definition check_leaf (left : seq (seq nat)) (winners : seq (nat * nat)) (used :
 Fixpoint check_upper (t : upper_tree) (left : seq (seq nat)) (winners : seq (nat * nat)) : bool :=
   match t with
   | Leaf used => check_leaf left winners used
+  | CoverLeaf used => check_cover_leaf w covers upper left used
+  | GainLeaf a => (a < size attacks)%N && gains a left
   | OnElement i parts =>
       [&& (i < robots w)%N, all (fun bt => ~~ nilp bt.1) parts,
           sort leq (flatten [seq bt.1 | bt <- parts]) == nth [::] left i
@@ -61,9 +64,6 @@ Fixpoint check_upper (t : upper_tree) (left : seq (seq nat)) (winners : seq (nat
         & (fix go (l : seq upper_tree) (g : nat) {struct l} : bool :=
              if l is t' :: l' then check_upper t' left ((a, g) :: winners) && go l' g.+1 else true) parts 0%N]
   end.
-
-Definition all_plans : seq (seq nat) :=
-  [seq [seq e <- iota 0 (size (owners w)) | nth 0%N (owners w) e == i] | i <- iota 0 (robots w)].
 
 Local Open Scope ring_scope.
 
@@ -82,47 +82,14 @@ Hypothesis cuts_ok : forall k, (k < size cuts)%N -> let c := cut_of k in
   phi (contributed p (set_of w (nth [::] (nth [::] attacks (of_attack c)) (of_group c)))) <=
   val (constant c) + \sum_(i : robot) val (nth d0 (scores c) (p i)).
 
-Lemma size_axpy a s acc : size s = size acc -> size (axpy a s acc) = size acc.
-Proof. by elim: s acc => [|x s IH] [|y acc] //= [/IH ->]. Qed.
-
-Lemma nth_axpy a s acc k : size s = size acc ->
-  val (nth d0 (axpy a s acc) k) = val a * val (nth d0 s k) + val (nth d0 acc k).
-Proof.
-elim: s acc k => [|x s IH] [|y acc] [|k] //=; rewrite ?val0 ?mulr0 ?addr0 //.
-  by rewrite val_add val_mul.
-by case=> /IH.
-Qed.
-
-Lemma leaf_totalP used k : all (fun kw => kw.1 < size cuts)%N used ->
-  val (nth d0 (leaf_total used) k) = \sum_(kw <- used) val kw.2 * val (nth d0 (scores (cut_of kw.1)) k).
-Proof.
-move=> /allP inr; rewrite /leaf_total.
-have gen acc : size acc = size (owners w) ->
-  val (nth d0 (foldl (fun acc kw => axpy kw.2 (scores (cut_of kw.1)) acc) acc used) k) =
-  val (nth d0 acc k) + \sum_(kw <- used) val kw.2 * val (nth d0 (scores (cut_of kw.1)) k).
-  elim: used acc inr => [|kw used IH] acc inr sz; first by rewrite big_nil addr0.
-  have ss : size (scores (cut_of kw.1)) = size acc.
-    by rewrite sz; apply/eqP; apply: (allP sizes_ok); apply: mem_nth; apply: inr; rewrite mem_head.
-  rewrite [foldl _ _ _]/= IH ?size_axpy // => [|x xu]; last by apply: inr; rewrite in_cons xu orbT.
-  by rewrite nth_axpy // big_cons addrCA addrA.
-rewrite gen ?size_nseq // nth_nseq if_same val0 add0r //.
-Qed.
-
-Lemma largest_ofP f s e : e \in s -> val (f e) <= val (largest_of f s).
-Proof.
-case: s => [//|x s] h; rewrite /largest_of.
-have gen m : val m <= val (foldl (fun m x => dmax m (f x)) m s) /\
-    (forall y, y \in s -> val (f y) <= val (foldl (fun m x => dmax m (f x)) m s)).
-  elim: s {h} m => [|y s IH] m /=; first by split.
-  have [h1 h2] := IH (dmax m (f y)); rewrite val_max in h1; split.
-    by apply: le_trans h1; rewrite le_maxr lexx.
-  move=> z; rewrite in_cons => /orP[/eqP->|/h2 //]; by apply: le_trans h1; rewrite le_maxr lexx orbT.
-by move: h; rewrite in_cons => /orP[/eqP->|/(proj2 (gen (f x)))] //; apply: (proj1 (gen (f x))).
-Qed.
-
 Definition worst := worst_case (team_of w) phi p.
-(** The plan is in the case, and the winners declared have at least its worst case. *)
-Definition in_case (left : seq (seq nat)) : Prop := forall i : robot, (p i : nat) \in nth [::] left i.
+Hypothesis covers_sized : forall k, (k < size covers)%N -> size (left_out (cover_of covers k)) = size (owners w).
+Hypothesis covers_ok : forall k, (k < size covers)%N -> fails p (cover_of covers k) ->
+  all (fun x => dle x upper) (levels (cover_of covers k)) -> worst <= val upper.
+Hypothesis gains_ok : forall a left g, gains a left -> in_case p left -> (g < size (nth [::] attacks a))%N ->
+  phi (contributed p (set_of w (nth [::] (nth [::] attacks a) g))) <= val upper.
+
+(** The winners declared have at least the plan's worst case. *)
 Definition winning (winners : seq (nat * nat)) : Prop := forall a g, (a, g) \in winners ->
   worst <= phi (contributed p (set_of w (nth [::] (nth [::] attacks a) g))).
 
@@ -141,10 +108,10 @@ exists (index g (seeing_groups w b)); first by rewrite index_mem.
 by rewrite nth_index // -eg -ei.
 Qed.
 
-Lemma check_leafP left winners used : check_leaf left winners used -> 0 < worst -> in_case left -> winning winners ->
+Lemma check_leafP left winners used : check_leaf left winners used -> 0 < worst -> in_case p left -> winning winners ->
   worst <= val upper.
 Proof.
-rewrite /check_leaf !(val_lt F) !(val_le F) val_add val_mul !val_sum !big_map val0.
+rewrite /check_leaf !(val_lt F) !(val_le F) val_add val_mul val_sum_iota !val_sum !big_map val0.
 move=> /and3P[/allP good mass0 le] pos inc win.
 have inr : all (fun kw => kw.1 < size cuts)%N used by apply/allP => kw /good /and3P[].
 rewrite -(ler_pmul2r mass0); apply: le_trans le.
@@ -164,22 +131,23 @@ have -> : \sum_(kw <- used) (val kw.2 * (val (constant (cut_of kw.1)) +
   \sum_(kw <- used) val (dmul kw.2 (constant (cut_of kw.1))) +
   \sum_(i : robot) \sum_(kw <- used) val kw.2 * val (nth d0 (scores (cut_of kw.1)) (p i)).
   rewrite exchange_big -big_split; apply: eq_bigr => kw _; by rewrite mulrDr mulr_sumr val_mul.
-rewrite ler_add2l.
-have -> : \sum_(i <- iota 0 (robots w)) val (largest_of (nth d0 (leaf_total used)) (nth [::] left i)) =
-    \sum_(i : robot) val (largest_of (nth d0 (leaf_total used)) (nth [::] left i)).
-  by rewrite -(big_mkord xpredT (fun i => val (largest_of (nth d0 (leaf_total used)) (nth [::] left i)))) /index_iota subn0.
-by apply: ler_sum => i _; rewrite -leaf_totalP //; apply: largest_ofP.
+rewrite ler_add2l; apply: ler_sum => i _; apply: le_trans (largest_ofP F _ (inc i)); rewrite weighedP // => kw ku.
+by have /and3P[kin _ _] := good _ ku; apply/eqP/(allP sizes_ok)/mem_nth.
 Qed.
 
-Lemma check_upperP t left winners : check_upper t left winners -> 0 < worst -> in_case left -> winning winners ->
+Lemma check_upperP t left winners : check_upper t left winners -> 0 < worst -> in_case p left -> winning winners ->
   worst <= val upper.
 Proof.
-move: t left winners; fix IH 1 => t left winners; case: t => [used|i parts|a parts].
+move: t left winners; fix IH 1 => t left winners; case: t => [used|used|a|i parts|a parts].
 - exact: check_leafP.
+- rewrite [check_upper _ _ _]/= => leaf _ inc _; have [k kl /andP[low fail]] := check_cover_leafP F covers_sized leaf inc.
+  exact: covers_ok kl fail low.
+- move=> /andP[al leaf] pos inc _; have [g gl best] := some_group pos al.
+  exact: le_trans best (gains_ok leaf inc gl).
 - rewrite [check_upper _ _ _]/= => /and4P[il _ /eqP cover kids] pos inc win.
   have inpi : (p (robot_of w i) : nat) \in flatten [seq bt.1 | bt <- parts].
     by rewrite -(mem_sort leq) cover -{2}(robot_ofK il); apply: inc.
-  have inc' block : (p (robot_of w i) : nat) \in block -> in_case (set_nth [::] left i block).
+  have inc' block : (p (robot_of w i) : nat) \in block -> in_case p (set_nth [::] left i block).
     move=> pb j; rewrite nth_set_nth /=; case: eqP => [e|_]; last exact: inc.
     by rewrite -e robot_of_val in pb.
   clear cover; elim: parts inpi kids => [//|[block t] parts IHp] /=.
@@ -199,18 +167,9 @@ have : forall g0, (g0 <= g)%N -> (g < g0 + size parts)%N ->
 by move=> /(_ 0%N (leq0n _) gl kids).
 Qed.
 
-Lemma in_all_plans (i : robot) : (p i : nat) \in nth [::] all_plans i.
-Proof.
-rewrite /all_plans (nth_map 0%N) ?size_iota ?ltn_ord // nth_iota ?ltn_ord // add0n mem_filter mem_iota add0n.
-have pos_n : (0 < size (owners w))%N by case/and3P: ok.
-have ps : (p i < size (owners w))%N by apply: leq_trans (ltn_ord (p i)) _; rewrite /top_element prednK.
-rewrite ps /= andbT; have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK => [->//|].
-by case/and3P: ok => _ /allP own _; apply: own; apply: mem_nth.
-Qed.
-
-Theorem upper_treeP t : check_upper t all_plans [::] -> dle d0 upper -> worst <= val upper.
+Theorem upper_treeP t : check_upper t (all_plans w) [::] -> dle d0 upper -> worst <= val upper.
 Proof.
 rewrite (val_le F) val0 => h u0; have [le|pos] := leP worst 0; first exact: le_trans le u0.
-apply: check_upperP h pos _ _ => // i; exact: in_all_plans.
+apply: check_upperP h pos _ _ => // i; exact: in_all_plans ok okp.
 Qed.
 End Checker.
