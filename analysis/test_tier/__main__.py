@@ -40,7 +40,7 @@ def main() -> int:
     parser.add_argument("step", choices=sorted(STEPS), help="what to do")
     parser.add_argument("tests", nargs="*", help="measure these files or functions only; the others stay as they are")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "test_tier", help="of what is measured")
-    parser.add_argument("--seconds", type=float, default=120.0, help="of the short tier (default %(default)s)")
+    parser.add_argument("--seconds", type=float, default=240.0, help="of the short tier (default %(default)s)")
     parser.add_argument("--mutants", type=int, default=200, help="how many (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the mutants (default %(default)s)")
     parser.add_argument("--time-limit", type=float, default=math.inf, help="seconds; run the same command to go on")

@@ -48,6 +48,9 @@ EVERY, CHECKERS = 0.2, 2.5
 """Seconds that every function has for some of its cases, and one that tests checkers of certificates: nothing else sees
 a rule that a checker no longer applies."""
 OF_CHECKERS = "tests/certificates/"
+ONE = 1.0
+"""A function has at least one case if that takes no more seconds: most faults that the tier missed were seen by one case
+of half a second or more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +127,8 @@ def parts_of(names: Sequence[str], costs: Sequence[Cost]) -> list[Part]:
         each = max(cost.seconds / cost.tests, LEAST)
         few = min(cost.tests, CASES)
         shared = cost.shared / max(1, users[files[test]])
-        always = min(few, max(0, int(((CHECKERS if name.startswith(OF_CHECKERS) else EVERY) - shared) / each)))
+        own = CHECKERS if name.startswith(OF_CHECKERS) else EVERY
+        always = min(few, max(int(each + shared <= ONE), int((own - shared) / each)))
         begun = 0
         for cases in sorted({always, few, cost.tests} - {0}):
             share = _share(cases, cost.tests) - _share(begun, cost.tests)

@@ -23,6 +23,7 @@ from analysis.test_tier.choose import (
     CHECKERS,
     EVERY,
     OF_CHECKERS,
+    ONE,
     Cost,
     chosen,
     parts_of,
@@ -123,8 +124,8 @@ def costs(*seconds: float, tests: int = 1) -> list[Cost]:
 def test_the_tier_takes_what_reaches_most_for_its_seconds() -> None:
     units = [np.array(one) for one in ([0, 1], [0], [1, 2], [2])]
     worth = np.array([10.0, 1.0, 8.0])
-    assert chosen(parts_of("abcd", costs(1, 1, 1, 1)), units, worth, 2.0) == {0: 1, 2: 1}
-    assert chosen(parts_of("abcd", costs(1, 1, 100, 1)), units, worth, 3.0) == {
+    assert chosen(parts_of("abcd", costs(2, 2, 2, 2)), units, worth, 4.0) == {0: 1, 2: 1}
+    assert chosen(parts_of("abcd", costs(2, 2, 200, 2)), units, worth, 6.0) == {
         0: 1,
         1: 1,
         3: 1,
@@ -141,11 +142,12 @@ def test_a_function_of_many_cases_may_join_with_some() -> None:
 
 
 def test_every_function_has_some_cases_in_the_tier_and_checkers_have_more() -> None:
-    """Unless one case takes longer than the seconds of a function."""
-    names = ("tests/a.py::quick", "tests/a.py::slow", f"{OF_CHECKERS}b.py::faults", f"{OF_CHECKERS}b.py::slow")
-    each = (EVERY / 3.5, 1.5 * EVERY, CHECKERS / 8.5, 1.5 * CHECKERS)
+    """And one if that takes longer than the seconds of a function, but not too long."""
+    names = [f"tests/a.py::{name}" for name in ("quick", "longer", "long")]
+    names += [f"{OF_CHECKERS}b.py::{name}" for name in ("faults", "long")]
+    each = (EVERY / 3.5, 0.9 * ONE, 1.1 * ONE, CHECKERS / 8.5, 1.5 * CHECKERS)
     parts = parts_of(names, [Cost(9, 9 * one) for one in each])
-    assert chosen(parts, [np.array([0])] * 4, np.array([1.0]), 0.0) == {0: 3, 2: 8}
+    assert chosen(parts, [np.array([0])] * 5, np.array([1.0]), 0.0) == {0: 3, 1: 1, 3: 8}
 
 
 def test_functions_of_a_file_share_the_seconds_of_its_fixture() -> None:
