@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numba
 import numpy as np
 
-from ratt_opt.attack.links import Links
+from ratt_opt.attack.team import Links
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.criteria.compiled import team_criterion
 from ratt_opt.setfunctions.information import InformationObjective, triangles

@@ -1,13 +1,17 @@
-"""Columns of the master: groups, the links that each costs and the robots that must be blinded in it."""
+"""The groups of robots that an attack may leave: connected, and cut off by no more links than the budget has."""
 
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt.attack.team import MOST_ROBOTS
+from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import neighbour_masks
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
@@ -15,8 +19,65 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.sets_below import SetsBelow
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.communication import CommunicationGraph, Link
+    from ratt_opt.graph.threat import Threat
 
-__all__ = ["UNIT", "Columns", "Duals"]
+__all__ = ["UNIT", "Columns", "Duals", "GroupList", "groups_of"]
+
+AT_ONCE = 1 << 16
+"""Groups that are listed between two looks at the clock: some milliseconds."""
+BRANCH = np.dtype([("inside", np.uint32), ("outside", np.uint32), ("cut", np.int32)])
+
+
+class GroupList:
+    """The groups of one graph and link budget, listed as far as has been asked.
+
+    ``neighbours``, ``protected`` : (N,) bit masks of each robot's neighbours, and of those whose link cannot be cut
+    """
+
+    def __init__(self, graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> None:
+        if graph.n_robots > MOST_ROBOTS:
+            raise InputError("graph", f"must have at most {MOST_ROBOTS} robots to list its groups", graph.n_robots)
+        self.robots, self._most_cut = graph.n_robots, most_cut
+        self.neighbours = np.array(neighbour_masks(graph.n_robots, graph.links), dtype=np.uint32)
+        self.protected = np.array(neighbour_masks(graph.n_robots, protected_links), dtype=np.uint32)
+        self._stack, self._position = np.zeros(2 * graph.n_robots + 2, BRANCH), np.zeros(2, np.int64)
+        self._parts: list[tuple[NDArray[np.uint32], NDArray[np.uint8]]] = []
+
+    def all(self, budget: Budget) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]:
+        """Bit masks (G,) and links that leave each (G,).
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or the user interrupted; what is listed is gone on with.
+        """
+        call = function(
+            "list_groups", c_int64, c_int, *[c_void_p] * 2, c_int, *[c_void_p] * 2, *[c_int64] * 2, *[c_void_p] * 2
+        )
+        given = address(self.neighbours), address(self.protected), self._most_cut
+        while self._position[0] < self.robots or self._position[1] > 0:
+            budget.check()
+            groups, cuts = np.empty(AT_ONCE, np.uint32), np.empty(AT_ONCE, np.uint8)
+            state = address(self._stack), address(self._position)
+            count = call(self.robots, *given, *state, 4 * AT_ONCE, AT_ONCE, address(groups), address(cuts))
+            self._parts.append((groups[:count].copy(), cuts[:count].copy()))
+        if len(self._parts) != 1:
+            masks, links = ([part[k] for part in self._parts] for k in range(2))
+            whole = np.concatenate([np.empty(0, np.uint32), *masks]), np.concatenate([np.empty(0, np.uint8), *links])
+            self._parts = [whole]
+        return self._parts[0]
+
+
+def groups_of(threat: Threat) -> GroupList:
+    """The list of a threat's groups; the last few graphs' are kept."""
+    return _kept(threat.graph, threat.alpha_c, threat.protected_links)
+
+
+@lru_cache(maxsize=2)
+def _kept(graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> GroupList:
+    return GroupList(graph, most_cut, protected_links)
+
 
 UNIT = 1 << 20
 """Of integer duals, one link: with them reduced costs are exact."""
@@ -35,8 +96,15 @@ class Duals:
 
     def __init__(self, robots: IntArray, blinding: int) -> None:
         self.robots, self.blinding = robots, blinding
-        self._sums = _sums_of_sets(robots[:HALF]), _sums_of_sets(robots[HALF:])
-        self.record = _DualsRecord(*map(address, self._sums), UNIT, blinding)
+
+    @cached_property
+    def _sums(self) -> tuple[IntArray, IntArray]:
+        return _sums_of_sets(self.robots[:HALF]), _sums_of_sets(self.robots[HALF:])
+
+    @property
+    def record(self) -> _DualsRecord:
+        """As C reads it, for teams of up to 32 robots."""
+        return _DualsRecord(*map(address, self._sums), UNIT, self.blinding)
 
     def claim(self, n_blinded: int) -> int:
         """What groups that cover the team cost at least, if no column has a negative reduced cost."""

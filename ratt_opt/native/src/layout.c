@@ -17,6 +17,7 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[6] = sizeof(Choice);
     sizes[7] = sizeof(DisjointSets);
     sizes[8] = sizeof(GroupTree);
+    sizes[9] = sizeof(Cover);
 }
 
 /* Those of the searches for best plans. */
